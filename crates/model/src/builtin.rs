@@ -1,0 +1,118 @@
+//! Robots that are available by name.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    Error, Robot,
+    robot::{Battery, CenterOfMass, Limits, Motor, Motors, PaperSurface, Surface, Uncertainty},
+};
+
+/// Every built-in robot: the Husky A200 and the paper's configurations A to D (§IV, Fig. 6).
+pub fn all() -> Vec<Robot> {
+    vec![husky_a200(), configuration_a(), configuration_b(), configuration_c(), configuration_d()]
+}
+
+/// A built-in robot by its name.
+///
+/// # Errors
+/// [`Error::UnknownRobot`], which lists the names that exist.
+pub fn by_name(name: &str) -> Result<Robot, Error> {
+    all().into_iter().find(|robot| robot.name == name).ok_or_else(|| Error::UnknownRobot {
+        name: name.to_owned(),
+        known: all().into_iter().map(|robot| robot.name).collect(),
+    })
+}
+
+/// The Clearpath Husky A200 of the paper with its centre of mass in the middle: 90 kg, base 0.54 m by 0.54 m,
+/// motor constants of Table I, 1 m/s limit of its firmware (§IV).
+pub fn husky_a200() -> Robot {
+    Robot {
+        name: "husky-a200".into(),
+        mass_kg: 90.0,
+        wheelbase_m: 0.54,
+        track_m: 0.54,
+        slip_track_m: 0.54,
+        wheel_radius_m: 0.165,
+        center_of_mass: CenterOfMass::default(),
+        yaw_inertia_kgm2: 5.0,
+        max_wheel_speed_mps: 1.0,
+        motors: Motors {
+            left: Motor { k1_w_per_n2: 0.0023, k2: 1.7158, force_n_per_a: None },
+            right: Motor { k1_w_per_n2: 0.0016, k2: 1.7723, force_n_per_a: None },
+            reference_temperature_c: 20.0,
+            resistance_per_k: 0.0039,
+            motor_constant_per_k: -0.0012,
+            regeneration: 1.0,
+        },
+        hotel_power_w: 0.0,
+        drive_electronics_w: 0.0,
+        battery: Some(Battery { capacity_wh: 480.0, nominal_voltage_v: 24.0, reserve_fraction: 0.2 }),
+        limits: Limits { max_side_force_n: Some(600.0), max_pitch_rad: 0.52, max_roll_rad: 0.45 },
+        surfaces: BTreeMap::from([("marble".into(), marble()), ("sandy_loam".into(), sandy_loam())]),
+        default_surface: "marble".into(),
+        uncertainty: Uncertainty::default(),
+    }
+}
+
+/// Polished marble: the one constant set that reproduces the side forces of Table II
+/// (`cargo run -p joulepath-model --example paper_tables`). Inner friction: Table II, M1, R ≤ R_c.
+fn marble() -> Surface {
+    Surface {
+        mu_roll: 0.063,
+        mu_skid: 0.29,
+        slip_angle_scale_rad: 0.30,
+        dogru_marques: Some(PaperSurface { inner_friction: Some(0.1742), by_speed: Vec::new() }),
+    }
+}
+
+/// Sandy loam, scaled from marble by the motor currents that a Husky A200 drew on sandy loam against hard ground
+/// (BorealTC, LaRocque et al., IROS 2024): driving straight 3.6 A a side against 1.9 A, spinning 23 A against 19 A.
+fn sandy_loam() -> Surface {
+    Surface { mu_roll: 0.12, mu_skid: 0.30, slip_angle_scale_rad: 0.30, dogru_marques: None }
+}
+
+/// Configuration A: no extra weight; the batteries hold the centre of mass 3 cm behind the middle.
+pub fn configuration_a() -> Robot {
+    configuration("husky-a200-a", 90.0, -0.03, 0.0)
+}
+
+/// Configuration B: 14 kg on the front bring the centre of mass to the middle.
+pub fn configuration_b() -> Robot {
+    configuration("husky-a200-b", 104.0, 0.0, 0.0)
+}
+
+/// Configuration C: 28 kg on the back shift the centre of mass back to 11 cm behind the middle.
+pub fn configuration_c() -> Robot {
+    configuration("husky-a200-c", 118.0, -0.11, 0.0)
+}
+
+/// Configuration D: 28 kg on the outer side shift the centre of mass 8 cm that way; the batteries' 3 cm of the
+/// bare robot remain as 3 · 90/118 = 2.3 cm. The paper's outer side is M2, the right one.
+pub fn configuration_d() -> Robot {
+    configuration("husky-a200-d", 118.0, -0.03 * 90.0 / 118.0, -0.08)
+}
+
+fn configuration(name: &str, mass_kg: f64, forward_m: f64, left_m: f64) -> Robot {
+    let bare = husky_a200();
+    Robot {
+        name: name.into(),
+        mass_kg,
+        center_of_mass: CenterOfMass { forward_m, left_m, height_m: 0.0 },
+        yaw_inertia_kgm2: bare.yaw_inertia_kgm2 * mass_kg / bare.mass_kg,
+        ..bare
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_robot_is_valid_and_found_by_its_name() {
+        for robot in all() {
+            robot.validate().unwrap();
+            assert_eq!(by_name(&robot.name).unwrap(), robot);
+        }
+        assert!(by_name("jackal").unwrap_err().to_string().contains("husky-a200"));
+    }
+}

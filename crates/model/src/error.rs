@@ -1,0 +1,63 @@
+//! What can be wrong with a robot or with the data a parameter is fitted to.
+
+/// An error of the model crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The text is not the JSON that a robot file needs.
+    #[error("{path}: {message}")]
+    Json {
+        /// Where in the document, as `surfaces.marble.mu_roll`; `.` for the document itself.
+        path: String,
+        /// What the parser found there.
+        message: String,
+    },
+    /// A value lies outside what is physically sensible, most often because of its unit.
+    #[error("{field} is {value}, but must lie in {min} to {max}: {hint}")]
+    OutOfRange {
+        /// The field, as `motors.left.k2`.
+        field: String,
+        /// The value found.
+        value: f64,
+        /// Smallest accepted value.
+        min: f64,
+        /// Largest accepted value.
+        max: f64,
+        /// How to mend it.
+        hint: &'static str,
+    },
+    /// A surface is named that the robot has no friction for.
+    #[error("the robot has no surface `{name}`; it knows {}", known.join(", "))]
+    UnknownSurface {
+        /// The name asked for.
+        name: String,
+        /// The names that exist.
+        known: Vec<String>,
+    },
+    /// No built-in robot of this name.
+    #[error("there is no built-in robot `{name}`; built in are {}", known.join(", "))]
+    UnknownRobot {
+        /// The name asked for.
+        name: String,
+        /// The names that exist.
+        known: Vec<String>,
+    },
+    /// The measured power cannot be reached by any real friction (the root of eq. 6 is not real).
+    #[error("{power_w} W is below {least_w} W, the most that a braking motor can return by eq. 2")]
+    NoRealFriction {
+        /// The measured power.
+        power_w: f64,
+        /// The lowest power that eq. 2 can take at this wheel speed.
+        least_w: f64,
+    },
+    /// Too few samples, or samples that are too alike, to determine the parameters.
+    #[error("{count} samples do not determine {parameters}: {hint}")]
+    Undetermined {
+        /// How many samples there were.
+        count: usize,
+        /// What was to be fitted.
+        parameters: &'static str,
+        /// What would determine it.
+        hint: &'static str,
+    },
+}

@@ -1,0 +1,35 @@
+//! Friction and power physics of skid-steered wheeled robots.
+//!
+//! Two forms of the physics of Dogru & Marques, *A Physics-Based Power Model for Skid-Steered Wheeled Mobile
+//! Robots* (IEEE T-RO, 2018), behind one function, [`power()`]: the default `force-balance`, continuous over all
+//! turning radii, and `dogru-marques`, the paper as printed. Equation numbers in this crate are the paper's.
+//!
+//! Pure functions, no I/O, no async. SI units; x forward, y left, z up; pitch positive nose-up, roll positive left
+//! side up, yaw rate positive turning left; power positive when drawn from the battery.
+
+mod balance;
+pub mod builtin;
+mod error;
+pub mod fit;
+mod gravity;
+pub mod inversion;
+pub mod least_squares;
+mod motion;
+mod motor;
+pub mod paper;
+mod power;
+pub mod robot;
+mod robot_limits;
+pub mod rolling;
+mod sides;
+pub mod skid;
+pub mod thermal;
+
+pub use balance::FrictionForces;
+pub use error::Error;
+pub use gravity::{Attitude, STANDARD_GRAVITY_MPS2};
+pub use motion::{Acceleration, Motion};
+pub use motor::WarmMotor;
+pub use power::{Manoeuvre, Power, PowerModel, power};
+pub use robot::Robot;
+pub use sides::Sides;

@@ -1,0 +1,49 @@
+//! How the robot moves at one instant.
+
+use crate::{Robot, Sides};
+
+/// Body and wheel speeds at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// v: forward speed of the geometric centre over the ground [m/s].
+    pub speed_mps: f64,
+    /// ω: yaw rate, positive turning left [rad/s].
+    pub yaw_rate_radps: f64,
+    /// u: rim speeds of both sides [m/s].
+    pub rim_speeds_mps: Sides<f64>,
+}
+
+impl Motion {
+    /// The motion whose wheels turn as the slip track says.
+    pub fn of_body(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64) -> Self {
+        Motion { speed_mps, yaw_rate_radps, rim_speeds_mps: robot.rim_speeds_mps(speed_mps, yaw_rate_radps) }
+    }
+
+    /// The motion that wheel encoders report, when no gyroscope says otherwise.
+    pub fn of_wheels(robot: &Robot, rim_speeds_mps: Sides<f64>) -> Self {
+        Motion {
+            speed_mps: rim_speeds_mps.sum() / 2.0,
+            yaw_rate_radps: (rim_speeds_mps.right - rim_speeds_mps.left) / robot.slip_track_m,
+            rim_speeds_mps,
+        }
+    }
+
+    /// R0 = v/ω of eq. 11, signed: positive with the centre on the left; infinite when straight [m].
+    pub fn turning_radius_m(&self) -> f64 {
+        if self.yaw_rate_radps == 0.0 { f64::INFINITY } else { self.speed_mps / self.yaw_rate_radps }
+    }
+}
+
+/// How fast the motion changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Acceleration {
+    /// dv/dt [m/s²].
+    pub forward_mps2: f64,
+    /// dω/dt [rad/s²].
+    pub yaw_radps2: f64,
+}
+
+impl Acceleration {
+    /// Steady motion.
+    pub const NONE: Acceleration = Acceleration { forward_mps2: 0.0, yaw_radps2: 0.0 };
+}

@@ -1,0 +1,138 @@
+//! Motor temperature where none is measured: winding and case as two heat stores.
+
+use crate::{Robot, Sides, motor::WarmMotor, power::Power};
+
+/// Heat stores and paths of one motor with its gearbox.
+///
+///     C_w dT_w/dt = k1 F² − (T_w − T_c)/R_wc
+///     C_c dT_c/dt = (T_w − T_c)/R_wc + gear loss − (T_c − T_a)/R_ca
+///
+/// Copper loss heats the winding, gear loss `|P_el − k1 F² − P_mech|` the case. The case is what the paper's
+/// thermistors measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThermalModel {
+    /// C_w: heat capacity of the winding [J/K].
+    pub winding_j_per_k: f64,
+    /// C_c: heat capacity of the case and gearbox [J/K].
+    pub case_j_per_k: f64,
+    /// R_wc: resistance from winding to case [K/W].
+    pub winding_to_case_k_per_w: f64,
+    /// R_ca: resistance from case to air [K/W].
+    pub case_to_air_k_per_w: f64,
+}
+
+impl Default for ThermalModel {
+    /// A Husky A200 motor: about 0.4 kg of copper at 385 J/(kg K) and 2.5 kg of steel and aluminium at about
+    /// 500 J/(kg K); R_wc typical of brushed motors of this size; R_ca such that 23 min of spinning at 1 rad/s warm
+    /// the case from 20 °C to the 76 °C that the paper measured (§V-B, Fig. 9a).
+    fn default() -> Self {
+        ThermalModel {
+            winding_j_per_k: 154.0,
+            case_j_per_k: 1250.0,
+            winding_to_case_k_per_w: 0.30,
+            case_to_air_k_per_w: 0.65,
+        }
+    }
+}
+
+/// Temperatures of one motor [°C].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorHeat {
+    /// The copper, which eqs. 7-10 ask for.
+    pub winding_c: f64,
+    /// The case, which a thermistor sees.
+    pub case_c: f64,
+}
+
+impl MotorHeat {
+    /// A motor that has stood long enough to be as warm as the air.
+    pub fn at_rest(ambient_c: f64) -> Self {
+        MotorHeat { winding_c: ambient_c, case_c: ambient_c }
+    }
+
+    /// Advances by `step_s` with losses held constant; exact for the winding, which is the fast store.
+    pub fn advance(&mut self, model: &ThermalModel, copper_w: f64, gear_w: f64, ambient_c: f64, step_s: f64) {
+        let settled_c = self.case_c + copper_w * model.winding_to_case_k_per_w;
+        let decay = (-step_s / (model.winding_j_per_k * model.winding_to_case_k_per_w)).exp();
+        let winding_c = settled_c + (self.winding_c - settled_c) * decay;
+        let stored_j = model.winding_j_per_k * (winding_c - self.winding_c);
+        let to_case_j = copper_w * step_s - stored_j;
+        let to_air_w = (self.case_c - ambient_c) / model.case_to_air_k_per_w;
+        self.case_c += (to_case_j + (gear_w - to_air_w) * step_s) / model.case_j_per_k;
+        self.winding_c = winding_c;
+    }
+}
+
+/// Copper and gear losses of both sides at one instant [W].
+pub fn losses_w(robot: &Robot, power: &Power, winding_c: Sides<f64>) -> Sides<(f64, f64)> {
+    let motors: Sides<WarmMotor> =
+        robot.motor_sides().zip(winding_c).map(|(m, t)| m.at_temperature(&robot.motors, t));
+    motors.zip(power.force_n).zip(power.side_w.zip(power.mechanical_w)).map(|((motor, f), (side, mech))| {
+        let copper_w = motor.k1_w_per_n2 * f * f;
+        (copper_w, (side - copper_w - mech).max(0.0))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Attitude, Motion, PowerModel, builtin, power};
+
+    /// Spins at 1 rad/s on marble and returns case temperatures and the side powers at the start and the end.
+    fn spin(seconds: u32) -> (Sides<f64>, Power, Power) {
+        let robot = builtin::husky_a200();
+        let marble = &robot.surfaces["marble"];
+        let model = ThermalModel::default();
+        let mut heat = Sides::both(MotorHeat::at_rest(20.0));
+        let watts = |heat: Sides<MotorHeat>| {
+            let motion = Motion::of_body(&robot, 0.0, 1.0);
+            power(
+                PowerModel::ForceBalance,
+                &robot,
+                marble,
+                motion,
+                Attitude::LEVEL,
+                heat.map(|h| h.winding_c),
+            )
+        };
+        let first = watts(heat);
+        for _ in 0..seconds {
+            let losses = losses_w(&robot, &watts(heat), heat.map(|h| h.winding_c));
+            for (motor, (copper_w, gear_w)) in
+                [(&mut heat.left, losses.left), (&mut heat.right, losses.right)]
+            {
+                motor.advance(&model, copper_w, gear_w, 20.0, 1.0);
+            }
+        }
+        (heat.map(|h| h.case_c), first, watts(heat))
+    }
+
+    #[test]
+    fn twenty_three_minutes_of_spinning_warm_the_case_to_76_c() {
+        let (case_c, _, _) = spin(23 * 60);
+        assert!((case_c.left - 76.0).abs() < 6.0, "left {}", case_c.left);
+        assert!((case_c.right - 76.0).abs() < 12.0, "right {}", case_c.right);
+    }
+
+    #[test]
+    fn heat_raises_the_power_of_the_same_motion_by_at_least_a_fifth() {
+        let (_, cold, hot) = spin(23 * 60);
+        for ratio in [hot.side_w.left / cold.side_w.left, hot.side_w.right / cold.side_w.right] {
+            // The paper saw 150/106 = 1.42 and 193/116 = 1.66.
+            assert!((1.2..1.7).contains(&ratio), "{ratio}");
+        }
+    }
+
+    #[test]
+    fn a_motor_at_rest_stays_at_air_temperature_and_a_warm_one_cools_to_it() {
+        let model = ThermalModel::default();
+        let mut heat = MotorHeat::at_rest(20.0);
+        heat.advance(&model, 0.0, 0.0, 20.0, 60.0);
+        assert_eq!(heat, MotorHeat::at_rest(20.0));
+        let mut warm = MotorHeat { winding_c: 90.0, case_c: 70.0 };
+        for _ in 0..100_000 {
+            warm.advance(&model, 0.0, 0.0, 20.0, 1.0);
+        }
+        assert!((warm.winding_c - 20.0).abs() < 0.01 && (warm.case_c - 20.0).abs() < 0.01);
+    }
+}
