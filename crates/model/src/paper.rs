@@ -116,8 +116,8 @@ impl PaperForces {
 
     /// Power of both sides by eq. 6, and of the bus.
     ///
-    /// What eq. 6 returns below zero is limited on the bus to what the descent holds, `r m g |sinγ sinβ| v / k2`;
-    /// the side powers stay as printed. `grade` is (cos γ, sin γ sin β).
+    /// The side powers stay as printed. The bus takes at least what gravity asks for, `k2 m g sinγ sinβ v` uphill, and
+    /// returns at most what the descent holds, `r m g |sinγ sinβ| v / k2`. `grade` is (cos γ, sin γ sin β).
     pub(crate) fn power(
         &self,
         robot: &Robot,
@@ -130,9 +130,10 @@ impl PaperForces {
         let force_n = self.side_forces_n(weight_n, motion, grade);
         let rims = force_n.zip(motion.rim_speeds_mps);
         let side_w = rims.zip(motors).map(|((f, u), motor)| motor.printed_power_w(f, u));
-        let falling_w = (-weight_n * grade.1 * motion.speed_mps).max(0.0);
+        let gravity_w = weight_n * grade.1 * motion.speed_mps;
         let least_k2 = motors.left.k2.min(motors.right.k2);
-        let floor_w = -robot.motors.regeneration * falling_w / least_k2;
+        let back = robot.motors.regeneration / least_k2;
+        let floor_w = gravity_w * if gravity_w >= 0.0 { least_k2 } else { back };
         Power {
             force_n,
             mechanical_w: rims.map(|(f, u)| f * u),

@@ -68,6 +68,10 @@ proptest! {
         // The potential that keeps A* exact: P ≥ κ · gravity power, κ the smaller k2.
         let kappa = robot.motors.left.k2.min(robot.motors.right.k2);
         prop_assert!(p.bus_w >= kappa * gravity_w - 1e-9);
+        let motion = Motion::of_body(&robot, v, w);
+        let attitude = Attitude { pitch_rad: pitch, roll_rad: roll };
+        let printed = power(PowerModel::DogruMarques, &robot, &marble(), motion, attitude, Sides::both(20.0));
+        prop_assert!(printed.bus_w >= kappa * gravity_w - 1e-9, "and so does the printed form");
         prop_assert!(p.bus_w >= gravity_w.min(0.0) - 1e-9, "more than m g dh came back");
     }
 

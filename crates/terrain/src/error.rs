@@ -1,0 +1,225 @@
+//! What can be wrong with a map.
+
+/// An error of the terrain crate; the message names the place and says how to mend it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The text is not the JSON that a map needs.
+    #[error("{path}: {message}")]
+    Json {
+        /// Where in the document, as `elevation_m[3][2]`; `.` for the document itself.
+        path: String,
+        /// What the parser found there.
+        message: String,
+    },
+    /// A grid with no cells.
+    #[error("{field} is {value}: a map needs at least one row and one column")]
+    Empty {
+        /// `rows` or `columns`.
+        field: &'static str,
+        /// The value found.
+        value: u64,
+    },
+    /// More cells than this program keeps in memory.
+    #[error("{rows} × {columns} cells are more than the {limit} a map may have: crop it or use larger cells")]
+    TooManyCells {
+        /// Rows declared.
+        rows: u64,
+        /// Columns declared.
+        columns: u64,
+        /// Most cells accepted.
+        limit: u64,
+    },
+    /// The layer has another number of rows than the map says.
+    #[error("{layer} has {found} rows, but rows is {expected}")]
+    RowCount {
+        /// `elevation_m`, `surface` or `obstacle`.
+        layer: &'static str,
+        /// Rows found.
+        found: usize,
+        /// Rows declared.
+        expected: usize,
+    },
+    /// A ragged layer.
+    #[error("{layer}[{row}] has {found} values, but columns is {expected}")]
+    RowLength {
+        /// `elevation_m`, `surface` or `obstacle`.
+        layer: &'static str,
+        /// The ragged row.
+        row: usize,
+        /// Values found in it.
+        found: usize,
+        /// Columns declared.
+        expected: usize,
+    },
+    /// An elevation that no ground has.
+    #[error(
+        "elevation_m[{row}][{column}] is {value}, outside {min} to {max} m: use null for unknown ground, metres otherwise"
+    )]
+    Elevation {
+        /// Row from the south.
+        row: usize,
+        /// Column from the west.
+        column: usize,
+        /// The value found.
+        value: f64,
+        /// Lowest accepted.
+        min: f64,
+        /// Highest accepted.
+        max: f64,
+    },
+    /// Every cell is unknown.
+    #[error("elevation_m holds no known cell: every value is null or nodata")]
+    AllUnknown,
+    /// A cell size that no terrain grid has.
+    #[error("cell_size_m is {value}, but must lie in {min} to {max}: give metres")]
+    CellSize {
+        /// The value found.
+        value: f64,
+        /// Smallest accepted.
+        min: f64,
+        /// Largest accepted.
+        max: f64,
+    },
+    /// An origin that is not a place in projected metres.
+    #[error("origin_m[{axis}] is {value}, but must be finite and within ±{limit} m")]
+    Origin {
+        /// 0 for x, 1 for y.
+        axis: usize,
+        /// The value found.
+        value: f64,
+        /// Largest magnitude accepted.
+        limit: f64,
+    },
+    /// More surface classes than a byte can index.
+    #[error("surface names more than {limit} classes, the last of them `{name}`")]
+    TooManySurfaces {
+        /// The class that was one too many.
+        name: String,
+        /// Most classes accepted.
+        limit: usize,
+    },
+    /// An ESRI ASCII header line that is missing or wrong.
+    #[error("line {line}: expected the header `{expected}`, found `{found}`")]
+    AsciiHeader {
+        /// Line number from 1.
+        line: usize,
+        /// What should stand there.
+        expected: &'static str,
+        /// What stands there.
+        found: String,
+    },
+    /// A value of an ESRI ASCII grid that is not a number.
+    #[error("line {line}, value {column}: `{found}` is not a number")]
+    AsciiNumber {
+        /// Line number from 1.
+        line: usize,
+        /// Position in the line from 1.
+        column: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// An ESRI ASCII grid with more or fewer values than its header says.
+    #[error("the grid has {found} values, but nrows × ncols is {expected}: the file is truncated or ragged")]
+    AsciiCount {
+        /// Values found.
+        found: usize,
+        /// Values declared.
+        expected: usize,
+    },
+    /// Text that is not UTF-8.
+    #[error("byte {position} is not UTF-8 text: is this really an ASCII grid or JSON?")]
+    NotText {
+        /// Offset of the first bad byte.
+        position: usize,
+    },
+    /// The TIFF decoder refused the file.
+    #[error("not a readable GeoTIFF: {0}")]
+    Tiff(#[from] tiff::TiffError),
+    /// The TIFF declares more data than the file can hold.
+    #[error(
+        "the GeoTIFF declares {declared_bytes} bytes of elevation, but the file has {file_bytes}: it is truncated or corrupt"
+    )]
+    TiffTruncated {
+        /// Bytes that the declared size needs.
+        declared_bytes: u64,
+        /// Bytes there are.
+        file_bytes: u64,
+    },
+    /// A TIFF without the tags that place it on the ground.
+    #[error("the TIFF has no {tag}: export it as a GeoTIFF in projected metres")]
+    TiffTag {
+        /// Name of the missing tag.
+        tag: &'static str,
+    },
+    /// A GeoTIFF in degrees, feet or a rotated frame.
+    #[error("the GeoTIFF's {what} is {value}, but must be {expected}: reproject it to north-up metres")]
+    TiffFrame {
+        /// The property at fault.
+        what: &'static str,
+        /// The value found.
+        value: f64,
+        /// The value needed.
+        expected: &'static str,
+    },
+    /// A TIFF whose samples are not one elevation per pixel.
+    #[error("the GeoTIFF holds {found}, but one band of integer or float elevation is needed")]
+    TiffSamples {
+        /// What it holds.
+        found: String,
+    },
+    /// The image of a ROS map cannot be read.
+    #[error("the map image {path} cannot be read: {source}")]
+    Image {
+        /// The image's path as the YAML names it.
+        path: String,
+        /// Why.
+        source: image::ImageError,
+    },
+    /// The YAML of a ROS map cannot be read.
+    #[error("the map_server YAML cannot be read: {0}")]
+    Yaml(#[from] serde_yaml_ng::Error),
+    /// A field of a ROS map that this program cannot use.
+    #[error("{field} of the map_server YAML is {value}, but must be {expected}")]
+    RosMap {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// A file name that says nothing about its format.
+    #[error("`{path}` is no map file: the name must end in .json, .asc, .tif, .tiff, .yaml or .yml")]
+    UnknownFormat {
+        /// The path.
+        path: String,
+    },
+    /// The file cannot be read at all.
+    #[error("{path}: {source}")]
+    Read {
+        /// The path.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+impl Error {
+    /// The field at fault, as `elevation_m[3][2]`, where the error lies in one.
+    pub fn field(&self) -> Option<String> {
+        Some(match self {
+            Error::Json { path, .. } if path != "." => path.clone(),
+            Error::Empty { field, .. } => (*field).into(),
+            Error::TooManyCells { .. } => "rows".into(),
+            Error::RowCount { layer, .. } => (*layer).into(),
+            Error::RowLength { layer, row, .. } => format!("{layer}[{row}]"),
+            Error::Elevation { row, column, .. } => format!("elevation_m[{row}][{column}]"),
+            Error::AllUnknown => "elevation_m".into(),
+            Error::CellSize { .. } => "cell_size_m".into(),
+            Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
+            Error::TooManySurfaces { .. } => "surface".into(),
+            _ => return None,
+        })
+    }
+}

@@ -1,0 +1,217 @@
+//! GeoTIFF elevation: one band of integers or floats, north up, in projected metres.
+//!
+//! The `tiff` crate decodes the image; the tags that place it on the ground (OGC GeoTIFF 1.1) are read here.
+
+use std::io::Cursor;
+
+use tiff::{
+    ColorType,
+    decoder::{Decoder, DecodingResult},
+    tags::Tag,
+};
+
+use super::ascii::south_up;
+use crate::{Error, Terrain};
+
+type TiffDecoder<'a> = Decoder<Cursor<&'a [u8]>>;
+
+/// Most bytes that one byte of a compressed TIFF can stand for; LZW reaches about 2700, deflate 1032.
+const LARGEST_COMPRESSION: u64 = 4096;
+
+/// Reads a GeoTIFF elevation model.
+///
+/// # Errors
+/// A missing or unusable tag by name, truncation, or an elevation out of range by cell.
+pub fn read(bytes: &[u8]) -> Result<Terrain, Error> {
+    let mut decoder = Decoder::new(Cursor::new(bytes))?;
+    let (columns, rows) = decoder.dimensions()?;
+    let frame = Frame::read(&mut decoder)?;
+    let north_m = frame.north_west_m[1];
+    let origin_m = [frame.north_west_m[0], north_m - f64::from(rows) * frame.cell_size_m];
+    let grid = Terrain::check_size(u64::from(rows), u64::from(columns), frame.cell_size_m, origin_m)?;
+    refuse_truncation(&mut decoder, bytes.len() as u64, u64::from(rows) * u64::from(columns))?;
+    let nodata = nodata(&mut decoder)?;
+    let mut from_north = read_samples(&mut decoder, rows as usize, columns as usize)?;
+    for z in &mut from_north {
+        if nodata.is_some_and(|mark| marks_nodata(*z, mark)) {
+            *z = f64::NAN;
+        }
+    }
+    Terrain::new(grid, &south_up(&grid, &from_north))
+}
+
+/// Where the raster lies: north-west corner and cell size.
+struct Frame {
+    north_west_m: [f64; 2],
+    cell_size_m: f64,
+}
+
+impl Frame {
+    fn read(decoder: &mut TiffDecoder<'_>) -> Result<Self, Error> {
+        let keys = GeoKeys::read(decoder)?;
+        keys.refuse_other_than_projected_metres()?;
+        let (corner, scale_m) = match decoder.find_tag(Tag::ModelTransformationTag)? {
+            Some(value) => Self::from_transformation(&value.into_f64_vec()?)?,
+            None => Self::from_tie_point(decoder)?,
+        };
+        if (scale_m[0] - scale_m[1]).abs() > 1e-6 * scale_m[0].abs() {
+            return Err(Error::TiffFrame {
+                what: "pixel height",
+                value: scale_m[1],
+                expected: "the pixel width",
+            });
+        }
+        let half_m = if keys.pixel_is_point() { scale_m[0] / 2.0 } else { 0.0 };
+        Ok(Frame { north_west_m: [corner[0] - half_m, corner[1] + half_m], cell_size_m: scale_m[0] })
+    }
+
+    fn from_tie_point(decoder: &mut TiffDecoder<'_>) -> Result<([f64; 2], [f64; 2]), Error> {
+        let numbers = |decoder: &mut TiffDecoder<'_>, tag, name, count| -> Result<Vec<f64>, Error> {
+            let value = decoder.find_tag(tag)?.ok_or(Error::TiffTag { tag: name })?.into_f64_vec()?;
+            if value.len() < count { Err(Error::TiffTag { tag: name }) } else { Ok(value) }
+        };
+        let scale = numbers(decoder, Tag::ModelPixelScaleTag, "ModelPixelScale", 2)?;
+        let tie = numbers(decoder, Tag::ModelTiepointTag, "ModelTiepoint", 5)?;
+        // Raster position (i, j) of the tie point lies at (x, y); the raster runs east and south.
+        Ok(([tie[3] - tie[0] * scale[0], tie[4] + tie[1] * scale[1]], [scale[0], scale[1]]))
+    }
+
+    fn from_transformation(m: &[f64]) -> Result<([f64; 2], [f64; 2]), Error> {
+        let &[dx, skew_x, _, x, skew_y, dy, _, y, ..] = m else {
+            return Err(Error::TiffTag { tag: "ModelTransformation" });
+        };
+        for value in [skew_x, skew_y] {
+            if value != 0.0 {
+                return Err(Error::TiffFrame { what: "rotation", value, expected: "0" });
+            }
+        }
+        Ok(([x, y], [dx, -dy]))
+    }
+}
+
+/// The short-valued entries of the GeoKey directory.
+struct GeoKeys(Vec<(u16, u16)>);
+
+impl GeoKeys {
+    const MODEL_TYPE: u16 = 1024;
+    const RASTER_TYPE: u16 = 1025;
+    const LINEAR_UNITS: u16 = 3076;
+
+    fn read(decoder: &mut TiffDecoder<'_>) -> Result<Self, Error> {
+        let directory = match decoder.find_tag(Tag::GeoKeyDirectoryTag)? {
+            Some(value) => value.into_u16_vec()?,
+            None => Vec::new(),
+        };
+        let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
+        Ok(GeoKeys(entries.filter(|e| e[1] == 0).map(|e| (e[0], e[3])).collect()))
+    }
+
+    fn get(&self, key: u16) -> Option<u16> {
+        self.0.iter().find(|(k, _)| *k == key).map(|(_, value)| *value)
+    }
+
+    fn pixel_is_point(&self) -> bool {
+        self.get(Self::RASTER_TYPE) == Some(2)
+    }
+
+    fn refuse_other_than_projected_metres(&self) -> Result<(), Error> {
+        const GEOGRAPHIC: u16 = 2;
+        const METRE: u16 = 9001;
+        const USER_DEFINED: u16 = 32767;
+        if self.get(Self::MODEL_TYPE) == Some(GEOGRAPHIC) {
+            let value = f64::from(GEOGRAPHIC);
+            return Err(Error::TiffFrame {
+                what: "model type (GTModelTypeGeoKey)",
+                value,
+                expected: "1, projected",
+            });
+        }
+        match self.get(Self::LINEAR_UNITS) {
+            None | Some(METRE | USER_DEFINED) => Ok(()),
+            Some(unit) => Err(Error::TiffFrame {
+                what: "linear unit (ProjLinearUnitsGeoKey)",
+                value: f64::from(unit),
+                expected: "9001, metres",
+            }),
+        }
+    }
+}
+
+/// Refuses files that declare more than they can hold, before anything of the declared size is allocated.
+fn refuse_truncation(decoder: &mut TiffDecoder<'_>, file_bytes: u64, cells: u64) -> Result<(), Error> {
+    let bits: u64 = decoder.find_tag_unsigned(Tag::BitsPerSample)?.unwrap_or(1);
+    let declared_bytes = cells * bits.div_ceil(8);
+    let mut stored_bytes = 0u64;
+    for (offsets, counts) in
+        [(Tag::StripOffsets, Tag::StripByteCounts), (Tag::TileOffsets, Tag::TileByteCounts)]
+    {
+        let offsets: Vec<u64> = decoder.find_tag_unsigned_vec(offsets)?.unwrap_or_default();
+        let counts: Vec<u64> = decoder.find_tag_unsigned_vec(counts)?.unwrap_or_default();
+        for (offset, count) in offsets.iter().zip(&counts) {
+            if offset.checked_add(*count).is_none_or(|end| end > file_bytes) {
+                return Err(Error::TiffTruncated { declared_bytes, file_bytes });
+            }
+            stored_bytes += count;
+        }
+    }
+    if declared_bytes > stored_bytes.min(file_bytes).saturating_mul(LARGEST_COMPRESSION) {
+        return Err(Error::TiffTruncated { declared_bytes, file_bytes });
+    }
+    Ok(())
+}
+
+fn nodata(decoder: &mut TiffDecoder<'_>) -> Result<Option<f64>, Error> {
+    let Some(value) = decoder.find_tag(Tag::GdalNodata)? else { return Ok(None) };
+    let text = value.into_string()?;
+    Ok(text.trim_matches(|c: char| c.is_whitespace() || c == '\0').parse().ok())
+}
+
+/// Whether a sample is the nodata mark, which writers round in their own ways.
+fn marks_nodata(z: f64, mark: f64) -> bool {
+    z == mark || (z - mark).abs() <= mark.abs() * 1e-6 || (mark.is_nan() && z.is_nan())
+}
+
+/// All samples, northernmost row first.
+fn read_samples(decoder: &mut TiffDecoder<'_>, rows: usize, columns: usize) -> Result<Vec<f64>, Error> {
+    match decoder.colortype()? {
+        ColorType::Gray(_) => {}
+        other => return Err(Error::TiffSamples { found: format!("{other:?} samples") }),
+    }
+    let mut samples = vec![f64::NAN; rows * columns];
+    let (chunk_width, chunk_height) = decoder.chunk_dimensions();
+    let across = columns.div_ceil(chunk_width as usize);
+    let down = rows.div_ceil(chunk_height as usize);
+    for index in 0..across * down {
+        let Ok(chunk) = u32::try_from(index) else { break };
+        let (width, height) = decoder.chunk_data_dimensions(chunk);
+        let values = as_f64(decoder.read_chunk(chunk)?)?;
+        let left = (index % across) * chunk_width as usize;
+        let top = (index / across) * chunk_height as usize;
+        for (y, line) in values.chunks(width as usize).take(height as usize).enumerate() {
+            let start = (top + y) * columns + left;
+            if let Some(target) = samples.get_mut(start..start + line.len()) {
+                target.copy_from_slice(line);
+            }
+        }
+    }
+    Ok(samples)
+}
+
+fn as_f64(samples: DecodingResult) -> Result<Vec<f64>, Error> {
+    fn wide<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
+        values.into_iter().map(Into::into).collect()
+    }
+    Ok(match samples {
+        DecodingResult::U8(v) => wide(v),
+        DecodingResult::U16(v) => wide(v),
+        DecodingResult::U32(v) => wide(v),
+        DecodingResult::I8(v) => wide(v),
+        DecodingResult::I16(v) => wide(v),
+        DecodingResult::I32(v) => wide(v),
+        DecodingResult::F32(v) => wide(v),
+        DecodingResult::F64(v) => v,
+        DecodingResult::U64(v) => v.into_iter().map(|z| z as f64).collect(),
+        DecodingResult::I64(v) => v.into_iter().map(|z| z as f64).collect(),
+        DecodingResult::F16(v) => v.into_iter().map(|z| f64::from(z.to_f32())).collect(),
+    })
+}

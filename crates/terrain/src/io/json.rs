@@ -1,0 +1,166 @@
+//! The JSON grid.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Cell, Error, Surfaces, Terrain};
+
+/// A map as JSON: rows from the south, `null` elevation for unknown ground.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MapFile {
+    /// Edge of a cell, 0.01 to 100 [m].
+    pub cell_size_m: f64,
+    /// South-west corner of the first cell, x and y [m]. Default: [0, 0].
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(min_items = 2, max_items = 2))]
+    pub origin_m: [f64; 2],
+    /// Number of rows.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
+    pub rows: u64,
+    /// Number of columns.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
+    pub columns: u64,
+    /// Elevation by row and column, −1000 to 9000 or null [m].
+    pub elevation_m: Vec<Vec<Option<f64>>>,
+    /// Surface names by row and column; null means the robot's default surface. Default: none named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Vec<Vec<Option<String>>>>,
+    /// Obstacles by row and column. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<Vec<Vec<bool>>>,
+}
+
+/// Reads a JSON grid.
+///
+/// # Errors
+/// The place of whatever is missing, unknown, ragged or out of range.
+pub fn read(text: &str) -> Result<Terrain, Error> {
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let file: MapFile = serde_path_to_error::deserialize(&mut deserializer)
+        .map_err(|e| Error::Json { path: e.path().to_string(), message: e.inner().to_string() })?;
+    deserializer.end().map_err(|e| Error::Json { path: ".".into(), message: e.to_string() })?;
+    Terrain::try_from(file)
+}
+
+impl TryFrom<MapFile> for Terrain {
+    type Error = Error;
+
+    fn try_from(file: MapFile) -> Result<Self, Error> {
+        let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
+        let shape = (grid.rows, grid.columns);
+        check_shape("elevation_m", &file.elevation_m, shape)?;
+        let elevation_m: Vec<f64> =
+            file.elevation_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
+        let mut terrain = Terrain::new(grid, &elevation_m)?;
+        if let Some(surface) = &file.surface {
+            check_shape("surface", surface, shape)?;
+            let names = surface.iter().flatten().map(Option::as_deref);
+            terrain = terrain.with_surfaces(Surfaces::from_names(names)?);
+        }
+        if let Some(obstacle) = &file.obstacle {
+            check_shape("obstacle", obstacle, shape)?;
+            terrain = terrain.with_obstacles(obstacle.iter().flatten().copied().collect());
+        }
+        Ok(terrain)
+    }
+}
+
+impl From<&Terrain> for MapFile {
+    fn from(terrain: &Terrain) -> Self {
+        let grid = &terrain.grid;
+        let rows_of = |row: usize| (0..grid.columns).map(move |column| Cell { row, column });
+        let surface = terrain.surfaces().map(|surfaces| {
+            let name = |cell| surfaces.names.get(usize::from(terrain.surface_class(cell))).cloned();
+            (0..grid.rows).map(|row| rows_of(row).map(name).collect()).collect()
+        });
+        let obstacle = terrain.obstacles().map(|o| {
+            (0..grid.rows).map(|row| rows_of(row).map(|cell| o[grid.index(cell)]).collect()).collect()
+        });
+        MapFile {
+            cell_size_m: grid.cell_size_m,
+            origin_m: grid.origin_m,
+            rows: grid.rows as u64,
+            columns: grid.columns as u64,
+            elevation_m: (0..grid.rows)
+                .map(|row| rows_of(row).map(|cell| terrain.elevation_m(cell)).collect())
+                .collect(),
+            surface,
+            obstacle,
+        }
+    }
+}
+
+fn check_shape<T>(
+    layer: &'static str,
+    rows: &[Vec<T>],
+    (expected_rows, columns): (usize, usize),
+) -> Result<(), Error> {
+    if rows.len() != expected_rows {
+        return Err(Error::RowCount { layer, found: rows.len(), expected: expected_rows });
+    }
+    match rows.iter().position(|row| row.len() != columns) {
+        Some(row) => Err(Error::RowLength { layer, row, found: rows[row].len(), expected: columns }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        read(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_small_map_is_read_with_all_its_layers() {
+        let terrain = read(
+            r#"{"cell_size_m": 0.5, "origin_m": [1, 2], "rows": 2, "columns": 3,
+                "elevation_m": [[0, 0.1, null], [0.2, 0.3, 0.4]],
+                "surface": [["grass", null, "mud"], ["grass", "mud", "mud"]],
+                "obstacle": [[false, true, false], [false, false, false]]}"#,
+        )
+        .unwrap();
+        let cell = |row, column| Cell { row, column };
+        assert!((terrain.elevation_m(cell(1, 2)).unwrap() - 0.4).abs() < 1e-6);
+        assert!(terrain.is_blocked(cell(0, 2)), "unknown ground");
+        assert!(terrain.is_blocked(cell(0, 1)), "an obstacle");
+        assert!(!terrain.is_blocked(cell(0, 0)));
+        assert_eq!(terrain.surface_class(cell(0, 1)), Surfaces::UNNAMED);
+        assert_eq!(terrain.surfaces().unwrap().names, ["grass", "mud"]);
+    }
+
+    #[test]
+    fn a_map_survives_a_round_trip() {
+        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]]}"#;
+        let terrain = read(text).unwrap();
+        let again = serde_json::to_string(&MapFile::from(&terrain)).unwrap();
+        assert_eq!(read(&again).unwrap().content_id(), terrain.content_id());
+    }
+
+    #[test]
+    fn every_kind_of_bad_map_is_refused_by_place() {
+        let with = |body: &str| format!(r#"{{"cell_size_m": 1, {body}}}"#);
+        for (text, place) in [
+            (with(r#""rows": 2, "columns": 2, "elevation_m": [[1, 2], [3]]"#), "elevation_m[1]"),
+            (with(r#""rows": 0, "columns": 2, "elevation_m": []"#), "rows"),
+            (with(r#""rows": 1, "columns": 0, "elevation_m": [[]]"#), "columns"),
+            (with(r#""rows": 3, "columns": 1, "elevation_m": [[1], [2]]"#), "elevation_m"),
+            (with(r#""rows": 1, "columns": 1, "elevation_m": [["high"]]"#), "elevation_m[0][0]"),
+            (with(r#""rows": 1, "columns": 1, "elevation_m": [[1e999]]"#), "elevation_m[0][0]"),
+            (with(r#""rows": 1, "columns": 1, "elevation_m": [[123456]]"#), "elevation_m[0][0]"),
+            (with(r#""rows": 1, "columns": 1, "elevation_m": [[1]], "colour": 3"#), "colour"),
+            (with(r#""rows": 1, "columns": 2, "elevation_m": [[1, 2]], "surface": [["a"]]"#), "surface[0]"),
+            (with(r#""rows": 4000000000, "columns": 4000000000, "elevation_m": [[1]]"#), "4000000000"),
+            (r#"{"cell_size_m": -1, "rows": 1, "columns": 1, "elevation_m": [[1]]}"#.into(), "cell_size_m"),
+            (r#"{"cell_size_m": 500, "rows": 1, "columns": 1, "elevation_m": [[1]]}"#.into(), "cell_size_m"),
+            (r#"{"cell_size_m": 1, "origin_m": [1e300, 0], "rows": 1, "columns": 1, "elevation_m": [[1]]}"#.into(), "origin_m[0]"),
+            (r#"{"cell_size_m": 1, "rows": 1, "columns": 1, "elevation_m": [[1]]} trailing"#.into(), "trailing"),
+            (r#"{"cell_size_m": 1, "rows": 1, "#.into(), "EOF"),
+        ] {
+            let message = refused(&text);
+            assert!(message.contains(place), "{text}\n  said: {message}");
+        }
+    }
+}

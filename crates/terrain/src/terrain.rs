@@ -1,0 +1,287 @@
+//! Elevation, surfaces and obstacles of one piece of ground.
+
+use crate::{Cell, Error, Grid};
+
+/// Ground on a grid. Unknown cells and obstacles are impassable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terrain {
+    /// Where the cells lie.
+    pub grid: Grid,
+    /// Elevation that `relative_m` counts from [m].
+    base_m: f64,
+    /// Elevation above `base_m`, row-major, NaN where unknown [m]. Single precision over the relief only keeps
+    /// it below a tenth of a millimetre, whatever the height above the sea.
+    relative_m: Vec<f32>,
+    surfaces: Option<Surfaces>,
+    obstacle: Option<Vec<bool>>,
+}
+
+/// What the ground is made of, cell by cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surfaces {
+    /// Class names; the classes index them.
+    pub names: Vec<String>,
+    /// Class of each cell, row-major; [`Surfaces::UNNAMED`] where the map leaves it to the robot's default.
+    pub class: Vec<u8>,
+}
+
+impl Surfaces {
+    /// The class of ground whose surface the map does not name.
+    pub const UNNAMED: u8 = u8::MAX;
+
+    /// Collects classes from names in row-major order.
+    ///
+    /// # Errors
+    /// [`Error::TooManySurfaces`] beyond 255 names.
+    pub fn from_names<'a>(cells: impl Iterator<Item = Option<&'a str>>) -> Result<Self, Error> {
+        let mut names: Vec<String> = Vec::new();
+        let mut class = Vec::new();
+        for name in cells {
+            let Some(name) = name else {
+                class.push(Self::UNNAMED);
+                continue;
+            };
+            let known = names.iter().position(|n| n == name).unwrap_or_else(|| {
+                names.push(name.to_owned());
+                names.len() - 1
+            });
+            let limit = usize::from(Self::UNNAMED);
+            class.push(
+                u8::try_from(known)
+                    .ok()
+                    .filter(|c| *c != Self::UNNAMED)
+                    .ok_or_else(|| Error::TooManySurfaces { name: name.to_owned(), limit })?,
+            );
+        }
+        Ok(Surfaces { names, class })
+    }
+}
+
+impl Terrain {
+    /// Most cells a map may have: 10 000 × 10 000 and some margin, 0.5 GB of elevation.
+    pub const MAX_CELLS: u64 = 128_000_000;
+    /// Lowest elevation accepted [m]; dry land begins at −430, mines reach −1000.
+    pub const LOWEST_M: f64 = -1000.0;
+    /// Highest elevation accepted [m], above any ground; −9999 and −32768 of unmarked nodata fall outside.
+    pub const HIGHEST_M: f64 = 9000.0;
+    const CELL_SIZE_M: (f64, f64) = (0.01, 100.0);
+    /// Projected coordinates stay below the circumference of the earth.
+    const ORIGIN_LIMIT_M: f64 = 5e7;
+
+    /// Builds ground from row-major elevations, southernmost row first, NaN where unknown.
+    ///
+    /// # Errors
+    /// Any of the grid's numbers out of range, an absurd elevation, or no known cell at all.
+    pub fn new(grid: Grid, elevation_m: &[f64]) -> Result<Self, Error> {
+        check_grid(&grid)?;
+        let mut lowest_m = f64::INFINITY;
+        for (index, &value) in elevation_m.iter().enumerate() {
+            if value.is_nan() {
+                continue;
+            }
+            if !(Self::LOWEST_M..=Self::HIGHEST_M).contains(&value) {
+                let Cell { row, column } = grid.cell(index);
+                let (min, max) = (Self::LOWEST_M, Self::HIGHEST_M);
+                return Err(Error::Elevation { row, column, value, min, max });
+            }
+            lowest_m = lowest_m.min(value);
+        }
+        if elevation_m.len() != grid.cells() {
+            return Err(Error::RowCount {
+                layer: "elevation_m",
+                found: elevation_m.len() / grid.columns,
+                expected: grid.rows,
+            });
+        }
+        if lowest_m.is_infinite() {
+            return Err(Error::AllUnknown);
+        }
+        let relative_m = elevation_m.iter().map(|z| (z - lowest_m) as f32).collect();
+        Ok(Terrain { grid, base_m: lowest_m, relative_m, surfaces: None, obstacle: None })
+    }
+
+    /// Checks rows, columns, cell size and origin before anything of their size is allocated.
+    ///
+    /// # Errors
+    /// The first of them that is out of range.
+    pub fn check_size(rows: u64, columns: u64, cell_size_m: f64, origin_m: [f64; 2]) -> Result<Grid, Error> {
+        for (field, value) in [("rows", rows), ("columns", columns)] {
+            if value == 0 {
+                return Err(Error::Empty { field, value });
+            }
+        }
+        if rows.checked_mul(columns).is_none_or(|cells| cells > Self::MAX_CELLS) {
+            return Err(Error::TooManyCells { rows, columns, limit: Self::MAX_CELLS });
+        }
+        let grid = Grid { rows: rows as usize, columns: columns as usize, cell_size_m, origin_m };
+        check_grid(&grid)?;
+        Ok(grid)
+    }
+
+    /// Adds surface classes.
+    ///
+    /// # Panics
+    /// Never: a layer of another size is refused by the readers, and ignored cells keep the default surface.
+    pub fn with_surfaces(mut self, surfaces: Surfaces) -> Self {
+        debug_assert_eq!(surfaces.class.len(), self.grid.cells());
+        self.surfaces = Some(surfaces);
+        self
+    }
+
+    /// Adds obstacles, row-major.
+    pub fn with_obstacles(mut self, obstacle: Vec<bool>) -> Self {
+        debug_assert_eq!(obstacle.len(), self.grid.cells());
+        self.obstacle = Some(obstacle);
+        self
+    }
+
+    /// Elevation of a cell, if it is known [m].
+    pub fn elevation_m(&self, cell: Cell) -> Option<f64> {
+        let relative_m = self.relative_m[self.grid.index(cell)];
+        (!relative_m.is_nan()).then(|| self.base_m + f64::from(relative_m))
+    }
+
+    /// Lowest known elevation [m].
+    pub fn base_m(&self) -> f64 {
+        self.base_m
+    }
+
+    /// Elevations above [`Terrain::base_m`], row-major, NaN where unknown [m].
+    pub fn relative_m(&self) -> &[f32] {
+        &self.relative_m
+    }
+
+    /// Whether nothing may stand on a cell: unknown ground or an obstacle.
+    pub fn is_blocked(&self, cell: Cell) -> bool {
+        let index = self.grid.index(cell);
+        self.relative_m[index].is_nan() || self.obstacle.as_ref().is_some_and(|o| o[index])
+    }
+
+    /// Obstacles, row-major, if the map has any.
+    pub fn obstacles(&self) -> Option<&[bool]> {
+        self.obstacle.as_deref()
+    }
+
+    /// Surface classes, if the map has any.
+    pub fn surfaces(&self) -> Option<&Surfaces> {
+        self.surfaces.as_ref()
+    }
+
+    /// Class of a cell's surface: an index into the names, or [`Surfaces::UNNAMED`].
+    pub fn surface_class(&self, cell: Cell) -> u8 {
+        self.surfaces.as_ref().map_or(Surfaces::UNNAMED, |s| s.class[self.grid.index(cell)])
+    }
+
+    /// Elevation between cell centres, bilinear [m]; `None` where one of the four is unknown or outside.
+    pub fn elevation_at_m(&self, x_m: f64, y_m: f64) -> Option<f64> {
+        let grid = &self.grid;
+        let column = (x_m - grid.origin_m[0]) / grid.cell_size_m - 0.5;
+        let row = (y_m - grid.origin_m[1]) / grid.cell_size_m - 0.5;
+        let (column_0, row_0) = (column.floor(), row.floor());
+        let (east, north) = (column - column_0, row - row_0);
+        let mut sum_m = 0.0;
+        for (dr, weight_y) in [(0.0, 1.0 - north), (1.0, north)] {
+            for (dc, weight_x) in [(0.0, 1.0 - east), (1.0, east)] {
+                let weight = weight_x * weight_y;
+                if weight == 0.0 {
+                    continue;
+                }
+                let (r, c) = (row_0 + dr, column_0 + dc);
+                if !(r >= 0.0 && c >= 0.0 && r < grid.rows as f64 && c < grid.columns as f64) {
+                    return None;
+                }
+                sum_m += weight * self.elevation_m(Cell { row: r as usize, column: c as usize })?;
+            }
+        }
+        Some(sum_m)
+    }
+
+    /// Content hash of everything that a plan depends on, as 16 hexadecimal digits.
+    pub fn content_id(&self) -> String {
+        use sha2::{Digest, Sha256};
+        let mut hash = Sha256::new();
+        let grid = &self.grid;
+        hash.update((grid.rows as u64).to_le_bytes());
+        hash.update((grid.columns as u64).to_le_bytes());
+        for number in [grid.cell_size_m, grid.origin_m[0], grid.origin_m[1], self.base_m] {
+            hash.update(number.to_le_bytes());
+        }
+        for z in &self.relative_m {
+            hash.update(z.to_bits().to_le_bytes());
+        }
+        if let Some(surfaces) = &self.surfaces {
+            for name in &surfaces.names {
+                hash.update((name.len() as u64).to_le_bytes());
+                hash.update(name.as_bytes());
+            }
+            hash.update(&surfaces.class);
+        }
+        if let Some(obstacle) = &self.obstacle {
+            hash.update(b"obstacle");
+            for &o in obstacle {
+                hash.update([u8::from(o)]);
+            }
+        }
+        hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+fn check_grid(grid: &Grid) -> Result<(), Error> {
+    let (min, max) = Terrain::CELL_SIZE_M;
+    if !(min..=max).contains(&grid.cell_size_m) {
+        return Err(Error::CellSize { value: grid.cell_size_m, min, max });
+    }
+    for (axis, &value) in grid.origin_m.iter().enumerate() {
+        if !value.is_finite() || value.abs() > Terrain::ORIGIN_LIMIT_M {
+            return Err(Error::Origin { axis, value, limit: Terrain::ORIGIN_LIMIT_M });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    fn plane() -> Terrain {
+        let grid = Grid { rows: 4, columns: 6, cell_size_m: 0.5, origin_m: [0.0, 0.0] };
+        let elevation_m: Vec<f64> =
+            (0..24).map(|i| grid.center_m(grid.cell(i))).map(|[x, y]| 1000.0 + 0.1 * x - 0.2 * y).collect();
+        Terrain::new(grid, &elevation_m).unwrap()
+    }
+
+    #[test]
+    fn bilinear_elevation_is_exact_on_a_plane_and_at_centres() {
+        let terrain = plane();
+        for (x, y) in [(0.25, 0.25), (1.1, 0.9), (2.75, 1.75)] {
+            assert_relative_eq!(
+                terrain.elevation_at_m(x, y).unwrap(),
+                1000.0 + 0.1 * x - 0.2 * y,
+                epsilon = 1e-6
+            );
+        }
+        assert_eq!(terrain.elevation_at_m(0.1, 0.3), None, "beyond the outermost centres nothing is known");
+    }
+
+    #[test]
+    fn unmarked_nodata_and_absurd_heights_are_refused_with_their_cell() {
+        let grid = Grid { rows: 2, columns: 2, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        for bad in [-9999.0, -32768.0, 1e6, f64::INFINITY] {
+            let error = Terrain::new(grid, &[0.0, 1.0, 2.0, bad]).unwrap_err();
+            assert_eq!(error.field().as_deref(), Some("elevation_m[1][1]"), "{error}");
+        }
+        assert!(matches!(Terrain::new(grid, &[f64::NAN; 4]), Err(Error::AllUnknown)));
+    }
+
+    #[test]
+    fn the_content_id_changes_with_every_layer_and_only_with_content() {
+        let a = plane();
+        assert_eq!(a.content_id(), plane().content_id());
+        let obstacles = plane().with_obstacles(vec![false; 24]);
+        assert_ne!(a.content_id(), obstacles.content_id());
+        let surfaces = Surfaces { names: vec!["grass".into()], class: vec![0; 24] };
+        assert_ne!(a.content_id(), plane().with_surfaces(surfaces).content_id());
+    }
+}
