@@ -139,8 +139,8 @@ impl GeoKeys {
 
 /// Refuses files that declare more than they can hold, before anything of the declared size is allocated.
 fn refuse_truncation(decoder: &mut TiffDecoder<'_>, file_bytes: u64, cells: u64) -> Result<(), Error> {
-    let bits: u64 = decoder.find_tag_unsigned(Tag::BitsPerSample)?.unwrap_or(1);
-    let declared_bytes = cells * bits.div_ceil(8);
+    let bits: Vec<u64> = decoder.find_tag_unsigned_vec(Tag::BitsPerSample)?.unwrap_or_default();
+    let declared_bytes = cells * bits.iter().sum::<u64>().clamp(8, 1024) / 8;
     let mut stored_bytes = 0u64;
     for (offsets, counts) in
         [(Tag::StripOffsets, Tag::StripByteCounts), (Tag::TileOffsets, Tag::TileByteCounts)]

@@ -1,0 +1,170 @@
+//! Why there is no path.
+
+use std::fmt;
+
+use terrain::Cell;
+
+/// Which end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Where the robot stands.
+    Start,
+    /// Where it is to go.
+    Goal,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Place::Start => "start",
+            Place::Goal => "goal",
+        })
+    }
+}
+
+/// Why the robot cannot stand in a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Blocked {
+    /// Its footprint touches an obstacle.
+    Obstacle {
+        /// The obstacle's cell.
+        cell: Cell,
+    },
+    /// Its footprint touches ground of unknown elevation.
+    Unknown {
+        /// The unknown cell.
+        cell: Cell,
+    },
+    /// Its footprint hangs over the edge of the map.
+    Edge,
+    /// The ground pitches the robot further than its limit.
+    Pitch {
+        /// Pitch there [rad].
+        pitch_rad: f64,
+        /// The robot's limit [rad].
+        limit_rad: f64,
+    },
+    /// The ground tilts the robot further than its limit.
+    Roll {
+        /// Roll there [rad].
+        roll_rad: f64,
+        /// The robot's limit [rad].
+        limit_rad: f64,
+    },
+}
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let degrees = f64::to_degrees;
+        match self {
+            Blocked::Obstacle { cell } => {
+                write!(f, "the robot would touch the obstacle at row {}, column {}", cell.row, cell.column)
+            }
+            Blocked::Unknown { cell } => {
+                write!(
+                    f,
+                    "the robot would touch unknown ground at row {}, column {}",
+                    cell.row, cell.column
+                )
+            }
+            Blocked::Edge => write!(f, "the robot would reach over the edge of the map"),
+            Blocked::Pitch { pitch_rad, limit_rad } => write!(
+                f,
+                "the ground pitches the robot by {:.1}°, its limit is {:.1}°",
+                degrees(*pitch_rad),
+                degrees(*limit_rad)
+            ),
+            Blocked::Roll { roll_rad, limit_rad } => write!(
+                f,
+                "the ground tilts the robot sideways by {:.1}°, its limit is {:.1}°",
+                degrees(*roll_rad),
+                degrees(*limit_rad)
+            ),
+        }
+    }
+}
+
+/// An error of the planner crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A start or goal off the map.
+    #[error(
+        "the {place} ({x_m:.2}, {y_m:.2}) lies outside the map, which spans x {} to {} m and y {} to {} m",
+        west_south_m[0], east_north_m[0], west_south_m[1], east_north_m[1]
+    )]
+    OutsideMap {
+        /// Start or goal.
+        place: Place,
+        /// Its x [m].
+        x_m: f64,
+        /// Its y [m].
+        y_m: f64,
+        /// South-west corner of the map [m].
+        west_south_m: [f64; 2],
+        /// North-east corner of the map [m].
+        east_north_m: [f64; 2],
+    },
+    /// A start or goal where the robot cannot stand.
+    #[error("the robot cannot stand at the {place} ({x_m:.2}, {y_m:.2}) nor within {snap_radius_m} m of it: {reason}")]
+    PlaceBlocked {
+        /// Start or goal.
+        place: Place,
+        /// Its x [m].
+        x_m: f64,
+        /// Its y [m].
+        y_m: f64,
+        /// How far around was searched [m].
+        snap_radius_m: f64,
+        /// What is wrong at the place itself.
+        reason: Blocked,
+    },
+    /// The goal cannot be reached.
+    #[error(
+        "no path from the start to the goal: ground from which the goal can be reached comes no nearer to the start than {gap_m:.1} m, at ({x_m:.2}, {y_m:.2}); look for a wall, unknown cells or slopes beyond the robot's limits there"
+    )]
+    NoPath {
+        /// Distance from the start to the nearest cell that the goal can be reached from [m].
+        gap_m: f64,
+        /// Its x [m].
+        x_m: f64,
+        /// Its y [m].
+        y_m: f64,
+    },
+    /// The search was told to stop before it had an answer.
+    #[error("the search stopped at its deadline after {expanded} expansions; allow more time or plan a shorter way")]
+    Timeout {
+        /// States expanded.
+        expanded: u64,
+    },
+    /// The map names a surface that the robot has no friction for.
+    #[error("the map's ground is `{name}` in places, but the robot knows only {}: add it to the robot's surfaces", known.join(", "))]
+    UnknownSurface {
+        /// The name on the map.
+        name: String,
+        /// The robot's surfaces.
+        known: Vec<String>,
+    },
+    /// A number in the query that cannot be.
+    #[error("{field} is {value}, but must lie in {min} to {max}")]
+    OutOfRange {
+        /// The field, as `goal.tolerance_m`.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// Smallest accepted.
+        min: f64,
+        /// Largest accepted.
+        max: f64,
+    },
+    /// A grid too coarse or too fine for this robot's lattice.
+    #[error("cells of {cell_size_m} m are too fine for a robot that turns at {radius_m} m: resample the map to {least_m:.3} m or coarser")]
+    CellsTooFine {
+        /// The map's cell size [m].
+        cell_size_m: f64,
+        /// Half the slip track [m].
+        radius_m: f64,
+        /// Smallest usable cell [m].
+        least_m: f64,
+    },
+}

@@ -1,0 +1,173 @@
+//! The ground under the robot: which cells a pose covers, and how far the next blocked cell is.
+
+use model::Robot;
+use terrain::{Cell, Terrain};
+
+/// Outline of the robot seen from above, a rectangle about its geometric centre.
+///
+/// Length is wheelbase plus wheel diameter. Width is track plus one wheel radius: a tyre is taken as wide as its
+/// radius, which suits rover tyres (a Husky's 0.125 m against 0.165 m) and errs to the safe side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Along the heading [m].
+    pub length_m: f64,
+    /// Across it [m].
+    pub width_m: f64,
+}
+
+impl Footprint {
+    /// The outline of a robot.
+    pub fn of(robot: &Robot) -> Self {
+        Footprint {
+            length_m: robot.wheelbase_m + 2.0 * robot.wheel_radius_m,
+            width_m: robot.track_m + robot.wheel_radius_m,
+        }
+    }
+
+    /// Offsets (columns, rows) of the cells that a pose touches; the pose is relative to the centre of cell (0, 0).
+    pub fn cells_at(&self, [x_m, y_m, heading_rad]: [f64; 3], cell_size_m: f64) -> Vec<(i32, i32)> {
+        let (sin, cos) = heading_rad.sin_cos();
+        let (half_l, half_w) = (self.length_m / 2.0, self.width_m / 2.0);
+        // A square overlaps a rotated rectangle unless one of the four edge directions separates them.
+        let half_c = cell_size_m / 2.0;
+        let square_reach = half_c * (sin.abs() + cos.abs());
+        let box_reach =
+            [half_l * cos.abs() + half_w * sin.abs(), half_l * sin.abs() + half_w * cos.abs()];
+        let range = |center_m: f64, reach_m: f64| {
+            let low = ((center_m - reach_m) / cell_size_m - 0.5).floor() as i32;
+            let high = ((center_m + reach_m) / cell_size_m + 0.5).ceil() as i32;
+            low..=high
+        };
+        let mut cells = Vec::new();
+        for row in range(y_m, box_reach[1]) {
+            for column in range(x_m, box_reach[0]) {
+                let dx = f64::from(column) * cell_size_m - x_m;
+                let dy = f64::from(row) * cell_size_m - y_m;
+                let overlaps = dx.abs() < box_reach[0] + half_c
+                    && dy.abs() < box_reach[1] + half_c
+                    && (dx * cos + dy * sin).abs() < half_l + square_reach
+                    && (dy * cos - dx * sin).abs() < half_w + square_reach;
+                if overlaps {
+                    cells.push((column, row));
+                }
+            }
+        }
+        cells
+    }
+}
+
+/// Distance from every cell to the nearest blocked one or the world outside, in king's moves, up to 255.
+#[derive(Clone, Debug)]
+pub struct Clearance(Vec<u8>);
+
+impl Clearance {
+    /// Measures the clearance of every cell: 0 on blocked ground.
+    pub fn new(terrain: &Terrain) -> Self {
+        let grid = &terrain.grid;
+        let (rows, columns) = (grid.rows, grid.columns);
+        let mut distance: Vec<u8> =
+            (0..grid.cells()).map(|i| if terrain.is_blocked(grid.cell(i)) { 0 } else { u8::MAX }).collect();
+        // Two sweeps are exact for king's moves; what lies outside counts as blocked.
+        let at = |distance: &[u8], row: isize, column: isize| {
+            if row < 0 || column < 0 || row >= rows as isize || column >= columns as isize {
+                0
+            } else {
+                distance[row as usize * columns + column as usize]
+            }
+        };
+        let forward = [(-1, -1), (-1, 0), (-1, 1), (0, -1)];
+        let mut sweep = |row: usize, column: usize, sign: isize| {
+            let mut best = distance[row * columns + column];
+            for (dr, dc) in forward {
+                let near = at(&distance, row as isize + sign * dr, column as isize + sign * dc);
+                best = best.min(near.saturating_add(1));
+            }
+            distance[row * columns + column] = best;
+        };
+        for row in 0..rows {
+            for column in 0..columns {
+                sweep(row, column, 1);
+            }
+        }
+        for row in (0..rows).rev() {
+            for column in (0..columns).rev() {
+                sweep(row, column, -1);
+            }
+        }
+        Clearance(distance)
+    }
+
+    /// Clearance of the cell at a row-major position.
+    #[inline]
+    pub fn at(&self, index: usize) -> u8 {
+        self.0[index]
+    }
+}
+
+/// The first blocked or outside cell among offsets from a cell.
+pub(crate) fn first_blocked(
+    terrain: &Terrain,
+    cell: Cell,
+    offsets: &[(i32, i32)],
+) -> Option<Option<Cell>> {
+    offsets.iter().find_map(|&offset| match shifted(terrain, cell, offset) {
+        None => Some(None),
+        Some(touched) => terrain.is_blocked(touched).then_some(Some(touched)),
+    })
+}
+
+/// The cell at an offset (columns, rows), if the grid has it.
+pub(crate) fn shifted(terrain: &Terrain, cell: Cell, (columns, rows): (i32, i32)) -> Option<Cell> {
+    let column = cell.column.checked_add_signed(columns as isize)?;
+    let row = cell.row.checked_add_signed(rows as isize)?;
+    (row < terrain.grid.rows && column < terrain.grid.columns).then_some(Cell { row, column })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use terrain::{Grid, synthetic};
+
+    use super::*;
+
+    const HUSKY: Footprint = Footprint { length_m: 0.87, width_m: 0.705 };
+
+    #[test]
+    fn a_husky_across_its_own_cell_touches_that_cell_only_on_a_one_metre_grid() {
+        assert_eq!(HUSKY.cells_at([0.0, 0.0, 0.0], 1.0), [(0, 0)]);
+        assert_eq!(HUSKY.cells_at([0.0, 0.0, std::f64::consts::FRAC_PI_2], 1.0), [(0, 0)]);
+    }
+
+    proptest! {
+        #[test]
+        fn every_point_of_the_footprint_lies_in_a_cell_it_claims(
+            x in -2.0f64..2.0, y in -2.0f64..2.0, heading in -4.0f64..4.0,
+            along in -0.43f64..0.43, across in -0.35f64..0.35, cell in 0.1f64..1.5,
+        ) {
+            let cells = HUSKY.cells_at([x, y, heading], cell);
+            let px = x + along * heading.cos() - across * heading.sin();
+            let py = y + along * heading.sin() + across * heading.cos();
+            let here = ((px / cell).round() as i32, (py / cell).round() as i32);
+            prop_assert!(cells.contains(&here));
+        }
+    }
+
+    #[test]
+    fn clearance_equals_a_brute_force_search() {
+        let grid = Grid { rows: 23, columns: 31, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        let flat = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
+        let terrain = synthetic::scatter_obstacles(flat, 3, 0.02);
+        let clearance = Clearance::new(&terrain);
+        for index in 0..grid.cells() {
+            let cell = grid.cell(index);
+            let free = |reach: i32| {
+                (-reach..=reach).all(|r| {
+                    (-reach..=reach)
+                        .all(|c| shifted(&terrain, cell, (c, r)).is_some_and(|near| !terrain.is_blocked(near)))
+                })
+            };
+            let brute = (0..255).find(|reach| !free(*reach)).unwrap();
+            assert_eq!(i32::from(clearance.at(index)), brute, "{cell:?}");
+        }
+    }
+}

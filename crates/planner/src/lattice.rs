@@ -1,0 +1,262 @@
+//! The graph of poses: a robot on a terrain at a speed.
+
+use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
+use terrain::{Cell, SlopeMap, Surfaces, Terrain};
+
+use crate::{
+    edge::{Chain, Edge},
+    error::{Blocked, Error},
+    footprint::{Clearance, Footprint, first_blocked},
+    heading::{HEADINGS, Heading},
+    primitive::{Motion, Piece, motions},
+};
+
+/// How the robot is to be driven; the defaults are what a plain request gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Forward speed, lowered in arcs whose outer wheel would exceed its limit [m/s].
+    pub speed_mps: f64,
+    /// Form of the physics.
+    pub power_model: PowerModel,
+    /// Whether the robot may back up.
+    pub reverse: bool,
+    /// Temperature of both motors [°C].
+    pub motor_temperature_c: f64,
+}
+
+impl Settings {
+    /// Half the wheels' top speed, the default physics, forward only, motors at their reference temperature.
+    ///
+    /// At half the top speed the tightest forward turn, at R', just keeps its outer wheel within the limit.
+    pub fn of(robot: &Robot) -> Self {
+        Settings {
+            speed_mps: robot.max_wheel_speed_mps / 2.0,
+            power_model: PowerModel::default(),
+            reverse: false,
+            motor_temperature_c: robot.motors.reference_temperature_c,
+        }
+    }
+}
+
+/// A pose of the lattice: a cell centre and a heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct State {
+    /// The cell.
+    pub cell: Cell,
+    /// The heading.
+    pub heading: Heading,
+}
+
+/// A robot on a terrain: its motions, their costs, and where it may stand.
+pub struct Lattice<'a> {
+    /// The ground.
+    pub terrain: &'a Terrain,
+    /// The robot.
+    pub robot: &'a Robot,
+    /// How it is driven.
+    pub settings: Settings,
+    /// Gradient of the ground.
+    pub slope: SlopeMap,
+    /// Distance to blocked ground.
+    pub clearance: Clearance,
+    /// Motions by start heading.
+    pub motions: [Vec<Motion>; HEADINGS],
+    chains: [Vec<Vec<Chain<'a>>>; HEADINGS],
+    stand: [Vec<(i32, i32)>; HEADINGS],
+}
+
+impl<'a> Lattice<'a> {
+    /// Prepares motions, manoeuvres, slopes and clearances.
+    ///
+    /// # Errors
+    /// A speed out of range, a surface that the robot does not know, or cells too fine for its turning radius.
+    pub fn new(terrain: &'a Terrain, robot: &'a Robot, settings: Settings) -> Result<Self, Error> {
+        check_speed(robot, settings.speed_mps)?;
+        let surfaces = surface_classes(terrain, robot)?;
+        let cell_size_m = terrain.grid.cell_size_m;
+        let motions = motions(robot, cell_size_m, settings.reverse);
+        check_cells(robot, cell_size_m)?;
+        let footprint = Footprint::of(robot);
+        let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre<'a>> {
+            let motion = body_motion(robot, &settings, piece, reverse);
+            let at = |surface| {
+                let temperature_c = Sides::both(settings.motor_temperature_c);
+                Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
+            };
+            surfaces.iter().map(|surface| at(surface)).collect()
+        };
+        let chains = std::array::from_fn(|h| {
+            motions[h]
+                .iter()
+                .map(|m| {
+                    m.variants
+                        .iter()
+                        .map(|v| Chain::new(v, m.reverse, &footprint, cell_size_m, &manoeuvres))
+                        .collect()
+                })
+                .collect()
+        });
+        let stand = std::array::from_fn(|h| {
+            footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m)
+        });
+        Ok(Lattice {
+            terrain,
+            robot,
+            settings,
+            slope: SlopeMap::new(terrain),
+            clearance: Clearance::new(terrain),
+            motions,
+            chains,
+            stand,
+        })
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.terrain.grid.cells() * HEADINGS
+    }
+
+    /// Motions per state, the same for every heading.
+    pub fn motions_per_state(&self) -> usize {
+        self.motions[0].len()
+    }
+
+    /// Position of a state in dense storage.
+    pub fn index(&self, state: State) -> usize {
+        self.terrain.grid.index(state.cell) * HEADINGS + state.heading.index()
+    }
+
+    /// The state at a position in dense storage.
+    pub fn state(&self, index: usize) -> State {
+        State { cell: self.terrain.grid.cell(index / HEADINGS), heading: Heading::new(index % HEADINGS) }
+    }
+
+    /// The smaller k2 at the motors' temperature: what lifting costs at least, per joule lifted.
+    pub fn kappa(&self) -> f64 {
+        let k2 = self.robot.motor_sides().map(|m| {
+            m.at_temperature(&self.robot.motors, self.settings.motor_temperature_c).k2
+        });
+        k2.left.min(k2.right)
+    }
+
+    /// Height potential φ = κ m g z of a cell, above the map's lowest ground [J].
+    ///
+    /// `E − Δφ` is never negative: of each side's electrical power P ≥ κ F u holds, driving because κ ≤ k2, back-driven
+    /// because 1/k2 ≤ k2; and of all wheel work only friction is left once gravity is taken out. Adding Δφ along any path
+    /// from one place to another gives the same sum, so the search may use `E − Δφ` and stay exact (Johnson 1977).
+    pub fn potential_j(&self, cell: Cell) -> f64 {
+        let height_m = f64::from(self.terrain.relative_m()[self.terrain.grid.index(cell)]);
+        self.kappa() * self.robot.mass_kg * STANDARD_GRAVITY_MPS2 * height_m
+    }
+
+    /// Whether the robot can stand in a pose, and if not, why.
+    ///
+    /// # Errors
+    /// The first reason found: obstacle, unknown ground, map edge, pitch, roll.
+    pub fn stand(&self, state: State) -> Result<(), Blocked> {
+        if let Some(touched) = first_blocked(self.terrain, state.cell, &self.stand[state.heading.index()]) {
+            return Err(match touched {
+                None => Blocked::Edge,
+                Some(cell) if self.terrain.elevation_m(cell).is_none() => Blocked::Unknown { cell },
+                Some(cell) => Blocked::Obstacle { cell },
+            });
+        }
+        let (pitch_rad, roll_rad) = self.tilt_rad(state);
+        let limits = &self.robot.limits;
+        if pitch_rad.abs() > limits.max_pitch_rad {
+            return Err(Blocked::Pitch { pitch_rad, limit_rad: limits.max_pitch_rad });
+        }
+        if roll_rad.abs() > limits.max_roll_rad {
+            return Err(Blocked::Roll { roll_rad, limit_rad: limits.max_roll_rad });
+        }
+        Ok(())
+    }
+
+    /// Pitch and roll of the robot standing in a pose, from the slope map [rad].
+    pub fn tilt_rad(&self, state: State) -> (f64, f64) {
+        let (east, north) = self.slope.at(self.terrain, state.cell);
+        let (sin, cos) = state.heading.angle_rad().sin_cos();
+        ((east * cos + north * sin).atan(), (north * cos - east * sin).atan())
+    }
+
+    /// The ways to drive a motion from a cell: one evaluation per variant, `None` where limits or ground forbid it.
+    pub fn variants(
+        &self,
+        cell: Cell,
+        heading: Heading,
+        motion: usize,
+    ) -> impl Iterator<Item = Option<Edge>> + '_ {
+        self.chains[heading.index()][motion].iter().map(move |chain| chain.edge(self, cell))
+    }
+
+    /// One way to drive a motion, step by step.
+    pub(crate) fn chain(&self, heading: Heading, motion: usize, variant: usize) -> &Chain<'a> {
+        &self.chains[heading.index()][motion][variant]
+    }
+
+    /// The state a motion leads to, if it lies on the map.
+    pub fn successor(&self, state: State, motion: usize) -> Option<State> {
+        let m = &self.motions[state.heading.index()][motion];
+        let cell = crate::footprint::shifted(self.terrain, state.cell, (m.columns, m.rows))?;
+        Some(State { cell, heading: m.to })
+    }
+
+    /// Index of a cell's surface among the prepared manoeuvres; the robot's default stands last.
+    #[inline]
+    pub(crate) fn surface_index(&self, cell: Cell) -> usize {
+        match self.terrain.surfaces() {
+            None => 0,
+            Some(surfaces) => {
+                let class = surfaces.class[self.terrain.grid.index(cell)];
+                if class == Surfaces::UNNAMED { surfaces.names.len() } else { usize::from(class) }
+            }
+        }
+    }
+}
+
+/// Friction of every class of the map in its order, then the robot's default.
+fn surface_classes<'r>(terrain: &Terrain, robot: &'r Robot) -> Result<Vec<&'r model::robot::Surface>, Error> {
+    let names = terrain.surfaces().map_or(&[][..], |s| &s.names);
+    names
+        .iter()
+        .map(String::as_str)
+        .chain([robot.default_surface.as_str()])
+        .map(|name| {
+            robot.surface(name).map_err(|_| Error::UnknownSurface {
+                name: name.to_owned(),
+                known: robot.surfaces.keys().cloned().collect(),
+            })
+        })
+        .collect()
+}
+
+fn check_speed(robot: &Robot, speed_mps: f64) -> Result<(), Error> {
+    let (min, max) = (0.001, robot.max_wheel_speed_mps);
+    if (min..=max).contains(&speed_mps) {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { field: "speed_mps", value: speed_mps, min, max })
+}
+
+/// Arcs at R' must fit a corner of at most 64 lattice steps.
+fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
+    let radius_m = robot.half_slip_track_m();
+    // Sharpest corner: 45° between legs of one cell.
+    let least_m = radius_m * (std::f64::consts::FRAC_PI_8).tan() / 64.0;
+    if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, radius_m, least_m }) }
+}
+
+/// Body speeds on a piece: the asked speed, lowered where the outer wheel would exceed its limit.
+fn body_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
+    let half_m = robot.half_slip_track_m();
+    let way = if reverse { -1.0 } else { 1.0 };
+    match piece.radius_m() {
+        None => BodyMotion::of_body(robot, way * settings.speed_mps, 0.0),
+        Some(0.0) => BodyMotion::of_body(robot, 0.0, piece.turn_rad.signum() * settings.speed_mps / half_m),
+        Some(radius_m) => {
+            let outer_per_speed = 1.0 + half_m / radius_m.abs();
+            let speed_mps = settings.speed_mps.min(robot.max_wheel_speed_mps / outer_per_speed);
+            BodyMotion::of_body(robot, way * speed_mps, speed_mps / radius_m)
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Energy-minimal paths of a skid-steered robot: A* over (x, y, heading).
+//!
+//! States are cell centres with sixteen grid-aligned headings; motions are straights, arcs and point turns built
+//! from the robot, each exact in its end pose. The energy of a motion integrates the power model along its own path
+//! at its true radius and pitch. Regeneration makes some motions return energy; a potential proportional to height
+//! makes every cost non-negative without changing the best path, so the search stays exact.
+//!
+//! Deterministic for any number of threads. No I/O, no async.
+
+mod astar;
+mod edge;
+mod error;
+mod footprint;
+mod heading;
+mod heuristic;
+mod lattice;
+mod ordered;
+mod plan;
+mod primitive;
+mod route;
+mod snap;
+mod table;
+mod uncertainty;
+
+pub use astar::{Outcome, Search, search};
+pub use edge::{Edge, Step};
+pub use error::{Blocked, Error, Place};
+pub use footprint::{Clearance, Footprint};
+pub use heading::{HEADINGS, Heading};
+pub use heuristic::GoalField;
+pub use lattice::{Lattice, Settings, State};
+pub use plan::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start, compare, plan};
+pub use primitive::{Kind, Motion, Piece, motions};
+pub use route::{Pose, Route};
+pub use table::{CostTable, Objective};

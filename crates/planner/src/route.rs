@@ -1,0 +1,137 @@
+//! The path found, pose by pose, and what it costs under any robot.
+
+use model::{Acceleration, Manoeuvre, PowerModel, Robot, Sides};
+
+use crate::{
+    edge::{Edge, Step},
+    lattice::{Lattice, State},
+    table::{Objective, cheapest},
+};
+
+/// One pose along a path, with what the path has cost up to it.
+///
+/// Pitch, power and radius are those of the stretch that ends here; the first pose stands still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// East [m].
+    pub x_m: f64,
+    /// North [m].
+    pub y_m: f64,
+    /// Up [m].
+    pub z_m: f64,
+    /// Counter-clockwise from east, −π to π [rad].
+    pub heading_rad: f64,
+    /// Since the start [s].
+    pub t_s: f64,
+    /// Along the ground since the start [m].
+    pub distance_m: f64,
+    /// Drawn from the battery since the start [J].
+    pub energy_j: f64,
+    /// Drawn from the battery [W].
+    pub power_w: f64,
+    /// Positive nose-up [rad].
+    pub pitch_rad: f64,
+    /// Positive with the left side up [rad].
+    pub roll_rad: f64,
+    /// Signed turning radius, positive with the centre on the left; `None` when straight, 0 on the spot [m].
+    pub radius_m: Option<f64>,
+}
+
+/// A path as driven: its totals, its poses and its steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    /// Sums over all steps.
+    pub total: Edge,
+    /// One more than there are steps.
+    pub poses: Vec<Pose>,
+    /// Stretches of constant grade, surface and curvature.
+    pub steps: Vec<Step>,
+    /// Sums of each motion, in order.
+    pub edges: Vec<Edge>,
+}
+
+impl Route {
+    /// Drives a chain of motions from a state.
+    pub(crate) fn drive(
+        lattice: &Lattice<'_>,
+        objective: Objective,
+        start: State,
+        motions: &[usize],
+    ) -> Self {
+        let mut route = Route {
+            total: Edge::default(),
+            poses: vec![first_pose(lattice, start)],
+            steps: Vec::new(),
+            edges: Vec::new(),
+        };
+        let mut state = start;
+        for &motion in motions {
+            let Some((variant, _)) = cheapest(lattice, objective, state, motion) else { break };
+            let Some(end) = lattice.successor(state, motion) else { break };
+            let mut edge = Edge::default();
+            let origin_m = lattice.terrain.grid.center_m(state.cell);
+            let chain = lattice.chain(state.heading, motion, variant);
+            let _ = chain.drive(lattice, state.cell, |step| {
+                edge.add(step);
+                route.push(origin_m, step);
+            });
+            route.edges.push(edge);
+            state = end;
+        }
+        route
+    }
+
+    fn push(&mut self, origin_m: [f64; 2], step: &Step) {
+        self.total.add(step);
+        let Some(&last) = self.poses.last() else { return };
+        let radius_m = step.motion.turning_radius_m();
+        self.poses.push(Pose {
+            x_m: origin_m[0] + step.end_m[0],
+            y_m: origin_m[1] + step.end_m[1],
+            z_m: last.z_m + step.rise_m,
+            heading_rad: crate::heading::turn_rad(0.0, step.heading_rad),
+            t_s: self.total.duration_s,
+            distance_m: self.total.length_m,
+            energy_j: self.total.energy_j,
+            power_w: step.bus_w,
+            pitch_rad: step.along.asin(),
+            roll_rad: step.roll_rad,
+            radius_m: radius_m.is_finite().then_some(radius_m),
+        });
+        self.steps.push(*step);
+    }
+
+    /// Energy of driving the same steps with another robot [J].
+    ///
+    /// `surfaces` names the surface of each index that the steps carry.
+    pub fn energy_with_j(&self, robot: &Robot, model: PowerModel, surfaces: &[String], motor_temperature_c: f64) -> f64 {
+        let temperature_c = Sides::both(motor_temperature_c);
+        self.steps
+            .iter()
+            .filter_map(|step| {
+                let surface = robot.surfaces.get(surfaces.get(step.surface)?)?;
+                let manoeuvre = Manoeuvre::new(model, robot, surface, step.motion, temperature_c);
+                let power = manoeuvre.power_on_grade(step.normal, step.along, Acceleration::NONE);
+                Some(power.bus_w * step.duration_s)
+            })
+            .sum()
+    }
+}
+
+fn first_pose(lattice: &Lattice<'_>, start: State) -> Pose {
+    let [x_m, y_m] = lattice.terrain.grid.center_m(start.cell);
+    let (pitch_rad, roll_rad) = lattice.tilt_rad(start);
+    Pose {
+        x_m,
+        y_m,
+        z_m: lattice.terrain.elevation_m(start.cell).unwrap_or(f64::NAN),
+        heading_rad: start.heading.angle_rad(),
+        t_s: 0.0,
+        distance_m: 0.0,
+        energy_j: 0.0,
+        power_w: lattice.robot.hotel_power_w,
+        pitch_rad,
+        roll_rad,
+        radius_m: None,
+    }
+}
