@@ -21,7 +21,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let terrain = io::read_path(&PathBuf::from(&map))?;
     let robot = builtin::husky_a200();
     println!("{map}, {}, {pairs} pairs, seed {seed}\n", robot.name);
-    println!("{:>4} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}", "pair", "E* [kJ]", "E(d) [kJ]", "d* [m]", "d(E) [m]", "saved", "time");
+    println!(
+        "{:>4} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}",
+        "pair", "E* [kJ]", "E(d) [kJ]", "d* [m]", "d(E) [m]", "saved", "time"
+    );
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut savings = Vec::new();
     let mut asked = 0;
@@ -36,16 +39,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     savings.sort_by(f64::total_cmp);
     let median = (savings[(pairs - 1) / 2] + savings[pairs / 2]) / 2.0;
     let better = savings.iter().filter(|s| **s > 0.0).count();
-    println!("\nmedian saving {:.1} %, cheaper on {better} of {pairs}; {} pairs drawn had no path or blocked ends", 100.0 * median, asked - pairs);
+    println!(
+        "\nmedian saving {:.1} %, cheaper on {better} of {pairs}; {} pairs drawn had no path or blocked ends",
+        100.0 * median,
+        asked - pairs
+    );
     Ok(())
 }
 
 fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) -> Query {
     let grid = &terrain.grid;
     loop {
-        let mut place = || grid.at_fraction_m(random.random_range(0.03..0.97), random.random_range(0.03..0.97));
+        let mut place =
+            || grid.at_fraction_m(random.random_range(0.03..0.97), random.random_range(0.03..0.97));
         let (start, goal) = (place(), place());
-        if (start[0] - goal[0]).hypot(start[1] - goal[1]) < LEAST_SHARE * grid.columns as f64 * grid.cell_size_m {
+        if (start[0] - goal[0]).hypot(start[1] - goal[1])
+            < LEAST_SHARE * grid.columns as f64 * grid.cell_size_m
+        {
             continue;
         }
         return Query {

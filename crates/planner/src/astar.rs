@@ -2,9 +2,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap, time::Instant};
 
-use crate::{
-    heading::HEADINGS, heuristic::GoalField, lattice::Lattice, ordered::Ordered, table::CostTable,
-};
+use crate::{heading::HEADINGS, heuristic::GoalField, lattice::Lattice, ordered::Ordered, table::CostTable};
 
 /// What to search for: states by their position in dense storage.
 pub struct Search<'s> {
@@ -71,10 +69,10 @@ pub fn search(lattice: &Lattice<'_>, table: &CostTable, field: &GoalField, query
         if estimate > reached + field.at(index / HEADINGS) {
             continue;
         }
-        expanded += 1;
         if expanded.is_multiple_of(CLOCK_EVERY) && query.deadline.is_some_and(|d| Instant::now() >= d) {
             return Outcome::Timeout { expanded };
         }
+        expanded += 1;
         if let Some(after) = goal_cost(index)
             && reached + after < least_arrival
         {

@@ -1,6 +1,6 @@
 //! What one motion costs on the ground at hand: the edge energy that plan, matrix and reachability share.
 
-use model::{Acceleration, Manoeuvre, Motion as BodyMotion};
+use model::{Acceleration, Manoeuvre, Motion as BodyMotion, Robot};
 use terrain::Cell;
 
 use crate::{
@@ -54,8 +54,8 @@ pub struct Step {
     pub duration_s: f64,
     /// Body speeds.
     pub motion: BodyMotion,
-    /// Positive with the left side up [rad].
-    pub roll_rad: f64,
+    /// Rise per metre across the heading, positive with the left side up.
+    pub side_grade: f64,
     /// cos γ: share of the weight that presses on the ground.
     pub normal: f64,
     /// sin γ sin β: share of the weight along the heading.
@@ -138,8 +138,7 @@ impl<'a> Chain<'a> {
             let read = steps().flat_map(|s| [s.end.corner, s.end.far_corner(), s.middle]);
             read.chain([(0, 0)])
         };
-        let read_from =
-            corners().fold((0, 0), |low, corner| (low.0.min(corner.0), low.1.min(corner.1)));
+        let read_from = corners().fold((0, 0), |low, corner| (low.0.min(corner.0), low.1.min(corner.1)));
         let read_to = corners().fold((0, 0), |high, corner| (high.0.max(corner.0), high.1.max(corner.1)));
         let reach = u8::try_from(reach).unwrap_or(u8::MAX);
         Chain { pieces: prepared, sweep, reach, read_from, read_to, reverse }
@@ -166,7 +165,6 @@ impl<'a> Chain<'a> {
         if lattice.clearance.at(index) <= self.reach && first_blocked(terrain, cell, &self.sweep).is_some() {
             return None;
         }
-        let limits = Limits::of(lattice);
         let z = terrain.relative_m();
         let columns = terrain.grid.columns as isize;
         let offset = |(c, r): (i32, i32)| (index as isize + r as isize * columns + c as isize) as usize;
@@ -182,8 +180,14 @@ impl<'a> Chain<'a> {
                     0
                 };
                 let rise_m = f64::from(end_m - height_m);
-                let done =
-                    step.drive(&piece.manoeuvres[surface], rise_m, slope, self.reverse, &limits, surface)?;
+                let done = step.drive(
+                    &piece.manoeuvres[surface],
+                    rise_m,
+                    slope,
+                    self.reverse,
+                    &lattice.limits,
+                    surface,
+                )?;
                 visit(&done);
                 height_m = end_m;
             }
@@ -193,15 +197,16 @@ impl<'a> Chain<'a> {
 }
 
 /// The robot's limits in the form that a step compares with.
-struct Limits {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
     pitch_grade: f64,
     roll_grade: f64,
     side_force_n: f64,
 }
 
 impl Limits {
-    fn of(lattice: &Lattice<'_>) -> Self {
-        let limits = &lattice.robot.limits;
+    pub(crate) fn of(robot: &Robot) -> Self {
+        let limits = &robot.limits;
         Limits {
             pitch_grade: limits.max_pitch_rad.tan(),
             roll_grade: limits.max_roll_rad.tan(),
@@ -249,7 +254,7 @@ impl PreparedStep {
             rise_m: if turning { 0.0 } else { rise_m },
             duration_s,
             motion,
-            roll_rad: facing * side_grade.atan(),
+            side_grade: facing * side_grade,
             normal,
             along,
             surface,
@@ -267,12 +272,8 @@ impl Sample {
         };
         let (column, east) = whole(place_m[0] / cell_size_m);
         let (row, north) = whole(place_m[1] / cell_size_m);
-        let weights = [
-            (1.0 - east) * (1.0 - north),
-            east * (1.0 - north),
-            (1.0 - east) * north,
-            east * north,
-        ];
+        let weights =
+            [(1.0 - east) * (1.0 - north), east * (1.0 - north), (1.0 - east) * north, east * north];
         Sample { corner: (column as i32, row as i32), weights: weights.map(|w| w as f32) }
     }
 
@@ -301,7 +302,8 @@ impl Sample {
 fn prepare_steps(piece: &Piece, reverse: bool, cell_size_m: f64) -> Vec<PreparedStep> {
     let by_length = (piece.length_m / (STEP_CELLS * cell_size_m)).ceil();
     // The longest straights are √5 cells; rounding must not add a step.
-    let count = (by_length - 1e-9).ceil().max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
+    let count =
+        (by_length - 1e-9).ceil().max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
     let facing_rad = if reverse { std::f64::consts::PI } else { 0.0 };
     (0..count)
         .map(|i| {

@@ -61,11 +61,7 @@ impl fmt::Display for Blocked {
                 write!(f, "the robot would touch the obstacle at row {}, column {}", cell.row, cell.column)
             }
             Blocked::Unknown { cell } => {
-                write!(
-                    f,
-                    "the robot would touch unknown ground at row {}, column {}",
-                    cell.row, cell.column
-                )
+                write!(f, "the robot would touch unknown ground at row {}, column {}", cell.row, cell.column)
             }
             Blocked::Edge => write!(f, "the robot would reach over the edge of the map"),
             Blocked::Pitch { pitch_rad, limit_rad } => write!(
@@ -106,7 +102,9 @@ pub enum Error {
         east_north_m: [f64; 2],
     },
     /// A start or goal where the robot cannot stand.
-    #[error("the robot cannot stand at the {place} ({x_m:.2}, {y_m:.2}) nor within {snap_radius_m} m of it: {reason}")]
+    #[error(
+        "the robot cannot stand at the {place} ({x_m:.2}, {y_m:.2}) nor within {snap_radius_m} m of it: {reason}"
+    )]
     PlaceBlocked {
         /// Start or goal.
         place: Place,
@@ -132,7 +130,9 @@ pub enum Error {
         y_m: f64,
     },
     /// The search was told to stop before it had an answer.
-    #[error("the search stopped at its deadline after {expanded} expansions; allow more time or plan a shorter way")]
+    #[error(
+        "the search stopped at its deadline after {expanded} expansions; allow more time or plan a shorter way"
+    )]
     Timeout {
         /// States expanded.
         expanded: u64,
@@ -158,7 +158,9 @@ pub enum Error {
         max: f64,
     },
     /// A grid too coarse or too fine for this robot's lattice.
-    #[error("cells of {cell_size_m} m are too fine for a robot that turns at {radius_m} m: resample the map to {least_m:.3} m or coarser")]
+    #[error(
+        "cells of {cell_size_m} m are too fine for a robot that turns at {radius_m} m: resample the map to {least_m:.3} m or coarser"
+    )]
     CellsTooFine {
         /// The map's cell size [m].
         cell_size_m: f64,

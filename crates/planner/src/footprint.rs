@@ -31,8 +31,7 @@ impl Footprint {
         // A square overlaps a rotated rectangle unless one of the four edge directions separates them.
         let half_c = cell_size_m / 2.0;
         let square_reach = half_c * (sin.abs() + cos.abs());
-        let box_reach =
-            [half_l * cos.abs() + half_w * sin.abs(), half_l * sin.abs() + half_w * cos.abs()];
+        let box_reach = [half_l * cos.abs() + half_w * sin.abs(), half_l * sin.abs() + half_w * cos.abs()];
         let range = |center_m: f64, reach_m: f64| {
             let low = ((center_m - reach_m) / cell_size_m - 0.5).floor() as i32;
             let high = ((center_m + reach_m) / cell_size_m + 0.5).ceil() as i32;
@@ -105,11 +104,7 @@ impl Clearance {
 }
 
 /// The first blocked or outside cell among offsets from a cell.
-pub(crate) fn first_blocked(
-    terrain: &Terrain,
-    cell: Cell,
-    offsets: &[(i32, i32)],
-) -> Option<Option<Cell>> {
+pub(crate) fn first_blocked(terrain: &Terrain, cell: Cell, offsets: &[(i32, i32)]) -> Option<Option<Cell>> {
     offsets.iter().find_map(|&offset| match shifted(terrain, cell, offset) {
         None => Some(None),
         Some(touched) => terrain.is_blocked(touched).then_some(Some(touched)),
@@ -162,8 +157,9 @@ mod tests {
             let cell = grid.cell(index);
             let free = |reach: i32| {
                 (-reach..=reach).all(|r| {
-                    (-reach..=reach)
-                        .all(|c| shifted(&terrain, cell, (c, r)).is_some_and(|near| !terrain.is_blocked(near)))
+                    (-reach..=reach).all(|c| {
+                        shifted(&terrain, cell, (c, r)).is_some_and(|near| !terrain.is_blocked(near))
+                    })
                 })
             };
             let brute = (0..255).find(|reach| !free(*reach)).unwrap();

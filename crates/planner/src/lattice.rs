@@ -4,7 +4,7 @@ use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY
 use terrain::{Cell, SlopeMap, Surfaces, Terrain};
 
 use crate::{
-    edge::{Chain, Edge},
+    edge::{Chain, Edge, Limits},
     error::{Blocked, Error},
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
@@ -61,6 +61,7 @@ pub struct Lattice<'a> {
     pub clearance: Clearance,
     /// Motions by start heading.
     pub motions: [Vec<Motion>; HEADINGS],
+    pub(crate) limits: Limits,
     chains: [Vec<Vec<Chain<'a>>>; HEADINGS],
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
@@ -96,9 +97,8 @@ impl<'a> Lattice<'a> {
                 })
                 .collect()
         });
-        let stand = std::array::from_fn(|h| {
-            footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m)
-        });
+        let stand =
+            std::array::from_fn(|h| footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m));
         Ok(Lattice {
             terrain,
             robot,
@@ -106,6 +106,7 @@ impl<'a> Lattice<'a> {
             slope: SlopeMap::new(terrain),
             clearance: Clearance::new(terrain),
             motions,
+            limits: Limits::of(robot),
             chains,
             stand,
         })
@@ -133,9 +134,10 @@ impl<'a> Lattice<'a> {
 
     /// The smaller k2 at the motors' temperature: what lifting costs at least, per joule lifted.
     pub fn kappa(&self) -> f64 {
-        let k2 = self.robot.motor_sides().map(|m| {
-            m.at_temperature(&self.robot.motors, self.settings.motor_temperature_c).k2
-        });
+        let k2 = self
+            .robot
+            .motor_sides()
+            .map(|m| m.at_temperature(&self.robot.motors, self.settings.motor_temperature_c).k2);
         k2.left.min(k2.right)
     }
 

@@ -168,8 +168,11 @@ impl Ends {
                 snap_radius_m: snap_radius_m.max(query.goal.tolerance_m),
             },
         )?;
-        let starts =
-            start.headings.iter().map(|&heading| lattice.index(State { cell: start.cell, heading })).collect();
+        let starts = start
+            .headings
+            .iter()
+            .map(|&heading| lattice.index(State { cell: start.cell, heading }))
+            .collect();
         let goals = goal_states(lattice, &goal, &query.goal);
         Ok(Ends { start, goal, starts, goals })
     }
@@ -260,7 +263,8 @@ fn nearest_connected(lattice: &Lattice<'_>, field: &GoalField, ends: &Ends) -> E
 }
 
 fn goal_snap(route: &Route, ends: &Ends, query: &Query) -> Snap {
-    let end = route.poses.last().map_or((query.goal.x_m, query.goal.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
+    let end =
+        route.poses.last().map_or((query.goal.x_m, query.goal.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
     Snap {
         distance_m: (end.0 - query.goal.x_m).hypot(end.1 - query.goal.y_m),
         turn_rad: query.goal.heading_rad.map_or(ends.goal.turn_rad, |h| crate::heading::turn_rad(h, end.2)),

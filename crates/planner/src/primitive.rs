@@ -117,14 +117,21 @@ fn straight(from: Heading, cell_size_m: f64) -> Motion {
     let (columns, rows) = from.step();
     let length_m = f64::from(columns).hypot(f64::from(rows)) * cell_size_m;
     let piece = Piece { start_m: [0.0, 0.0], heading_rad: from.angle_rad(), length_m, turn_rad: 0.0 };
-    Motion { from, to: from, columns, rows, kind: Kind::Straight, reverse: false, variants: vec![vec![piece]] }
+    Motion {
+        from,
+        to: from,
+        columns,
+        rows,
+        kind: Kind::Straight,
+        reverse: false,
+        variants: vec![vec![piece]],
+    }
 }
 
 fn point_turn(from: Heading, turns: i32) -> Motion {
     let to = from.turned(turns);
     let turn = turn_rad(from.angle_rad(), to.angle_rad());
-    let piece =
-        Piece { start_m: [0.0, 0.0], heading_rad: from.angle_rad(), length_m: 0.0, turn_rad: turn };
+    let piece = Piece { start_m: [0.0, 0.0], heading_rad: from.angle_rad(), length_m: 0.0, turn_rad: turn };
     let kind = Kind::PointTurn { turns };
     Motion { from, to, columns: 0, rows: 0, kind, reverse: false, variants: vec![vec![piece]] }
 }

@@ -95,7 +95,7 @@ impl Route {
             energy_j: self.total.energy_j,
             power_w: step.bus_w,
             pitch_rad: step.along.asin(),
-            roll_rad: step.roll_rad,
+            roll_rad: step.side_grade.atan(),
             radius_m: radius_m.is_finite().then_some(radius_m),
         });
         self.steps.push(*step);
@@ -104,7 +104,13 @@ impl Route {
     /// Energy of driving the same steps with another robot [J].
     ///
     /// `surfaces` names the surface of each index that the steps carry.
-    pub fn energy_with_j(&self, robot: &Robot, model: PowerModel, surfaces: &[String], motor_temperature_c: f64) -> f64 {
+    pub fn energy_with_j(
+        &self,
+        robot: &Robot,
+        model: PowerModel,
+        surfaces: &[String],
+        motor_temperature_c: f64,
+    ) -> f64 {
         let temperature_c = Sides::both(motor_temperature_c);
         self.steps
             .iter()

@@ -1,0 +1,148 @@
+//! The planner's paths are the best there are, by other people's algorithms on the explicit graph.
+
+use petgraph::{
+    algo::{bellman_ford, dijkstra},
+    graph::NodeIndex,
+};
+use planner::{CostTable, Error, GoalField, HEADINGS, Heading, Lattice, Objective, State, plan};
+use rand::RngExt;
+
+mod ground;
+
+/// The lattice poses that a query's ends stand for, found without the planner's own snapping: only queries whose
+/// ends need none are compared.
+fn plain_ends(lattice: &Lattice<'_>, query: &planner::Query) -> Option<(Vec<usize>, Vec<usize>)> {
+    let grid = &lattice.terrain.grid;
+    let standing = |x: f64, y: f64, heading: Option<f64>| -> Vec<usize> {
+        let cell = grid.cell_at(x, y).unwrap();
+        let wanted = heading.map(Heading::nearest);
+        let all = Heading::all().filter(|h| wanted.is_none_or(|w| w == *h));
+        all.map(|heading| State { cell, heading })
+            .filter(|s| lattice.stand(*s).is_ok())
+            .map(|s| lattice.index(s))
+            .collect()
+    };
+    let starts = standing(query.start.x_m, query.start.y_m, query.start.heading_rad);
+    let mut goals = standing(query.goal.x_m, query.goal.y_m, query.goal.heading_rad);
+    if starts.is_empty() || goals.is_empty() {
+        return None;
+    }
+    for index in 0..grid.cells() {
+        let [x, y] = grid.center_m(grid.cell(index));
+        if (x - query.goal.x_m).hypot(y - query.goal.y_m) <= query.goal.tolerance_m {
+            goals.extend(standing(x, y, query.goal.heading_rad));
+        }
+    }
+    Some((starts, goals))
+}
+
+#[test]
+fn the_best_path_equals_petgraphs_dijkstra_on_hundreds_of_random_maps() {
+    let mut random = ground::random(20);
+    let (mut compared, mut reached) = (0, 0);
+    while compared < 240 {
+        let terrain = ground::small_terrain(&mut random, 9);
+        let regeneration = [0.0, 0.5, 1.0][compared % 3];
+        let robot = ground::some_robot(&mut random, regeneration);
+        let query = ground::some_query(&mut random, &terrain, &robot);
+        let objective =
+            [Objective::Energy, Objective::Energy, Objective::Distance, Objective::Time][compared % 4];
+        let lattice = Lattice::new(&terrain, &robot, query.settings).unwrap();
+        let Some((starts, goals)) = plain_ends(&lattice, &query) else { continue };
+        compared += 1;
+        let graph = ground::explicit_graph(&lattice, objective);
+        let potential_j = |state: usize| match objective {
+            Objective::Energy => lattice.potential_j(lattice.state(state).cell),
+            _ => 0.0,
+        };
+        let mut best = f64::INFINITY;
+        for &start in &starts {
+            let reached = dijkstra(&graph, NodeIndex::new(start), None, |e| e.weight().0);
+            for &goal in &goals {
+                if let Some(cost) = reached.get(&NodeIndex::new(goal)) {
+                    best = best.min(cost + potential_j(goal) - potential_j(start));
+                }
+            }
+        }
+        match plan(&terrain, &robot, &query, objective) {
+            Ok(found) => {
+                reached += 1;
+                let total = &found.route.total;
+                let (cost, tolerance) = match objective {
+                    Objective::Energy => (total.energy_j, 1e-5 * (best.abs() + 100.0)),
+                    Objective::Distance => (total.length_m, 2e-3),
+                    Objective::Time => (total.duration_s, 2e-3),
+                };
+                assert!((cost - best).abs() <= tolerance, "{objective:?}: {cost}, but the best is {best}");
+            }
+            Err(Error::NoPath { .. }) => assert!(best.is_infinite(), "there is a path of cost {best}"),
+            Err(other) => panic!("{other}"),
+        }
+    }
+    assert!(reached > 120, "only {reached} of {compared} maps had a path to compare");
+}
+
+#[test]
+fn the_least_energy_equals_bellman_fords_on_energies_that_may_be_negative() {
+    let mut random = ground::random(21);
+    let (mut compared, mut negative) = (0, 0);
+    while compared < 12 {
+        let terrain = ground::small_terrain(&mut random, 6);
+        let robot = ground::some_robot(&mut random, 1.0);
+        let query = ground::some_query(&mut random, &terrain, &robot);
+        let lattice = Lattice::new(&terrain, &robot, query.settings).unwrap();
+        let Some((starts, goals)) = plain_ends(&lattice, &query) else { continue };
+        let Ok(found) = plan(&terrain, &robot, &query, Objective::Energy) else { continue };
+        compared += 1;
+        let graph = ground::explicit_graph(&lattice, Objective::Energy).map(|_, ()| (), |_, w| w.1);
+        negative += graph.edge_weights().filter(|w| **w < 0.0).count();
+        let best = starts
+            .iter()
+            .map(|&start| {
+                let paths = bellman_ford(&graph, NodeIndex::new(start)).expect("no cycle may create energy");
+                goals.iter().map(|&goal| paths.distances[goal]).fold(f64::INFINITY, f64::min)
+            })
+            .fold(f64::INFINITY, f64::min);
+        let energy_j = found.route.total.energy_j;
+        assert!(
+            (energy_j - best).abs() < 1e-5 * (best.abs() + 100.0),
+            "{energy_j} J, but the best is {best} J"
+        );
+    }
+    assert!(negative > 100, "the maps must have descents that return energy, {negative} had");
+}
+
+#[test]
+fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_costs() {
+    let mut random = ground::random(22);
+    for case in 0..12 {
+        let terrain = ground::small_terrain(&mut random, 8);
+        let robot = ground::some_robot(&mut random, [0.0, 0.5, 1.0][case % 3]);
+        let mut settings = planner::Settings::of(&robot);
+        settings.speed_mps = random.random_range(0.1..1.0);
+        let lattice = Lattice::new(&terrain, &robot, settings).unwrap();
+        let objective = [Objective::Energy, Objective::Distance, Objective::Time][case / 4];
+        let table = CostTable::new(&lattice, objective);
+        let goal = random.random_range(0..terrain.grid.cells());
+        let field = GoalField::new(&lattice, &table, &[(goal, 0.0)]);
+        let mut graph = ground::explicit_graph(&lattice, objective);
+        graph.reverse();
+        let mut truth = vec![f64::INFINITY; lattice.states()];
+        for heading in 0..HEADINGS {
+            let from = NodeIndex::new(goal * HEADINGS + heading);
+            for (node, cost) in dijkstra(&graph, from, None, |e| e.weight().0) {
+                truth[node.index()] = truth[node.index()].min(cost);
+            }
+        }
+        for (state, truth) in truth.iter().enumerate() {
+            let bound = field.at(state / HEADINGS);
+            assert!(bound <= truth * (1.0 + 1e-6) + 1e-6, "state {state}: bound {bound} above {truth}");
+            for motion in 0..lattice.motions_per_state() {
+                let cost = f64::from(table.cost(state, motion));
+                let Some(next) = lattice.successor(lattice.state(state), motion) else { continue };
+                let next_bound = field.at(terrain.grid.index(next.cell));
+                assert!(bound <= cost + next_bound + 1e-9, "the bound drops faster than the cost");
+            }
+        }
+    }
+}
