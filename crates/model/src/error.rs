@@ -61,3 +61,15 @@ pub enum Error {
         hint: &'static str,
     },
 }
+
+impl Error {
+    /// The field at fault, as `motors.left.k2`, where the error lies in one.
+    pub fn field(&self) -> Option<&str> {
+        match self {
+            Error::Json { path, .. } if path != "." => Some(path),
+            Error::OutOfRange { field, .. } => Some(field),
+            Error::UnknownSurface { .. } => Some("default_surface"),
+            _ => None,
+        }
+    }
+}

@@ -209,10 +209,10 @@ impl Robot {
     /// [`Error::UnknownSurface`] name the field whose value cannot be right.
     pub fn from_json(text: &str) -> Result<Self, Error> {
         let mut deserializer = serde_json::Deserializer::from_str(text);
-        let robot: Robot = serde_path_to_error::deserialize(&mut deserializer)
+        let file: RobotFile = serde_path_to_error::deserialize(&mut deserializer)
             .map_err(|e| Error::Json { path: e.path().to_string(), message: e.inner().to_string() })?;
         deserializer.end().map_err(|e| Error::Json { path: ".".into(), message: e.to_string() })?;
-        Ok(robot)
+        Robot::try_from(file)
     }
 
     /// The friction of a surface by name.
@@ -251,32 +251,61 @@ impl Robot {
     }
 }
 
-/// The file as written: optional fields that depend on others are still open.
-#[derive(Deserialize)]
+/// A robot as its file has it: unchecked, with the optional fields still open. [`Robot::try_from`] checks it.
+///
+/// The fields are those of [`Robot`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
-struct RobotFile {
-    name: String,
-    mass_kg: f64,
-    wheelbase_m: f64,
-    track_m: f64,
-    slip_track_m: Option<f64>,
-    wheel_radius_m: f64,
+#[allow(missing_docs)]
+pub struct RobotFile {
+    pub name: String,
+    pub mass_kg: f64,
+    pub wheelbase_m: f64,
+    pub track_m: f64,
+    pub slip_track_m: Option<f64>,
+    pub wheel_radius_m: f64,
     #[serde(default)]
-    center_of_mass: CenterOfMass,
-    yaw_inertia_kgm2: Option<f64>,
-    max_wheel_speed_mps: f64,
-    motors: Motors,
+    pub center_of_mass: CenterOfMass,
+    pub yaw_inertia_kgm2: Option<f64>,
+    pub max_wheel_speed_mps: f64,
+    pub motors: Motors,
     #[serde(default)]
-    hotel_power_w: f64,
+    pub hotel_power_w: f64,
     #[serde(default)]
-    drive_electronics_w: f64,
-    battery: Option<Battery>,
+    pub drive_electronics_w: f64,
+    pub battery: Option<Battery>,
     #[serde(default)]
-    limits: Limits,
-    surfaces: BTreeMap<String, Surface>,
-    default_surface: String,
+    pub limits: Limits,
+    #[cfg_attr(feature = "openapi", schema(value_type = std::collections::HashMap<String, Surface>))]
+    pub surfaces: BTreeMap<String, Surface>,
+    pub default_surface: String,
     #[serde(default)]
-    uncertainty: Uncertainty,
+    pub uncertainty: Uncertainty,
+}
+
+impl From<Robot> for RobotFile {
+    fn from(robot: Robot) -> Self {
+        RobotFile {
+            name: robot.name,
+            mass_kg: robot.mass_kg,
+            wheelbase_m: robot.wheelbase_m,
+            track_m: robot.track_m,
+            slip_track_m: Some(robot.slip_track_m),
+            wheel_radius_m: robot.wheel_radius_m,
+            center_of_mass: robot.center_of_mass,
+            yaw_inertia_kgm2: Some(robot.yaw_inertia_kgm2),
+            max_wheel_speed_mps: robot.max_wheel_speed_mps,
+            motors: robot.motors,
+            hotel_power_w: robot.hotel_power_w,
+            drive_electronics_w: robot.drive_electronics_w,
+            battery: robot.battery,
+            limits: robot.limits,
+            surfaces: robot.surfaces,
+            default_surface: robot.default_surface,
+            uncertainty: robot.uncertainty,
+        }
+    }
 }
 
 impl TryFrom<RobotFile> for Robot {

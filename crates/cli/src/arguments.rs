@@ -1,0 +1,173 @@
+//! Arguments that several commands take, and what they mean.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    str::FromStr,
+    time::Instant,
+};
+
+use clap::Args;
+use model::{PowerModel, robot::RobotFile};
+use service::{
+    Limits,
+    routes::{
+        plan::{GoalPose, ObjectiveName, PlanRequest, StartPose},
+        robots::RobotChoice,
+    },
+};
+use terrain::{Grid, Terrain, io};
+
+use crate::failure::BadInput;
+
+/// A place on the map: metres, or fractions of its extent, with a heading if one is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    x: f64,
+    y: f64,
+    fraction: bool,
+    heading_deg: Option<f64>,
+}
+
+impl FromStr for Place {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!("`{text}` is not X,Y or X,Y,HEADING_DEG in metres, nor @FX,FY in fractions of the map")
+        };
+        let (fraction, numbers) = match text.strip_prefix('@') {
+            Some(rest) => (true, rest),
+            None => (false, text),
+        };
+        let parsed: Result<Vec<f64>, _> = numbers.split(',').map(|part| part.trim().parse::<f64>()).collect();
+        let values = parsed.map_err(|_| wrong())?;
+        if values.iter().any(|v| !v.is_finite()) {
+            return Err(wrong());
+        }
+        match values[..] {
+            [x, y] => Ok(Place { x, y, fraction, heading_deg: None }),
+            [x, y, heading] => Ok(Place { x, y, fraction, heading_deg: Some(heading) }),
+            _ => Err(wrong()),
+        }
+    }
+}
+
+impl Place {
+    /// The place in metres of a map.
+    fn on(&self, grid: &Grid) -> [f64; 2] {
+        if self.fraction { grid.at_fraction_m(self.x, self.y) } else { [self.x, self.y] }
+    }
+}
+
+/// Map, robot, both ends and how to drive: what `plan` and `compare` share.
+#[derive(Args)]
+pub(crate) struct Question {
+    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
+    #[arg(long)]
+    map: PathBuf,
+    /// Name of a built-in robot, or a robot file
+    #[arg(long, default_value = "husky-a200")]
+    robot: String,
+    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    #[arg(long, allow_hyphen_values = true)]
+    start: Place,
+    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    #[arg(long, allow_hyphen_values = true)]
+    goal: Place,
+    /// Any pose this close to the goal will do [m]
+    #[arg(long, default_value_t = 0.0)]
+    tolerance_m: f64,
+    /// Forward speed [m/s]; default half the wheels' top speed
+    #[arg(long)]
+    speed_mps: Option<f64>,
+    /// How far a start or goal may be moved to free ground [m]; default one cell
+    #[arg(long)]
+    snap_radius_m: Option<f64>,
+    /// Form of the physics: force-balance or dogru-marques
+    #[arg(long, default_value = "force-balance", value_parser = power_model)]
+    power_model: PowerModel,
+    /// Let the robot back up
+    #[arg(long)]
+    reverse: bool,
+    /// Print the answer as the JSON document that the HTTP API returns
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn power_model(text: &str) -> Result<PowerModel, String> {
+    match text {
+        "force-balance" => Ok(PowerModel::ForceBalance),
+        "dogru-marques" => Ok(PowerModel::DogruMarques),
+        _ => Err("give force-balance or dogru-marques".into()),
+    }
+}
+
+impl Question {
+    /// Reads the files and puts the question as the service takes it.
+    pub(crate) fn read(&self, objective: ObjectiveName) -> anyhow::Result<(Terrain, PlanRequest)> {
+        let terrain = read_map(&self.map)?;
+        let [sx, sy] = self.start.on(&terrain.grid);
+        let [gx, gy] = self.goal.on(&terrain.grid);
+        let request = PlanRequest {
+            map: None,
+            map_id: None,
+            robot: read_robot(&self.robot)?,
+            start: StartPose { x_m: sx, y_m: sy, heading_rad: self.start.heading_deg.map(f64::to_radians) },
+            goal: GoalPose {
+                x_m: gx,
+                y_m: gy,
+                heading_rad: self.goal.heading_deg.map(f64::to_radians),
+                tolerance_m: self.tolerance_m,
+            },
+            objective,
+            speed_mps: self.speed_mps,
+            power_model: self.power_model,
+            reverse: self.reverse,
+            snap_radius_m: self.snap_radius_m,
+        };
+        Ok((terrain, request))
+    }
+}
+
+/// When a command's search has to give up: the service's own limit, ten times over.
+pub(crate) fn deadline() -> Instant {
+    const PATIENCE: u32 = 10;
+    Instant::now() + Limits::default().plan_time * PATIENCE
+}
+
+fn read_map(path: &Path) -> anyhow::Result<Terrain> {
+    io::read_path(path).map_err(|error| {
+        let message = error.to_string();
+        let named = message.contains(&path.display().to_string());
+        BadInput(if named { message } else { format!("{}: {message}", path.display()) }).into()
+    })
+}
+
+/// A built-in robot's name stays a name; anything else is a file.
+fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
+    let is_file = name.ends_with(".json") || name.contains(std::path::MAIN_SEPARATOR);
+    if !is_file {
+        return Ok(RobotChoice::Name(name.to_owned()));
+    }
+    let text = fs::read_to_string(name).map_err(|error| BadInput(format!("{name}: {error}")))?;
+    let robot = model::Robot::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))?;
+    Ok(RobotChoice::File(Box::new(RobotFile::from(robot))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_metres_or_fractions_with_an_optional_heading() {
+        let grid = Grid { rows: 10, columns: 20, cell_size_m: 0.5, origin_m: [100.0, -5.0] };
+        let at = |text: &str| text.parse::<Place>().unwrap().on(&grid);
+        assert_eq!(at("3,-4"), [3.0, -4.0]);
+        assert_eq!(at("@0.5,1"), [105.0, 0.0]);
+        assert_eq!("1,2,90".parse::<Place>().unwrap().heading_deg, Some(90.0));
+        for wrong in ["", "1", "1,2,3,4", "a,b", "@", "1,nan", "1;2"] {
+            assert!(wrong.parse::<Place>().unwrap_err().contains("X,Y"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! `joulepath compare`.
+
+use clap::Args;
+use service::routes::{compare::answer, plan::ObjectiveName};
+
+use crate::{
+    arguments::{Question, deadline},
+    failure::Refused,
+    table,
+};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    question: Question,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let (terrain, request) = arguments.question.read(ObjectiveName::Energy)?;
+    let found = answer(&terrain, &request, deadline()).map_err(Refused)?;
+    if arguments.question.json {
+        println!("{}", serde_json::to_string(&found)?);
+    } else {
+        println!("{}", table::compare(&found));
+    }
+    Ok(())
+}

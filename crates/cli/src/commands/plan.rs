@@ -1,0 +1,42 @@
+//! `joulepath plan`.
+
+use clap::{Args, ValueEnum};
+use service::routes::plan::{ObjectiveName, answer};
+
+use crate::{
+    arguments::{Question, deadline},
+    failure::Refused,
+    table,
+};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    question: Question,
+    /// What the path is to have least of
+    #[arg(long, value_enum, default_value = "energy")]
+    objective: Objective,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Objective {
+    Energy,
+    Distance,
+    Time,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let objective = match arguments.objective {
+        Objective::Energy => ObjectiveName::Energy,
+        Objective::Distance => ObjectiveName::Distance,
+        Objective::Time => ObjectiveName::Time,
+    };
+    let (terrain, request) = arguments.question.read(objective)?;
+    let found = answer(&terrain, &request, deadline()).map_err(Refused)?;
+    if arguments.question.json {
+        println!("{}", serde_json::to_string(&found)?);
+    } else {
+        println!("{}", table::plan(&found));
+    }
+    Ok(())
+}

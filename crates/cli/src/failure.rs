@@ -1,0 +1,45 @@
+//! Exit status of a failed command.
+
+use std::{fmt, process::ExitCode};
+
+use service::{Problem, ProblemType};
+
+/// Wrong input: the message says what, where, and how to mend it.
+#[derive(Debug)]
+pub(crate) struct BadInput(pub(crate) String);
+
+impl fmt::Display for BadInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BadInput {}
+
+/// A problem of the engine, as an error of the command line.
+#[derive(Debug)]
+pub(crate) struct Refused(pub(crate) Problem);
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.detail)
+    }
+}
+
+impl std::error::Error for Refused {}
+
+/// 2 for wrong input, 3 for no path, 1 for anything else.
+pub(crate) fn exit_code(error: &anyhow::Error) -> ExitCode {
+    let code = if error.downcast_ref::<BadInput>().is_some() {
+        2
+    } else if let Some(Refused(problem)) = error.downcast_ref::<Refused>() {
+        match problem.kind {
+            ProblemType::NoPath => 3,
+            ProblemType::Timeout | ProblemType::Internal => 1,
+            _ => 2,
+        }
+    } else {
+        1
+    };
+    ExitCode::from(code)
+}

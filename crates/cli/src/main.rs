@@ -1,0 +1,48 @@
+//! The `joulepath` command: energy-minimal paths for skid-steered robots.
+
+mod arguments;
+mod commands;
+mod failure;
+mod picture;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Energy-minimal paths for skid-steered robots, and what they will cost.
+#[derive(Parser)]
+#[command(version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Plan one path over a map
+    Plan(commands::plan::Arguments),
+    /// Compare the energy-minimal, shortest and fastest paths over a map
+    Compare(commands::compare::Arguments),
+    /// Serve the HTTP API
+    Serve(commands::serve::Arguments),
+    /// Start the service, compare paths over real terrain, and draw them
+    Demo(commands::demo::Arguments),
+}
+
+fn main() -> ExitCode {
+    // clap ends the process itself: 2 on wrong arguments, 0 after help.
+    let outcome = match Arguments::parse().command {
+        Command::Plan(arguments) => commands::plan::run(&arguments),
+        Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Serve(arguments) => commands::serve::run(&arguments),
+        Command::Demo(arguments) => commands::demo::run(&arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("joulepath: {error:#}");
+            failure::exit_code(&error)
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Answers as a short readable text.
+
+use service::routes::{compare::CompareAnswer, plan::PlanAnswer};
+
+const HEAD: [&str; 7] = ["", "energy", "95 % interval", "distance", "time", "climb", "recovered"];
+
+/// One path, a line a figure.
+pub(crate) fn plan(answer: &PlanAnswer) -> String {
+    let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
+    format!(
+        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}",
+        answer.descent_m,
+        answer.search.expanded,
+        answer.search.duration_ms,
+        if answer.search.optimal { "proven best of the lattice" } else { "not proven best" },
+    )
+}
+
+/// Three paths as a table, and what the energy-minimal one saves.
+pub(crate) fn compare(answer: &CompareAnswer) -> String {
+    let rows = [
+        HEAD.map(str::to_owned),
+        cells("energy-minimal", &answer.energy),
+        cells("shortest", &answer.distance),
+        cells("fastest", &answer.time),
+    ];
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; 7] = std::array::from_fn(width);
+    let mut text = String::new();
+    for row in &rows {
+        let line: Vec<String> = row
+            .iter()
+            .zip(widths)
+            .enumerate()
+            .map(
+                |(i, (cell, width))| {
+                    if i == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+                },
+            )
+            .collect();
+        text.push_str(line.join("  ").trim_end());
+        text.push('\n');
+    }
+    let extra = 100.0 * (answer.energy.distance_m / answer.distance.distance_m - 1.0);
+    text.push_str(&format!(
+        "\nThe energy-minimal path saves {:.1} % of the shortest path's energy by driving {extra:.1} % further.",
+        100.0 * answer.saving_fraction
+    ));
+    text
+}
+
+fn cells(name: &str, answer: &PlanAnswer) -> [String; 7] {
+    let [low, high] = answer.energy_interval_j;
+    [
+        name.to_owned(),
+        energy(answer.energy_j),
+        format!("{} to {}", energy(low), energy(high)),
+        format!("{:.1} m", answer.distance_m),
+        time(answer.duration_s),
+        format!("{:.1} m", answer.climb_m),
+        energy(answer.recovered_j),
+    ]
+}
+
+fn energy(energy_j: f64) -> String {
+    format!("{:.2} kJ", energy_j / 1e3)
+}
+
+/// Minutes and seconds.
+fn time(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    format!("{}:{:02} min", whole / 60, whole % 60)
+}

@@ -1,0 +1,21 @@
+//! The HTTP service: terrains and robots in, paths with predicted energy out.
+//!
+//! The only crate that knows HTTP and async. Each file under `routes` holds a request, its handler and its answer; the
+//! functions that turn a request into an answer are plain and are shared with the command line, so both give the same
+//! document and the same errors.
+
+mod body;
+mod engine;
+mod geojson;
+mod limits;
+mod problem;
+mod router;
+pub mod routes;
+mod serve;
+mod store;
+
+pub use engine::Engine;
+pub use limits::Limits;
+pub use problem::{Problem, ProblemType};
+pub use router::{openapi, router};
+pub use serve::{Running, serve, start};

@@ -1,0 +1,30 @@
+//! What one request may ask for.
+
+use std::time::Duration;
+
+/// Limits of the service; the defaults suit a laptop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest request body [bytes]. Default 64 MiB, a 3000 × 3000 map as text.
+    pub body_bytes: usize,
+    /// Longest time for one plan [s]. Default 60 s.
+    pub plan_time: Duration,
+    /// Most states (cells × 16 headings) of one plan. Default 32 million: 1400 × 1400 cells.
+    pub plan_states: usize,
+    /// Most cells over all stored maps. Default 200 million.
+    pub stored_cells: usize,
+    /// Plans that run at the same time; more wait. Default: one for each core.
+    pub parallel_plans: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits {
+            body_bytes: 64 << 20,
+            plan_time: Duration::from_secs(60),
+            plan_states: 32_000_000,
+            stored_cells: 200_000_000,
+            parallel_plans: std::thread::available_parallelism().map_or(1, usize::from),
+        }
+    }
+}

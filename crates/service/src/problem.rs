@@ -1,0 +1,232 @@
+//! Every failure as one shape: an RFC 9457 problem document.
+
+use axum::{
+    Json,
+    http::{HeaderValue, StatusCode, header},
+    response::{IntoResponse, Response},
+};
+use planner::Place;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The kinds of failure; programs may rely on these names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProblemType {
+    /// The body is not JSON, or not the JSON that is needed.
+    InvalidRequest,
+    /// The map cannot be used as it is.
+    InvalidMap,
+    /// The robot cannot be used as it is.
+    InvalidRobot,
+    /// A content type that this path does not take.
+    UnsupportedMediaType,
+    /// No such path.
+    NotFound,
+    /// No map with this id.
+    UnknownMap,
+    /// No robot of this name.
+    UnknownRobot,
+    /// The path does not take this method.
+    MethodNotAllowed,
+    /// The map's ground has a surface that the robot has no friction for.
+    UnknownSurface,
+    /// The start lies off the map.
+    StartOutsideMap,
+    /// The goal lies off the map.
+    GoalOutsideMap,
+    /// The robot cannot stand at the start.
+    StartBlocked,
+    /// The robot cannot stand at the goal.
+    GoalBlocked,
+    /// No way leads from the start to the goal.
+    NoPath,
+    /// The search stopped at its deadline.
+    Timeout,
+    /// The body or the map exceeds a limit.
+    TooLarge,
+    /// The service holds as many maps as it may.
+    StoreFull,
+    /// A fault of the service.
+    Internal,
+}
+
+/// A problem document.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct Problem {
+    /// Kind of failure.
+    #[serde(rename = "type")]
+    pub kind: ProblemType,
+    /// The kind in words.
+    pub title: String,
+    /// HTTP status.
+    pub status: u16,
+    /// What went wrong here, where, and how to mend it.
+    pub detail: String,
+    /// The fields at fault.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<FieldError>,
+}
+
+/// One field at fault.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+pub struct FieldError {
+    /// JSON pointer into the request (RFC 6901).
+    #[schema(example = "/start/x_m")]
+    pub pointer: String,
+    /// What is wrong with it.
+    pub detail: String,
+}
+
+impl ProblemType {
+    fn status(self) -> StatusCode {
+        use ProblemType as T;
+        match self {
+            T::InvalidRequest | T::InvalidMap | T::InvalidRobot => StatusCode::BAD_REQUEST,
+            T::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            T::NotFound | T::UnknownMap | T::UnknownRobot => StatusCode::NOT_FOUND,
+            T::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
+            T::UnknownSurface
+            | T::StartOutsideMap
+            | T::GoalOutsideMap
+            | T::StartBlocked
+            | T::GoalBlocked
+            | T::NoPath => StatusCode::UNPROCESSABLE_ENTITY,
+            T::Timeout => StatusCode::GATEWAY_TIMEOUT,
+            T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+            T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
+            T::Internal => StatusCode::INTERNAL_SERVER_ERROR,
+        }
+    }
+
+    fn title(self) -> &'static str {
+        use ProblemType as T;
+        match self {
+            T::InvalidRequest => "The request cannot be read",
+            T::InvalidMap => "The map cannot be used",
+            T::InvalidRobot => "The robot cannot be used",
+            T::UnsupportedMediaType => "Content type not supported",
+            T::NotFound => "No such path",
+            T::UnknownMap => "No such map",
+            T::UnknownRobot => "No such robot",
+            T::MethodNotAllowed => "Method not allowed",
+            T::UnknownSurface => "A surface is unknown to the robot",
+            T::StartOutsideMap => "The start lies outside the map",
+            T::GoalOutsideMap => "The goal lies outside the map",
+            T::StartBlocked => "The robot cannot stand at the start",
+            T::GoalBlocked => "The robot cannot stand at the goal",
+            T::NoPath => "There is no path",
+            T::Timeout => "The search ran out of time",
+            T::TooLarge => "Too large",
+            T::StoreFull => "The store is full",
+            T::Internal => "Internal error",
+        }
+    }
+}
+
+impl Problem {
+    /// A problem of a kind.
+    pub fn new(kind: ProblemType, detail: impl Into<String>) -> Self {
+        Problem {
+            kind,
+            title: kind.title().to_owned(),
+            status: kind.status().as_u16(),
+            detail: detail.into(),
+            errors: Vec::new(),
+        }
+    }
+
+    /// Names the field at fault by its JSON pointer.
+    #[must_use]
+    pub fn at(mut self, pointer: impl Into<String>) -> Self {
+        self.errors.push(FieldError { pointer: pointer.into(), detail: self.detail.clone() });
+        self
+    }
+
+    /// A map that cannot be used; `under` is where it stands in the request.
+    pub fn invalid_map(error: &terrain::Error, under: &str) -> Self {
+        let kind = match error {
+            terrain::Error::TooManyCells { .. } => ProblemType::TooLarge,
+            _ => ProblemType::InvalidMap,
+        };
+        let problem = Problem::new(kind, error.to_string());
+        match error.field() {
+            Some(field) => problem.at(format!("{under}{}", pointer(&field))),
+            None => problem,
+        }
+    }
+
+    /// A robot that cannot be used; `under` is where it stands in the request.
+    pub fn invalid_robot(error: &model::Error, under: &str) -> Self {
+        let kind = match error {
+            model::Error::UnknownRobot { .. } => ProblemType::UnknownRobot,
+            _ => ProblemType::InvalidRobot,
+        };
+        let place = error.field().map_or(String::new(), pointer);
+        Problem::new(kind, error.to_string()).at(format!("{under}{place}"))
+    }
+
+    /// Why the planner has no path.
+    pub fn no_plan(error: &planner::Error) -> Self {
+        use planner::Error as E;
+        let place = |place: &Place| match place {
+            Place::Start => "/start",
+            Place::Goal => "/goal",
+        };
+        let (kind, at) = match error {
+            E::OutsideMap { place: Place::Start, .. } => {
+                (ProblemType::StartOutsideMap, Some("/start".into()))
+            }
+            E::OutsideMap { place: Place::Goal, .. } => (ProblemType::GoalOutsideMap, Some("/goal".into())),
+            E::PlaceBlocked { place: end, .. } => {
+                let kind =
+                    if *end == Place::Start { ProblemType::StartBlocked } else { ProblemType::GoalBlocked };
+                (kind, Some(place(end).to_owned()))
+            }
+            E::NoPath { .. } => (ProblemType::NoPath, None),
+            E::Timeout { .. } => (ProblemType::Timeout, None),
+            E::UnknownSurface { .. } => (ProblemType::UnknownSurface, Some("/robot/surfaces".into())),
+            E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, Some(pointer(field))),
+            E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
+            _ => (ProblemType::Internal, None),
+        };
+        let problem = Problem::new(kind, error.to_string());
+        match at {
+            Some(at) => problem.at(at),
+            None => problem,
+        }
+    }
+}
+
+/// A path of serde or of this program, `start.x_m` or `elevation_m[3][2]`, as a JSON pointer.
+pub(crate) fn pointer(path: &str) -> String {
+    let mut pointer = String::new();
+    for part in path.split(['.', '[']).map(|part| part.trim_end_matches(']')).filter(|p| !p.is_empty()) {
+        pointer.push('/');
+        pointer.push_str(&part.replace('~', "~0").replace('/', "~1"));
+    }
+    pointer
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let mut response = (status, Json(self)).into_response();
+        response
+            .headers_mut()
+            .insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+        response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_become_json_pointers() {
+        assert_eq!(pointer("map.elevation_m[3][12]"), "/map/elevation_m/3/12");
+        assert_eq!(pointer("robot.surfaces.wet/clay.mu_roll"), "/robot/surfaces/wet~1clay/mu_roll");
+        assert_eq!(pointer("."), "");
+    }
+}

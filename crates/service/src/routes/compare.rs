@@ -1,0 +1,61 @@
+//! `POST /v1/compare`: the energy-minimal, shortest and fastest paths side by side.
+
+use std::time::Instant;
+
+use axum::{Json, extract::State};
+use serde::{Deserialize, Serialize};
+use terrain::Terrain;
+use utoipa::ToSchema;
+
+use super::plan::{PlanAnswer, PlanRequest, with_terrain};
+use crate::{Engine, body::JsonBody, problem::Problem};
+
+/// Three paths between the same ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CompareAnswer {
+    /// Least energy.
+    pub energy: PlanAnswer,
+    /// Least length.
+    pub distance: PlanAnswer,
+    /// Least time.
+    pub time: PlanAnswer,
+    /// Share of the shortest path's energy that the energy-minimal one saves.
+    pub saving_fraction: f64,
+}
+
+/// Compare the energy-minimal, shortest and fastest paths. The request is that of `/v1/plan`; its objective is ignored.
+#[utoipa::path(
+    post, path = "/v1/compare", tag = "plan",
+    request_body = PlanRequest,
+    responses(
+        (status = 200, body = CompareAnswer),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "Start or goal unusable, or no path", body = Problem, content_type = "application/problem+json"),
+        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn handler(
+    State(engine): State<Engine>,
+    JsonBody(mut request): JsonBody<PlanRequest>,
+) -> Result<Json<CompareAnswer>, Problem> {
+    with_terrain(&engine, &mut request, answer).await.map(Json)
+}
+
+/// Answers a request over a terrain; the request's own map is not looked at.
+///
+/// # Errors
+/// As [`super::plan::answer`].
+pub fn answer(terrain: &Terrain, request: &PlanRequest, deadline: Instant) -> Result<CompareAnswer, Problem> {
+    let robot = request.robot.robot()?;
+    let query = request.query(&robot, deadline);
+    let found = planner::compare(terrain, &robot, &query).map_err(|e| Problem::no_plan(&e))?;
+    Ok(CompareAnswer {
+        saving_fraction: found.saving_fraction(),
+        energy: (&found.energy).into(),
+        distance: (&found.distance).into(),
+        time: (&found.time).into(),
+    })
+}

@@ -1,0 +1,337 @@
+//! `POST /v1/plan`: one path.
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use axum::{
+    Json,
+    extract::State,
+    http::{HeaderMap, header},
+    response::{IntoResponse, Response},
+};
+use model::PowerModel;
+use planner::{Goal, HEADINGS, Objective, Plan, Pose, Query, Settings, Snap, Start};
+use serde::{Deserialize, Serialize};
+use terrain::{MapFile, Terrain};
+use utoipa::ToSchema;
+
+use super::{maps::terrain_from, robots::RobotChoice};
+use crate::{
+    Engine,
+    body::JsonBody,
+    geojson,
+    problem::{Problem, ProblemType},
+};
+
+/// What to plan.
+#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanRequest {
+    /// The map itself; give this or `map_id`.
+    pub map: Option<MapFile>,
+    /// Id of a stored map; give this or `map`.
+    pub map_id: Option<String>,
+    /// Name of a built-in robot, or a robot.
+    pub robot: RobotChoice,
+    /// Where the robot stands.
+    pub start: StartPose,
+    /// Where it is to go.
+    pub goal: GoalPose,
+    /// What the path is to have least of. Default: `energy`.
+    #[serde(default)]
+    pub objective: ObjectiveName,
+    /// Forward speed; lowered where the outer wheel would be too fast. Default: half the wheels' top speed [m/s].
+    pub speed_mps: Option<f64>,
+    /// Form of the physics. Default: `force-balance`.
+    #[serde(default)]
+    pub power_model: PowerModel,
+    /// Whether the robot may back up. Default: false.
+    #[serde(default)]
+    pub reverse: bool,
+    /// How far a start or goal may be moved to ground where the robot can stand. Default: one cell [m].
+    pub snap_radius_m: Option<f64>,
+}
+
+/// Where the robot stands.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartPose {
+    /// East [m].
+    pub x_m: f64,
+    /// North [m].
+    pub y_m: f64,
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: the planner chooses [rad].
+    pub heading_rad: Option<f64>,
+}
+
+/// Where the robot is to go.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GoalPose {
+    /// East [m].
+    pub x_m: f64,
+    /// North [m].
+    pub y_m: f64,
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any [rad].
+    pub heading_rad: Option<f64>,
+    /// Any pose this close will do. Default: 0, the goal's own cell [m].
+    #[serde(default)]
+    pub tolerance_m: f64,
+}
+
+/// What a path is to have least of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ObjectiveName {
+    /// Energy drawn from the battery.
+    #[default]
+    Energy,
+    /// Length along the ground.
+    Distance,
+    /// Time.
+    Time,
+}
+
+/// A path with its predicted energy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlanAnswer {
+    /// Energy drawn from the battery [J].
+    pub energy_j: f64,
+    /// Central 95 % interval of it, from the robot's parameter uncertainty [J].
+    #[schema(min_items = 2, max_items = 2)]
+    pub energy_interval_j: [f64; 2],
+    /// Time [s].
+    pub duration_s: f64,
+    /// Length along the ground [m].
+    pub distance_m: f64,
+    /// Height gained on the way up [m].
+    pub climb_m: f64,
+    /// Height lost on the way down [m].
+    pub descent_m: f64,
+    /// Energy that flowed back into the battery [J].
+    pub recovered_j: f64,
+    /// The path, pose by pose.
+    pub poses: Vec<PoseAnswer>,
+    /// How far start and goal were moved to the lattice.
+    pub snapped: Snapped,
+    /// What the search did.
+    pub search: SearchAnswer,
+}
+
+/// A pose along the path, with what the path has cost up to it. Power, pitch, roll and radius are those of the
+/// stretch that ends here; the first pose stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct PoseAnswer {
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+    pub heading_rad: f64,
+    pub t_s: f64,
+    pub distance_m: f64,
+    pub energy_j: f64,
+    pub power_w: f64,
+    pub pitch_rad: f64,
+    pub roll_rad: f64,
+    /// Positive with the centre on the left; null when straight, 0 on the spot [m].
+    pub radius_m: Option<f64>,
+}
+
+/// How far both ends were moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct Snapped {
+    pub start: SnapAnswer,
+    pub goal: SnapAnswer,
+}
+
+/// How far an end was moved to a cell centre and one of sixteen headings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct SnapAnswer {
+    pub distance_m: f64,
+    pub turn_rad: f64,
+}
+
+/// What the search did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SearchAnswer {
+    /// States expanded.
+    pub expanded: u64,
+    /// Time for preparing and searching [ms].
+    pub duration_ms: f64,
+    /// Whether the path is proven to be the best of the lattice.
+    pub optimal: bool,
+}
+
+/// Plan one path.
+#[utoipa::path(
+    post, path = "/v1/plan", tag = "plan",
+    request_body = PlanRequest,
+    responses(
+        (status = 200, description = "The path; as GeoJSON when `Accept` asks for application/geo+json", body = PlanAnswer),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "Start or goal unusable, or no path", body = Problem, content_type = "application/problem+json"),
+        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn handler(
+    State(engine): State<Engine>,
+    headers: HeaderMap,
+    JsonBody(mut request): JsonBody<PlanRequest>,
+) -> Result<Response, Problem> {
+    let as_geojson = headers
+        .get(header::ACCEPT)
+        .and_then(|v| v.to_str().ok())
+        .is_some_and(|accept| accept.contains("application/geo+json"));
+    let found = with_terrain(&engine, &mut request, answer).await?;
+    if as_geojson {
+        let body = geojson::path(&found);
+        return Ok(([(header::CONTENT_TYPE, "application/geo+json")], Json(body)).into_response());
+    }
+    Ok(Json(found).into_response())
+}
+
+/// Finds the request's map and answers on a thread for computations.
+pub(crate) async fn with_terrain<T: Send + 'static>(
+    engine: &Engine,
+    request: &mut PlanRequest,
+    answer: fn(&Terrain, &PlanRequest, Instant) -> Result<T, Problem>,
+) -> Result<T, Problem> {
+    let deadline = Instant::now() + engine.limits().plan_time;
+    let stored = choose_map(engine, request)?;
+    let (inline, request) = (request.map.take(), request.clone());
+    let most_states = engine.limits().plan_states;
+    engine
+        .compute(move || {
+            let terrain = match (stored, inline) {
+                (Some(stored), _) => stored,
+                (None, Some(file)) => Arc::new(terrain_from(file, "/map")?),
+                (None, None) => return Err(no_map()),
+            };
+            let states = terrain.grid.cells() * HEADINGS;
+            if states > most_states {
+                let detail = format!(
+                    "a plan over this map has {states} states, more than the {most_states} allowed: crop the map or use larger cells"
+                );
+                return Err(Problem::new(ProblemType::TooLarge, detail).at("/map"));
+            }
+            answer(&terrain, &request, deadline)
+        })
+        .await
+}
+
+fn choose_map(engine: &Engine, request: &PlanRequest) -> Result<Option<Arc<Terrain>>, Problem> {
+    match (&request.map, &request.map_id) {
+        (Some(_), None) => Ok(None),
+        (None, Some(id)) => {
+            let found = engine.maps().get(id);
+            found.map(Some).map_err(|problem| problem.at("/map_id"))
+        }
+        (Some(_), Some(_)) => {
+            let detail = "the request has both map and map_id: give one of them";
+            Err(Problem::new(ProblemType::InvalidRequest, detail).at("/map_id"))
+        }
+        (None, None) => Err(no_map()),
+    }
+}
+
+fn no_map() -> Problem {
+    let detail = "the request has no map: give map (inline) or map_id (from POST /v1/maps)";
+    Problem::new(ProblemType::InvalidRequest, detail).at("/map")
+}
+
+/// Answers a request over a terrain; the request's own map is not looked at.
+///
+/// # Errors
+/// An unusable robot, an unusable end, no path, or a passed deadline.
+pub fn answer(terrain: &Terrain, request: &PlanRequest, deadline: Instant) -> Result<PlanAnswer, Problem> {
+    let robot = request.robot.robot()?;
+    let query = request.query(&robot, deadline);
+    let objective = match request.objective {
+        ObjectiveName::Energy => Objective::Energy,
+        ObjectiveName::Distance => Objective::Distance,
+        ObjectiveName::Time => Objective::Time,
+    };
+    let found = planner::plan(terrain, &robot, &query, objective).map_err(|e| Problem::no_plan(&e))?;
+    Ok(PlanAnswer::from(&found))
+}
+
+impl PlanRequest {
+    /// The question as the planner takes it.
+    pub(crate) fn query(&self, robot: &model::Robot, deadline: Instant) -> Query {
+        let usual = Settings::of(robot);
+        Query {
+            start: Start { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: self.start.heading_rad },
+            goal: Goal {
+                x_m: self.goal.x_m,
+                y_m: self.goal.y_m,
+                heading_rad: self.goal.heading_rad,
+                tolerance_m: self.goal.tolerance_m,
+            },
+            settings: Settings {
+                speed_mps: self.speed_mps.unwrap_or(usual.speed_mps),
+                power_model: self.power_model,
+                reverse: self.reverse,
+                ..usual
+            },
+            snap_radius_m: self.snap_radius_m,
+            deadline: Some(deadline),
+        }
+    }
+}
+
+impl From<&Plan> for PlanAnswer {
+    fn from(plan: &Plan) -> Self {
+        let total = &plan.route.total;
+        PlanAnswer {
+            energy_j: total.energy_j,
+            energy_interval_j: plan.energy_interval_j,
+            duration_s: total.duration_s,
+            distance_m: total.length_m,
+            climb_m: total.climb_m,
+            descent_m: total.descent_m,
+            recovered_j: total.recovered_j,
+            poses: plan.route.poses.iter().map(PoseAnswer::from).collect(),
+            snapped: Snapped { start: (&plan.start_snap).into(), goal: (&plan.goal_snap).into() },
+            search: SearchAnswer {
+                expanded: plan.search.expanded,
+                duration_ms: milliseconds(plan.search.duration),
+                optimal: true,
+            },
+        }
+    }
+}
+
+impl From<&Pose> for PoseAnswer {
+    fn from(p: &Pose) -> Self {
+        PoseAnswer {
+            x_m: p.x_m,
+            y_m: p.y_m,
+            z_m: p.z_m,
+            heading_rad: p.heading_rad,
+            t_s: p.t_s,
+            distance_m: p.distance_m,
+            energy_j: p.energy_j,
+            power_w: p.power_w,
+            pitch_rad: p.pitch_rad,
+            roll_rad: p.roll_rad,
+            radius_m: p.radius_m,
+        }
+    }
+}
+
+impl From<&Snap> for SnapAnswer {
+    fn from(snap: &Snap) -> Self {
+        SnapAnswer { distance_m: snap.distance_m, turn_rad: snap.turn_rad }
+    }
+}
+
+fn milliseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
