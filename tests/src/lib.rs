@@ -1,1 +1,138 @@
-//! x
+//! What the black-box tests share: the built program, a server of it, and requests that keep every answer.
+
+#![allow(clippy::panic)]
+
+use std::{
+    io::{BufRead, BufReader},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+};
+
+use serde_json::Value;
+
+/// The built `joulepath` program, beside the tests' own executables.
+///
+/// # Panics
+/// When it has not been built.
+pub fn program() -> PathBuf {
+    let mut path = std::env::current_exe().unwrap_or_default();
+    path.pop();
+    if path.ends_with("deps") {
+        path.pop();
+    }
+    path.push("joulepath");
+    assert!(
+        path.exists(),
+        "{} is not built: run `cargo build --bin joulepath` in this profile",
+        path.display()
+    );
+    path
+}
+
+/// A file of the repository.
+pub fn file(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// A running server, ended when dropped.
+#[derive(Debug)]
+pub struct Server {
+    child: Child,
+    /// Where it listens, as `http://127.0.0.1:41234`.
+    pub url: String,
+}
+
+impl Server {
+    /// Starts a server on a free loopback port.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start() -> Self {
+        let mut child = Command::new(program())
+            .args(["serve", "--bind", "127.0.0.1:0"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap_or_else(|error| panic!("the server does not start: {error}"));
+        let stdout = child.stdout.take().unwrap_or_else(|| panic!("the server's output was not kept"));
+        let mut line = String::new();
+        let read = BufReader::new(stdout).read_line(&mut line);
+        let url = line.trim().strip_prefix("listening on ").map(str::to_owned);
+        let url = url.unwrap_or_else(|| panic!("the server said {line:?} ({read:?})"));
+        Server { child, url }
+    }
+
+    /// Sends a body with a content type.
+    pub fn post(&self, path: &str, content_type: &str, body: &[u8]) -> Answer {
+        let request = agent().post(format!("{}{path}", self.url)).content_type(content_type);
+        Answer::from(request.send(body))
+    }
+
+    /// Sends a JSON document.
+    pub fn post_json(&self, path: &str, body: &Value) -> Answer {
+        self.post(path, "application/json", body.to_string().as_bytes())
+    }
+
+    /// Gets a path.
+    pub fn get(&self, path: &str) -> Answer {
+        Answer::from(agent().get(format!("{}{path}", self.url)).call())
+    }
+
+    /// Deletes a path.
+    pub fn delete(&self, path: &str) -> Answer {
+        Answer::from(agent().delete(format!("{}{path}", self.url)).call())
+    }
+
+    /// The most memory that the server has held [bytes], where the system tells (Linux).
+    pub fn peak_memory_bytes(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+        let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+        Some(kibibytes * 1024)
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// An HTTP answer, whatever its status.
+#[derive(Debug)]
+pub struct Answer {
+    /// HTTP status.
+    pub status: u16,
+    /// Media type.
+    pub content_type: String,
+    /// The server's id of the request.
+    pub request_id: Option<String>,
+    /// The body as text.
+    pub text: String,
+}
+
+impl Answer {
+    /// The body as JSON.
+    ///
+    /// # Panics
+    /// When it is not JSON.
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.text).unwrap_or_else(|error| panic!("{error} in {}", self.text))
+    }
+
+    fn from(result: Result<ureq::http::Response<ureq::Body>, ureq::Error>) -> Self {
+        let mut response = result.unwrap_or_else(|error| panic!("the server did not answer: {error}"));
+        let header =
+            |name: &str| response.headers().get(name).and_then(|v| v.to_str().ok()).map(str::to_owned);
+        let (content_type, request_id) = (header("content-type").unwrap_or_default(), header("x-request-id"));
+        let status = response.status().as_u16();
+        let body = response.body_mut().with_config().limit(256 << 20).read_to_string();
+        let text = body.unwrap_or_else(|error| panic!("the answer broke off: {error}"));
+        Answer { status, content_type, request_id, text }
+    }
+}
+
+fn agent() -> ureq::Agent {
+    ureq::Agent::config_builder().http_status_as_error(false).build().into()
+}

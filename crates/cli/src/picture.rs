@@ -2,7 +2,10 @@
 
 use anyhow::anyhow;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
-use plotters::{coord::Shift, prelude::*};
+use plotters::{
+    coord::{Shift, types::RangedCoordf64},
+    prelude::*,
+};
 use service::routes::{
     compare::CompareAnswer,
     plan::{PlanAnswer, PoseAnswer},
@@ -18,11 +21,15 @@ const EXAGGERATION: f32 = 2.0;
 /// A path, its name and its colour; the colours stay apart for colour-blind eyes (Okabe & Ito).
 type Series<'a> = (&'static str, RGBColor, &'a PlanAnswer);
 
+/// The one that is drawn in dashes.
+const FASTEST: &str = "fastest";
+
 /// Draws the picture as an SVG document.
 pub(crate) fn draw(terrain: &Terrain, answer: &CompareAnswer) -> anyhow::Result<String> {
+    // The fastest path often lies on the shortest: it is drawn after it, in dashes.
     let series: [Series<'_>; 3] = [
-        ("fastest", RGBColor(0xB0, 0x50, 0x90), &answer.time),
         ("shortest", RGBColor(0xD5, 0x5E, 0x00), &answer.distance),
+        (FASTEST, RGBColor(0x5A, 0x12, 0x5A), &answer.time),
         ("energy-minimal", RGBColor(0x00, 0x62, 0xB0), &answer.energy),
     ];
     let mut svg = String::new();
@@ -64,12 +71,21 @@ fn draw_map(area: &Area<'_>, terrain: &Terrain, series: &[Series<'_>]) -> Drawn<
         .y_label_area_size(46)
         .caption("Minnesota, 1 m lidar: shaded relief, north up", ("sans-serif", 16))
         .build_cartesian_2d(0.0..extent_m[0], 0.0..extent_m[1])?;
-    chart.configure_mesh().disable_mesh().x_desc("metres east").y_desc("metres north").draw()?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .x_label_formatter(&whole)
+        .y_label_formatter(&whole)
+        .x_desc("metres east")
+        .y_desc("metres north")
+        .draw()?;
     let local = |p: &PoseAnswer| (p.x_m - grid.origin_m[0], p.y_m - grid.origin_m[1]);
-    for (_, color, plan) in series {
-        let line: Vec<(f64, f64)> = plan.poses.iter().map(local).collect();
-        chart.draw_series(LineSeries::new(line.clone(), WHITE.mix(0.85).stroke_width(6)))?;
-        chart.draw_series(LineSeries::new(line, color.stroke_width(3)))?;
+    let line = |plan: &PlanAnswer| plan.poses.iter().map(local).collect::<Vec<(f64, f64)>>();
+    for (_, _, plan) in series {
+        chart.draw_series(LineSeries::new(line(plan), WHITE.mix(0.85).stroke_width(6)))?;
+    }
+    for (name, color, plan) in series {
+        draw_line(&mut chart, name, line(plan), color.stroke_width(3))?;
     }
     if let (Some(first), Some(last)) = (series[2].2.poses.first(), series[2].2.poses.last()) {
         for (pose, name) in [(first, "start"), (last, "goal")] {
@@ -83,7 +99,18 @@ fn draw_map(area: &Area<'_>, terrain: &Terrain, series: &[Series<'_>]) -> Drawn<
     Ok((x.start, y.start, x.end - x.start, y.end - y.start))
 }
 
-fn draw_legend(area: &Area<'_>, answer: &CompareAnswer, series: &[Series<'_>]) -> Drawn<()> {
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+fn draw_line(chart: &mut Chart<'_, '_>, name: &str, line: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn<()> {
+    if name == FASTEST {
+        chart.draw_series(DashedLineSeries::new(line, 9, 9, style))?;
+    } else {
+        chart.draw_series(LineSeries::new(line, style))?;
+    }
+    Ok(())
+}
+
+fn draw_legend(area: &Area<'_>, answer: &CompareAnswer, series: &[Series<'_>; 3]) -> Drawn<()> {
     let title = ("sans-serif", 22).into_font().style(FontStyle::Bold).color(&BLACK);
     let headline = format!("{:.0} % less energy", 100.0 * answer.saving_fraction);
     area.draw_text(&headline, &title, (18, 40))?;
@@ -96,9 +123,13 @@ fn draw_legend(area: &Area<'_>, answer: &CompareAnswer, series: &[Series<'_>]) -
     for (i, line) in lines.iter().enumerate() {
         area.draw_text(line, &text, (18, 72 + 20 * i as i32))?;
     }
-    for (i, (name, color, plan)) in series.iter().rev().enumerate() {
+    let [shortest, fastest, energy] = series;
+    for (i, (name, color, plan)) in [energy, shortest, fastest].into_iter().enumerate() {
         let top = 150 + 165 * i as i32;
-        area.draw(&Rectangle::new([(18, top + 4), (46, top + 12)], color.filled()))?;
+        let dash = if *name == FASTEST { 12 } else { 28 };
+        for left in (18..46).step_by(16).take(if dash < 28 { 2 } else { 1 }) {
+            area.draw(&Rectangle::new([(left, top + 5), (left + dash, top + 11)], color.filled()))?;
+        }
         let name_style = ("sans-serif", 18).into_font().style(FontStyle::Bold).color(color);
         area.draw_text(name, &name_style, (56, top - 2))?;
         let [low, high] = plan.energy_interval_j.map(|j| j / 1e3);
@@ -115,6 +146,9 @@ fn draw_legend(area: &Area<'_>, answer: &CompareAnswer, series: &[Series<'_>]) -
     Ok(())
 }
 
+/// A path's name, its colour and a quantity along it.
+type Profile<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
+
 /// A quantity against the distance along each path, as means over stretches.
 fn draw_profile(
     area: &Area<'_>,
@@ -122,26 +156,39 @@ fn draw_profile(
     series: &[Series<'_>],
     value: impl Fn(&PoseAnswer) -> f64,
 ) -> Drawn<()> {
-    let lines: Vec<(RGBColor, Vec<(f64, f64)>)> =
-        series.iter().map(|(_, color, plan)| (*color, stretches(&plan.poses, &value))).collect();
-    let points = || lines.iter().flat_map(|(_, line)| line);
+    let lines: Vec<Profile<'_>> =
+        series.iter().map(|(name, color, plan)| (*name, *color, stretches(&plan.poses, &value))).collect();
+    let points = || lines.iter().flat_map(|(_, _, line)| line);
     let longest_m = points().map(|p| p.0).fold(1.0, f64::max);
     let (low, high) = points().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p.1), h.max(p.1)));
     let room = (high - low).max(1e-3) * 0.06;
     let mut chart = ChartBuilder::on(area)
         .margin(12)
+        .margin_right(30)
         .x_label_area_size(34)
         .y_label_area_size(46)
         .caption(caption, ("sans-serif", 16))
         .build_cartesian_2d(0.0..longest_m, low - room..high + room)?;
-    chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("metres along the path").draw()?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_label_formatter(&whole)
+        .y_label_formatter(&whole)
+        .y_labels(6)
+        .x_desc("metres along the path")
+        .draw()?;
     if low < 0.0 && high > 0.0 {
         chart.draw_series(LineSeries::new([(0.0, 0.0), (longest_m, 0.0)], BLACK.mix(0.6)))?;
     }
-    for (color, line) in lines {
-        chart.draw_series(LineSeries::new(line, color.stroke_width(2)))?;
+    for (name, color, line) in lines {
+        draw_line(&mut chart, name, line, color.stroke_width(2))?;
     }
     Ok(())
+}
+
+fn whole(value: &f64) -> String {
+    format!("{value:.0}")
 }
 
 /// Length over which a profile is averaged [m].

@@ -2,6 +2,8 @@
 //!
 //!     cargo run --release -p joulepath-model --example paper_tables [-- FIGURE.svg]
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::error::Error;
 
 use plotters::prelude::*;
@@ -74,6 +76,7 @@ fn draw(path: &str, rows: &[Row], fits: &[SpeedFit]) -> Result<(), Box<dyn Error
     chart
         .configure_mesh()
         .disable_y_mesh()
+        .light_line_style(TRANSPARENT)
         .y_labels(rows.len())
         .y_label_formatter(&|y| names.get(y.round() as usize).map_or(String::new(), |n| (*n).to_owned()))
         .x_desc("side force / (m g)")
@@ -86,7 +89,12 @@ fn draw(path: &str, rows: &[Row], fits: &[SpeedFit]) -> Result<(), Box<dyn Error
         .draw_series(model)?
         .label("model")
         .legend(|(x, y)| TriangleMarker::new((x + 8, y), 6, MODEL.filled()));
-    chart.configure_series_labels().background_style(WHITE).border_style(BLACK.mix(0.3)).draw()?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerRight)
+        .background_style(WHITE)
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
 
     let mut chart = ChartBuilder::on(&right)
         .caption("Eq. 16 fitted per speed (as Fig. 13)", ("sans-serif", 17))
@@ -94,7 +102,7 @@ fn draw(path: &str, rows: &[Row], fits: &[SpeedFit]) -> Result<(), Box<dyn Error
         .x_label_area_size(34)
         .y_label_area_size(44)
         .build_cartesian_2d(0.0f64..1.0, 0.0f64..0.5)?;
-    chart.configure_mesh().x_desc("speed [m/s]").draw()?;
+    chart.configure_mesh().light_line_style(TRANSPARENT).x_desc("speed [m/s]").draw()?;
     let series = [
         ("mu_R", PAPER, fits.iter().map(|f| (f.speed_mps, f.mu_roll)).collect::<Vec<_>>()),
         ("mu_S", MODEL, fits.iter().map(|f| (f.speed_mps, f.mu_skid)).collect::<Vec<_>>()),
@@ -105,7 +113,12 @@ fn draw(path: &str, rows: &[Row], fits: &[SpeedFit]) -> Result<(), Box<dyn Error
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color.stroke_width(2)));
     }
-    chart.configure_series_labels().background_style(WHITE).border_style(BLACK.mix(0.3)).draw()?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE)
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
     area.present()?;
     Ok(())
 }

@@ -1,5 +1,7 @@
 //! Each formula restated once with dimensioned quantities, so that the compiler checks its units.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use approx::assert_relative_eq;
 use model::{
     Acceleration, Attitude, FrictionForces, Manoeuvre, Motion, PowerModel, STANDARD_GRAVITY_MPS2, Sides,
@@ -72,7 +74,7 @@ fn eq_11_divides_speed_by_yaw_rate() {
     let robot = builtin::husky_a200();
     let speed = Velocity::new::<meter_per_second>(0.6);
     let yaw = AngularVelocity::new::<radian_per_second>(0.4);
-    let radius: Length = (speed / yaw).into();
+    let radius: Length = speed / yaw;
     assert_relative_eq!(
         Motion::of_body(&robot, 0.6, 0.4).turning_radius_m(),
         radius.get::<meter>(),

@@ -1,5 +1,7 @@
 //! The claims that the power model stands on, each tested against the paper or against energy itself.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use approx::assert_relative_eq;
 use model::{
     Attitude, Motion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides, builtin,

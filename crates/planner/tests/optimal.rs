@@ -1,5 +1,7 @@
 //! The planner's paths are the best there are, by other people's algorithms on the explicit graph.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use petgraph::{
     algo::{bellman_ford, dijkstra},
     graph::NodeIndex,

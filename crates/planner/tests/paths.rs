@@ -1,5 +1,7 @@
 //! What every answer must satisfy, whatever the map.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use approx::assert_relative_eq;
 use model::{Attitude, Motion, PowerModel, Sides, builtin, power};
 use planner::{

@@ -1,5 +1,7 @@
 //! Questions without an answer are refused by name, with the place and the reason.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::time::{Duration, Instant};
 
 use model::builtin;

@@ -1,5 +1,7 @@
 //! The shipped maps are what they claim to be, and GeoTIFFs of every kind are read or refused by name.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use std::{io::Cursor, path::PathBuf};
 
 use terrain::{Cell, Error, Terrain, io, synthetic};

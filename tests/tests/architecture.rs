@@ -1,0 +1,58 @@
+//! The arrows between the crates point one way, and what must be absent is absent.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+
+use cargo_metadata::{DependencyKind, MetadataCommand};
+use joulepath_tests::file;
+
+/// Direct dependencies of each crate on others of the workspace, tests and examples aside.
+fn arrows() -> BTreeMap<String, Vec<String>> {
+    let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
+    let names: Vec<String> = metadata.packages.iter().map(|p| p.name.to_string()).collect();
+    metadata
+        .packages
+        .iter()
+        .map(|package| {
+            let needs = package.dependencies.iter().filter(|d| d.kind == DependencyKind::Normal);
+            let inside = needs.map(|d| d.name.clone()).filter(|name| names.contains(name)).collect();
+            (package.name.to_string(), inside)
+        })
+        .collect()
+}
+
+#[test]
+fn arrows_only_point_up_the_list_of_crates() {
+    let order =
+        ["joulepath-model", "joulepath-terrain", "joulepath-planner", "joulepath-service", "joulepath"];
+    for (package, needs) in arrows() {
+        if package == "joulepath-tests" {
+            assert!(needs.is_empty(), "the black-box tests know no crate: {needs:?}");
+            continue;
+        }
+        let rank = |name: &str| order.iter().position(|o| *o == name).unwrap();
+        for need in needs {
+            assert!(rank(&need) < rank(&package), "{package} must not need {need}");
+        }
+    }
+}
+
+#[test]
+fn the_model_and_the_terrain_know_nothing_of_each_other() {
+    let arrows = arrows();
+    assert!(arrows["joulepath-model"].is_empty());
+    assert!(arrows["joulepath-terrain"].is_empty());
+}
+
+#[test]
+fn nothing_below_the_service_is_async_or_speaks_http() {
+    let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
+    for package in metadata.packages {
+        let below =
+            ["joulepath-model", "joulepath-terrain", "joulepath-planner"].contains(&package.name.as_str());
+        let banned = ["tokio", "axum", "hyper", "tower", "reqwest", "ureq"];
+        let has = package.dependencies.iter().find(|d| banned.contains(&d.name.as_str()));
+        assert!(!below || has.is_none(), "{} needs {:?}", package.name, has.map(|d| &d.name));
+    }
+}

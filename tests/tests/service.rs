@@ -1,0 +1,288 @@
+//! The running service, from outside: maps and goals in, paths and problem documents out.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::{
+    io::{Read, Write},
+    net::TcpStream,
+};
+
+use joulepath_tests::{Answer, Server, file};
+use serde_json::{Value, json};
+
+fn slope_map(rows: usize, columns: usize) -> Value {
+    let row = |r: usize| (0..columns).map(|c| 0.05 * c as f64 + 0.02 * r as f64).collect::<Vec<_>>();
+    json!({ "cell_size_m": 1.0, "rows": rows, "columns": columns, "elevation_m": (0..rows).map(row).collect::<Vec<_>>() })
+}
+
+fn question() -> Value {
+    json!({
+        "map": slope_map(12, 20), "robot": "husky-a200",
+        "start": { "x_m": 2.5, "y_m": 2.5, "heading_rad": 0.0 }, "goal": { "x_m": 16.5, "y_m": 9.5 }
+    })
+}
+
+/// The question with one value replaced or, where the value is null, one field removed.
+fn question_with(pointer: &str, value: Value) -> Value {
+    let mut question = question();
+    let (parent, field) = pointer.rsplit_once('/').unwrap();
+    let parent = question.pointer_mut(parent).unwrap().as_object_mut().unwrap();
+    match value {
+        Value::Null => parent.remove(field),
+        value => parent.insert(field.to_owned(), value),
+    };
+    question
+}
+
+fn assert_problem(answer: &Answer, status: u16, kind: &str) -> Value {
+    assert_eq!(answer.status, status, "{}", answer.text);
+    assert_eq!(answer.content_type, "application/problem+json", "{}", answer.text);
+    let problem = answer.json();
+    assert_eq!(problem["type"], kind, "{problem}");
+    assert_eq!(problem["status"], status);
+    assert!(
+        problem["title"].is_string() && problem["detail"].as_str().is_some_and(|d| d.len() > 10),
+        "{problem}"
+    );
+    problem
+}
+
+#[test]
+fn a_map_and_a_goal_give_a_path_with_every_field_of_the_contract() {
+    let server = Server::start();
+    let answer = server.post_json("/v1/plan", &question());
+    assert_eq!(answer.status, 200, "{}", answer.text);
+    assert!(answer.request_id.is_some());
+    let plan = answer.json();
+    for field in ["energy_j", "duration_s", "distance_m", "climb_m", "descent_m", "recovered_j"] {
+        assert!(plan[field].is_f64(), "{field} is {}", plan[field]);
+    }
+    let (low, high) =
+        (plan["energy_interval_j"][0].as_f64().unwrap(), plan["energy_interval_j"][1].as_f64().unwrap());
+    assert!(low < plan["energy_j"].as_f64().unwrap() && plan["energy_j"].as_f64().unwrap() < high);
+    assert_eq!(plan["search"]["optimal"], true);
+    let poses = plan["poses"].as_array().unwrap();
+    let (first, last) = (poses.first().unwrap(), poses.last().unwrap());
+    for field in [
+        "x_m",
+        "y_m",
+        "z_m",
+        "heading_rad",
+        "t_s",
+        "distance_m",
+        "energy_j",
+        "power_w",
+        "pitch_rad",
+        "radius_m",
+    ] {
+        assert!(last.get(field).is_some(), "poses have no {field}");
+    }
+    assert_eq!((first["x_m"].as_f64(), first["y_m"].as_f64()), (Some(2.5), Some(2.5)));
+    assert_eq!((last["x_m"].as_f64(), last["y_m"].as_f64()), (Some(16.5), Some(9.5)));
+    assert_eq!(last["energy_j"], plan["energy_j"]);
+}
+
+#[test]
+fn a_stored_map_plans_like_the_same_map_inline_and_is_forgotten_when_deleted() {
+    let server = Server::start();
+    let stored = server.post_json("/v1/maps", &slope_map(12, 20));
+    assert_eq!(stored.status, 201, "{}", stored.text);
+    let id = stored.json()["id"].as_str().unwrap().to_owned();
+    assert_eq!(
+        server.post_json("/v1/maps", &slope_map(12, 20)).status,
+        200,
+        "the same map is at hand already"
+    );
+    assert_eq!(server.get("/v1/maps").json()["maps"][0]["id"], id.as_str());
+    assert_eq!(server.get(&format!("/v1/maps/{id}")).json()["columns"], 20);
+
+    let inline = server.post_json("/v1/plan", &question()).json();
+    let mut by_id = question_with("/map", Value::Null);
+    by_id["map_id"] = json!(id);
+    let by_id = server.post_json("/v1/plan", &by_id).json();
+    assert_eq!(by_id["energy_j"], inline["energy_j"]);
+    assert_eq!(by_id["poses"], inline["poses"]);
+
+    assert_eq!(server.delete(&format!("/v1/maps/{id}")).status, 204);
+    assert_problem(&server.get(&format!("/v1/maps/{id}")), 404, "unknown-map");
+}
+
+#[test]
+fn the_same_ground_as_json_ascii_and_geotiff_has_a_path() {
+    let server = Server::start();
+    let ascii = "ncols 12\nnrows 8\nxllcorner 0\nyllcorner 0\ncellsize 1\n".to_owned() + &"1.5 ".repeat(96);
+    assert_eq!(server.post("/v1/maps", "text/plain", ascii.as_bytes()).status, 201);
+    let tiff = std::fs::read(file("maps/minnesota.tif")).unwrap();
+    let stored = server.post("/v1/maps", "image/tiff", &tiff).json();
+    assert_eq!((&stored["rows"], &stored["columns"]), (&json!(400), &json!(400)));
+    let yard = std::fs::read(file("maps/yard.json")).unwrap();
+    let yard = server.post("/v1/maps", "application/json", &yard).json();
+    assert_eq!(yard["surfaces"], json!(["sandy_loam", "marble"]));
+    let across = json!({
+        "map_id": yard["id"], "robot": "husky-a200",
+        "start": { "x_m": 4.0, "y_m": 8.0 }, "goal": { "x_m": 20.0, "y_m": 12.0, "tolerance_m": 0.5 }
+    });
+    assert_eq!(server.post_json("/v1/plan", &across).status, 200);
+}
+
+#[test]
+fn the_comparison_of_the_real_map_saves_energy_and_stays_under_300_mb() {
+    let server = Server::start();
+    let tiff = std::fs::read(file("maps/minnesota.tif")).unwrap();
+    let id = server.post("/v1/maps", "image/tiff", &tiff).json()["id"].clone();
+    let question = json!({
+        "map_id": id, "robot": "husky-a200",
+        "start": { "x_m": 429290.0, "y_m": 5150530.0 }, "goal": { "x_m": 429600.0, "y_m": 5150830.0 }
+    });
+    let answer = server.post_json("/v1/compare", &question).json();
+    let energy = |path: &str| answer[path]["energy_j"].as_f64().unwrap();
+    assert!(energy("energy") < energy("distance") && energy("energy") < energy("time"));
+    let saving = answer["saving_fraction"].as_f64().unwrap();
+    assert!((saving - (1.0 - energy("energy") / energy("distance"))).abs() < 1e-12);
+    let length = |path: &str| answer[path]["distance_m"].as_f64().unwrap();
+    assert!(length("distance") <= length("energy") && length("distance") <= length("time") + 0.1);
+    if let Some(bytes) = server.peak_memory_bytes() {
+        assert!(bytes < 300_000_000, "{bytes} bytes");
+    }
+}
+
+#[test]
+fn a_path_comes_as_geojson_when_asked_for() {
+    let server = Server::start();
+    let agent = ureq::Agent::new_with_defaults();
+    let mut response = agent
+        .post(format!("{}/v1/plan", server.url))
+        .header("accept", "application/geo+json")
+        .send_json(question())
+        .unwrap();
+    assert_eq!(response.headers()["content-type"], "application/geo+json");
+    let geojson: Value = response.body_mut().read_json().unwrap();
+    assert_eq!(geojson["features"][0]["geometry"]["type"], "LineString");
+    assert_eq!(geojson["features"][0]["geometry"]["coordinates"][0][0], 2.5);
+}
+
+#[test]
+fn robots_are_listed_and_read_by_name_and_one_of_them_may_be_posted_back() {
+    let server = Server::start();
+    let robots = server.get("/v1/robots").json();
+    let names: Vec<&str> =
+        robots["robots"].as_array().unwrap().iter().map(|r| r["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["husky-a200", "husky-a200-a", "husky-a200-b", "husky-a200-c", "husky-a200-d"]);
+    let husky = server.get("/v1/robots/husky-a200").json();
+    let by_name = server.post_json("/v1/plan", &question()).json();
+    let in_full = server.post_json("/v1/plan", &question_with("/robot", husky)).json();
+    assert_eq!(in_full["energy_j"], by_name["energy_j"]);
+    assert_problem(&server.get("/v1/robots/jackal"), 404, "unknown-robot");
+}
+
+#[test]
+fn wrong_requests_are_refused_with_the_pointer_to_the_field() {
+    let server = Server::start();
+    let husky = server.get("/v1/robots/husky-a200").json();
+    let husky_with = |pointer: &str, value: Value| {
+        let mut robot = husky.clone();
+        *robot.pointer_mut(pointer).unwrap() = value;
+        robot
+    };
+    let ragged = json!({ "cell_size_m": 1, "rows": 2, "columns": 2, "elevation_m": [[0, 1], [2]] });
+    let with_surface = json!({ "cell_size_m": 1, "rows": 1, "columns": 2, "elevation_m": [[0, 1]], "surface": [["lava", "lava"]] });
+    for (pointer, value, status, kind, at) in [
+        ("/colour", json!("red"), 400, "invalid-request", "/colour"),
+        ("/start/x", json!(1), 400, "invalid-request", "/start/x"),
+        ("/start/x_m", json!("far"), 400, "invalid-request", "/start/x_m"),
+        ("/start/x_m", Value::Null, 400, "invalid-request", "/start"),
+        ("/objective", json!("beauty"), 400, "invalid-request", "/objective"),
+        ("/map/elevation_m", json!([["high"]]), 400, "invalid-request", "/map/elevation_m/0/0"),
+        ("/map", ragged, 400, "invalid-map", "/map/elevation_m/1"),
+        ("/map/cell_size_m", json!(-1), 400, "invalid-map", "/map/cell_size_m"),
+        ("/map/rows", json!(0), 400, "invalid-map", "/map/rows"),
+        ("/map/elevation_m/0/3", json!(123_456), 400, "invalid-map", "/map/elevation_m/0/3"),
+        ("/map/rows", json!(4_000_000_000u64), 413, "too-large", "/map/rows"),
+        ("/map", Value::Null, 400, "invalid-request", "/map"),
+        ("/map_id", json!("abc"), 400, "invalid-request", "/map_id"),
+        ("/robot", json!("jackal"), 404, "unknown-robot", "/robot"),
+        ("/robot", json!(7), 400, "invalid-request", "/robot"),
+        ("/robot", husky_with("/wheelbase_m", json!(5400)), 400, "invalid-robot", "/robot/wheelbase_m"),
+        (
+            "/robot",
+            husky_with("/motors/left/k2", json!("x")),
+            400,
+            "invalid-request",
+            "/robot/motors/left/k2",
+        ),
+        (
+            "/robot",
+            husky_with("/default_surface", json!("ice")),
+            400,
+            "invalid-robot",
+            "/robot/default_surface",
+        ),
+        ("/map", with_surface, 422, "unknown-surface", "/robot/surfaces"),
+        ("/start/x_m", json!(-5), 422, "start-outside-map", "/start"),
+        ("/goal/y_m", json!(500), 422, "goal-outside-map", "/goal"),
+        ("/start/x_m", json!(0.2), 422, "start-blocked", "/start"),
+        ("/speed_mps", json!(40), 400, "invalid-request", "/speed_mps"),
+        ("/goal/tolerance_m", json!(-1), 400, "invalid-request", "/goal/tolerance_m"),
+        ("/snap_radius_m", json!(-1), 400, "invalid-request", "/snap_radius_m"),
+    ] {
+        let mut body = if pointer.matches('/').count() > 2 {
+            let mut body = question();
+            *body.pointer_mut(pointer).unwrap() = value;
+            body
+        } else {
+            question_with(pointer, value)
+        };
+        if kind == "start-blocked" {
+            body["snap_radius_m"] = json!(0);
+            body["start"]["y_m"] = json!(0.2);
+            body["start"]["heading_rad"] = json!(0.785);
+        }
+        let problem = assert_problem(&server.post_json("/v1/plan", &body), status, kind);
+        assert_eq!(problem["errors"][0]["pointer"], at, "{problem}");
+    }
+}
+
+#[test]
+fn a_wall_leaves_no_path_and_says_where() {
+    let server = Server::start();
+    let mut map = slope_map(12, 20);
+    let wall = |_| (0..20).map(|c| c == 9).collect::<Vec<bool>>();
+    map["obstacle"] = json!((0..12).map(wall).collect::<Vec<_>>());
+    let answer = server.post_json("/v1/plan", &question_with("/map", map));
+    let problem = assert_problem(&answer, 422, "no-path");
+    assert!(problem["detail"].as_str().unwrap().contains("wall"), "{problem}");
+}
+
+#[test]
+fn everything_else_that_fails_is_a_problem_document_too() {
+    let server = Server::start();
+    assert_problem(&server.get("/v2/nothing"), 404, "not-found");
+    assert_problem(&server.get("/v1/plan"), 405, "method-not-allowed");
+    assert_problem(&server.post("/v1/plan", "text/html", b"<p>"), 415, "unsupported-media-type");
+    assert_problem(&server.post("/v1/maps", "image/png", b"x"), 415, "unsupported-media-type");
+    assert_problem(&server.post("/v1/plan", "application/json", b"{\"map\": "), 400, "invalid-request");
+    assert_problem(&server.post("/v1/plan", "application/json", b"\xff\xfe"), 400, "invalid-request");
+    let whole = std::fs::read(file("maps/minnesota.tif")).unwrap();
+    assert_problem(&server.post("/v1/maps", "image/tiff", &whole[..5000]), 400, "invalid-map");
+    assert_problem(&server.post("/v1/maps", "text/plain", b"ncols 3\n"), 400, "invalid-map");
+    assert_eq!(server.get("/v1/maps").json()["maps"], json!([]), "nothing half-done remains");
+    assert_eq!(server.get("/healthz").json()["status"], "ok");
+}
+
+#[test]
+fn a_body_over_the_limit_is_refused_before_it_is_sent() {
+    let server = Server::start();
+    let mut stream = TcpStream::connect(server.url.trim_start_matches("http://")).unwrap();
+    let head = "POST /v1/maps HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 99999999\r\nconnection: close\r\n\r\n";
+    stream.write_all(head.as_bytes()).unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 413"), "{answer}");
+    assert!(answer.contains("application/problem+json") && answer.contains("too-large"), "{answer}");
+}
+
+#[test]
+fn the_description_lists_what_the_service_does() {
+    let server = Server::start();
+    insta::assert_json_snapshot!("openapi", server.get("/openapi.json").json());
+}
