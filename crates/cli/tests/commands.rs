@@ -100,9 +100,9 @@ fn no_path_ends_with_3() {
     let folder = std::env::temp_dir().join(format!("joulepath-wall-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let map = folder.join("wall.json");
-    let row = |value: &str| format!("[{}]", vec![value; 9].join(","));
+    let row = |value: &str| format!("[{}]", [value; 9].join(","));
     let walled = "[false,false,false,false,true,false,false,false,false]";
-    let rows = |row: &str| vec![row; 9].join(",");
+    let rows = |row: &str| [row; 9].join(",");
     let document = format!(
         r#"{{"cell_size_m": 1, "rows": 9, "columns": 9, "elevation_m": [{}], "obstacle": [{}]}}"#,
         rows(&row("0")),

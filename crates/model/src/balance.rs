@@ -21,8 +21,10 @@ pub struct FrictionForces {
 impl FrictionForces {
     /// Balances rolling and skid resistance for a motion.
     ///
-    ///     F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)                       + m g sinγ sinβ + m dv/dt
-    ///     (F_r − F_l) b/2 = M_skid + N c μ_R (n_r s_r − n_l s_l) b/2           + I dω/dt
+    /// ```text
+    /// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)                       + m g sinγ sinβ + m dv/dt
+    /// (F_r − F_l) b/2 = M_skid + N c μ_R (n_r s_r − n_l s_l) b/2           + I dω/dt
+    /// ```
     ///
     /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
     pub fn new(robot: &Robot, surface: &Surface, motion: &Motion) -> Self {

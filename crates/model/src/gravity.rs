@@ -28,7 +28,9 @@ impl Attitude {
 
     /// The attitude on a plane of inclination γ, heading at angle β from the contour line (Fig. 1).
     ///
-    ///     sin(pitch) = sin γ sin β,   cos γ = cos(pitch) cos(roll)
+    /// ```text
+    /// sin(pitch) = sin γ sin β,   cos γ = cos(pitch) cos(roll)
+    /// ```
     pub fn on_plane(inclination_rad: f64, heading_from_contour_rad: f64) -> Self {
         let pitch_rad = (inclination_rad.sin() * heading_from_contour_rad.sin()).asin();
         let roll_rad = (inclination_rad.cos() / pitch_rad.cos()).min(1.0).acos();

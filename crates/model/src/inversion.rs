@@ -49,7 +49,9 @@ impl SideOnSlope {
 
     /// Eq. 6 [W].
     ///
-    ///     P = μ² k1 m² g² cos²γ ± μ (2 m g k1 sinγ sinβ + w k2) m g cosγ + m g sinγ sinβ (m g k1 sinγ sinβ + w k2)
+    /// ```text
+    /// P = μ² k1 m² g² cos²γ ± μ (2 m g k1 sinγ sinβ + w k2) m g cosγ + m g sinγ sinβ (m g k1 sinγ sinβ + w k2)
+    /// ```
     ///
     /// Dogru & Marques (2018), eq. 6.
     pub fn power_w(&self, friction: f64, sign: SlopeSign) -> f64 {

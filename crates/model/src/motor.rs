@@ -14,8 +14,10 @@ pub struct WarmMotor {
 impl Motor {
     /// The constants at a motor temperature.
     ///
-    ///     k1(T) = k1 (1 + α_R (T − T0)) (1 + α_M (T − T0))⁻²
-    ///     k2(T) = k2 (1 + α_M (T − T0))⁻²
+    /// ```text
+    /// k1(T) = k1 (1 + α_R (T − T0)) (1 + α_M (T − T0))⁻²
+    /// k2(T) = k2 (1 + α_M (T − T0))⁻²
+    /// ```
     ///
     /// Dogru & Marques (2018), eqs. 7-10. Holds for moderate rises: the paper finds it good below 65 °C.
     /// k2 stays at least 1, since no gear train delivers more than it takes.
@@ -30,10 +32,12 @@ impl Motor {
 impl WarmMotor {
     /// Electrical power of one side [W].
     ///
-    ///     P = k1 F² + k2 u F        driving, u F ≥ 0 (eq. 2)
-    ///     P = k1 F² + r u F / k2    back-driven, u F < 0
+    /// ```text
+    /// P = k1 F² + k2 u F        driving, u F ≥ 0 (eq. 2)
+    /// P = k1 F² + r u F / k2    back-driven, u F < 0
+    /// ```
     ///
-    /// F wheel force of the side \[N\], u rim speed \[m/s\], r fraction of the back-driven power that reaches the bus.
+    /// F wheel force of the side [N], u rim speed [m/s], r fraction of the back-driven power that reaches the bus.
     /// Back-driven, the same gears lose on the way back, so k2 divides; a cycle can then never create energy.
     pub fn power_w(&self, force_n: f64, rim_speed_mps: f64, regeneration: f64) -> f64 {
         let mechanical_w = force_n * rim_speed_mps;

@@ -64,10 +64,12 @@ fn left_side_is_outer(motion: &Motion) -> bool {
 
 /// The friction coefficient of a turning robot, eq. 16 (eq. 15 when `correction` is 1).
 ///
-///     μ = (R0 + δy)/(R0 + b/2) · c · μ_R + 2a (1/4 − (δx/a)²)/(R0 + b/2) · μ_S
+/// ```text
+/// μ = (R0 + δy)/(R0 + b/2) · c · μ_R + 2a (1/4 − (δx/a)²)/(R0 + b/2) · μ_S
+/// ```
 ///
-/// R0 distance from the geometric centre to the instantaneous centre \[m\], δy offset of the centre of mass
-/// towards the outer wheels \[m\], c the correction of eq. 16. Force of the outer side over m g cos γ.
+/// R0 distance from the geometric centre to the instantaneous centre [m], δy offset of the centre of mass
+/// towards the outer wheels [m], c the correction of eq. 16. Force of the outer side over m g cos γ.
 pub fn turning_friction(
     robot: &Robot,
     radius_m: f64,

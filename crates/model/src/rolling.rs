@@ -18,7 +18,9 @@ pub fn direction(rim_speed_mps: f64) -> f64 {
 
 /// How much easier the wheels roll when the centre of mass is off the middle.
 ///
-///     c = √( ((a/2 − |δx|)² + (b/2)²) / ((a/2)² + (b/2)²) )
+/// ```text
+/// c = √( ((a/2 − |δx|)² + (b/2)²) / ((a/2)² + (b/2)²) )
+/// ```
 ///
 /// a wheelbase, b track, δx forward offset of the centre of mass [m]. Dogru & Marques (2018), eq. 16, where it
 /// multiplies μ_R; found by experiment there, for |δx| ≤ 0.11 m on a base of 0.54 m.

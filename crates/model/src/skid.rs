@@ -4,8 +4,10 @@ use crate::{Robot, robot::Surface};
 
 /// Moment that skid sets against the turn, per newton of normal load [m].
 ///
-///     M_skid / N = sgn(ω) Σ_i |x_i − δx| · n_i · μ_S · tanh(α_i / α_s),   α_i = atan2(|vy_i|, |vx_i|)
-///     vx_i = v − ω y_i,   vy_i = ω (x_i − δx)
+/// ```text
+/// M_skid / N = sgn(ω) Σ_i |x_i − δx| · n_i · μ_S · tanh(α_i / α_s),   α_i = atan2(|vy_i|, |vx_i|)
+/// vx_i = v − ω y_i,   vy_i = ω (x_i − δx)
+/// ```
 ///
 /// Wheels at (±a/2, ±b/2), n_i the load share of eq. 14, α_i the slip angle. The instantaneous centre lies
 /// abreast of the centre of mass, as eq. 15 assumes, so the lever arms start there. α_s → 0 is the paper's

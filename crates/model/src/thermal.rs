@@ -4,8 +4,10 @@ use crate::{Robot, Sides, motor::WarmMotor, power::Power};
 
 /// Heat stores and paths of one motor with its gearbox.
 ///
-///     C_w dT_w/dt = k1 F² − (T_w − T_c)/R_wc
-///     C_c dT_c/dt = (T_w − T_c)/R_wc + gear loss − (T_c − T_a)/R_ca
+/// ```text
+/// C_w dT_w/dt = k1 F² − (T_w − T_c)/R_wc
+/// C_c dT_c/dt = (T_w − T_c)/R_wc + gear loss − (T_c − T_a)/R_ca
+/// ```
 ///
 /// Copper loss heats the winding, gear loss `|P_el − k1 F² − P_mech|` the case. The case is what the paper's
 /// thermistors measured.

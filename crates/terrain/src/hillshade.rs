@@ -4,7 +4,9 @@ use crate::{SlopeMap, Terrain};
 
 /// Brightness of each cell under one lamp, row-major, southernmost row first; 0 where unknown.
 ///
-///     brightness = 255 · max(0, (sin h − (p sin az + q cos az) cos h) / √(1 + p² + q²))
+/// ```text
+/// brightness = 255 · max(0, (sin h − (p sin az + q cos az) cos h) / √(1 + p² + q²))
+/// ```
 ///
 /// p, q gradient east and north times `exaggeration`, az azimuth of the lamp clockwise from north, h its height. Horn
 /// (1981), Proc. IEEE 69(1); the lamp stands in the north-west at 45°, as maps have it.

@@ -16,7 +16,9 @@ pub struct SlopeMap {
 impl SlopeMap {
     /// Gradients by the weighted differences of the eight neighbours.
     ///
-    ///     ∂z/∂x = ((ne + 2e + se) − (nw + 2w + sw)) / (8 d),   ∂z/∂y likewise
+    /// ```text
+    /// ∂z/∂x = ((ne + 2e + se) − (nw + 2w + sw)) / (8 d),   ∂z/∂y likewise
+    /// ```
     ///
     /// d cell size [m]. Horn (1981), Hill shading and the reflectance map, Proc. IEEE 69(1). A neighbour that is
     /// unknown or outside counts as level with the cell; unknown cells have no gradient (NaN).
