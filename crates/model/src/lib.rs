@@ -13,6 +13,7 @@ mod error;
 pub mod fit;
 mod gravity;
 pub mod inversion;
+mod kernel;
 pub mod least_squares;
 mod motion;
 mod motor;
@@ -25,9 +26,9 @@ mod sides;
 pub mod skid;
 pub mod thermal;
 
-pub use balance::FrictionForces;
 pub use error::Error;
 pub use gravity::{Attitude, STANDARD_GRAVITY_MPS2};
+pub use kernel::{PowerKernel, Real};
 pub use motion::{Acceleration, Motion};
 pub use motor::WarmMotor;
 pub use power::{Manoeuvre, Power, PowerModel, power};

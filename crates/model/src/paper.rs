@@ -6,10 +6,8 @@
 
 use crate::{
     Robot, Sides,
-    gravity::STANDARD_GRAVITY_MPS2,
+    balance::SideForces,
     motion::Motion,
-    motor::WarmMotor,
-    power::Power,
     robot::{SpeedFriction, Surface},
     rolling,
 };
@@ -116,46 +114,19 @@ impl PaperForces {
         PaperForces { region, friction }
     }
 
-    /// Power of both sides by eq. 6, and of the bus.
+    /// Eqs. 3-5 for each side: friction along the way the wheel turns, and that side's part of gravity.
     ///
-    /// The side powers stay as printed. The bus takes at least what gravity asks for, `k2 m g sinγ sinβ v` uphill, and
-    /// returns at most what the descent holds, `r m g |sinγ sinβ| v / k2`. `grade` is (cos γ, sin γ sin β).
-    pub(crate) fn power(
-        &self,
-        robot: &Robot,
-        motion: &Motion,
-        motors: Sides<WarmMotor>,
-        grade: (f64, f64),
-        standing_w: f64,
-    ) -> Power {
-        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
-        let force_n = self.side_forces_n(weight_n, motion, grade);
-        let rims = force_n.zip(motion.rim_speeds_mps);
-        let side_w = rims.zip(motors).map(|((f, u), motor)| motor.printed_power_w(f, u));
-        let gravity_w = weight_n * grade.1 * motion.speed_mps;
-        let least_k2 = motors.left.k2.min(motors.right.k2);
-        let back = robot.motors.regeneration / least_k2;
-        let floor_w = gravity_w * if gravity_w >= 0.0 { least_k2 } else { back };
-        Power {
-            force_n,
-            mechanical_w: rims.map(|(f, u)| f * u),
-            side_w,
-            bus_w: side_w.sum().max(floor_w) + standing_w,
-        }
-    }
-
-    /// Eqs. 3-5 for each side: friction along the way the wheel turns, plus that side's part of gravity.
-    fn side_forces_n(&self, weight_n: f64, motion: &Motion, (normal, along): (f64, f64)) -> Sides<f64> {
-        let gravity_n = weight_n * along;
+    /// The side powers that follow are as printed. The bus takes at least what gravity asks for, `k2 m g sinγ sinβ v`
+    /// uphill, and returns at most what the descent holds, `r m g |sinγ sinβ| v / k2`.
+    pub(crate) fn side_forces(&self, motion: &Motion) -> SideForces {
         let gravity_share = match (self.region, left_side_is_outer(motion)) {
             (Region::OuterDrags, true) => Sides { left: 1.0, right: 0.0 },
             (Region::OuterDrags, false) => Sides { left: 0.0, right: 1.0 },
             _ => Sides::both(0.5),
         };
-        self.friction.zip(motion.rim_speeds_mps).zip(gravity_share).map(|((mu, u), share)| {
-            let way = if u == 0.0 { 0.0 } else { u.signum() };
-            mu * weight_n * normal * way + gravity_n * share
-        })
+        let way = motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { u.signum() });
+        let friction_per_load = self.friction.zip(way).map(|(mu, way)| mu * way);
+        SideForces { friction_per_load, gravity_share }
     }
 }
 
@@ -186,7 +157,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{Attitude, PowerModel, builtin, power, robot::PaperSurface};
+    use crate::{Attitude, PowerModel, STANDARD_GRAVITY_MPS2, builtin, power, robot::PaperSurface};
 
     #[test]
     fn regions_follow_the_rims() {

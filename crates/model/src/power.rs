@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Robot, Sides,
-    balance::FrictionForces,
-    gravity::Attitude,
+    Robot, Sides, balance,
+    gravity::{Attitude, STANDARD_GRAVITY_MPS2},
+    kernel::PowerKernel,
     motion::{Acceleration, Motion},
-    motor::WarmMotor,
     paper::PaperForces,
     robot::Surface,
 };
@@ -39,44 +38,61 @@ pub struct Power {
 
 /// One steady motion on one surface at one motor temperature, ready to be asked about any slope.
 #[derive(Clone, Copy, Debug)]
-pub struct Manoeuvre<'a> {
-    robot: &'a Robot,
+pub struct Manoeuvre {
     motion: Motion,
-    forces: Forces,
-    motors: Sides<WarmMotor>,
-    standing_w: f64,
+    kernel: PowerKernel<f64>,
+    mass_kg: f64,
+    /// I / b: force difference per yaw acceleration, halved between the sides [N s²].
+    turning_n_per_radps2: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Forces {
-    Balance(FrictionForces),
-    Paper(PaperForces),
-}
-
-impl<'a> Manoeuvre<'a> {
+impl Manoeuvre {
     /// Prepares the side forces of a motion.
     pub fn new(
         model: PowerModel,
-        robot: &'a Robot,
+        robot: &Robot,
         surface: &Surface,
         motion: Motion,
         motor_temperature_c: Sides<f64>,
     ) -> Self {
         let forces = match model {
-            PowerModel::ForceBalance => Forces::Balance(FrictionForces::new(robot, surface, &motion)),
-            PowerModel::DogruMarques => Forces::Paper(PaperForces::new(robot, surface, &motion)),
+            PowerModel::ForceBalance => balance::side_forces(robot, surface, &motion),
+            PowerModel::DogruMarques => PaperForces::new(robot, surface, &motion).side_forces(&motion),
         };
         let motors = robot
             .motor_sides()
             .zip(motor_temperature_c)
             .map(|(motor, temperature_c)| motor.at_temperature(&robot.motors, temperature_c));
-        let driving = motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { robot.drive_electronics_w });
-        Manoeuvre { robot, motion, forces, motors, standing_w: robot.hotel_power_w + driving.sum() }
+        let regeneration = robot.motors.regeneration;
+        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
+        let least_k2 = motors.left.k2.min(motors.right.k2);
+        let electronics =
+            motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { robot.drive_electronics_w });
+        let printed = model == PowerModel::DogruMarques;
+        let kernel = PowerKernel {
+            friction_n: forces.friction_per_load.map(|f| weight_n * f),
+            lifting_n: forces.gravity_share.map(|share| weight_n * share),
+            rim_speed_mps: motion.rim_speeds_mps,
+            k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
+            driving: motors.map(|m| m.k2),
+            driven: motors.map(|m| if printed { m.k2 } else { regeneration / m.k2 }),
+            lift_w: weight_n * motion.speed_mps,
+            floor: [least_k2, regeneration / least_k2],
+            slack_w: if printed { 0.0 } else { NO_FLOOR_W },
+            standing_w: robot.hotel_power_w + electronics.sum(),
+        };
+        let turning_n_per_radps2 = robot.yaw_inertia_kgm2 / robot.track_m;
+        Manoeuvre { motion, kernel, mass_kg: robot.mass_kg, turning_n_per_radps2 }
     }
 
     /// The motion this was prepared for.
     pub fn motion(&self) -> &Motion {
         &self.motion
+    }
+
+    /// The arithmetic of this motion, for evaluating many places at once.
+    pub fn kernel(&self) -> &PowerKernel<f64> {
+        &self.kernel
     }
 
     /// Power in steady motion on a slope.
@@ -92,25 +108,25 @@ impl<'a> Manoeuvre<'a> {
     /// Power where the shares of the weight across (cos γ) and along (sin γ sin β) the heading are known.
     #[inline]
     pub fn power_on_grade(&self, normal: f64, along: f64, acceleration: Acceleration) -> Power {
-        match &self.forces {
-            Forces::Balance(friction) => {
-                let force_n = friction.on_slope_n(self.robot, normal, along, acceleration);
-                let rims = force_n.zip(self.motion.rim_speeds_mps);
-                let r = self.robot.motors.regeneration;
-                let side_w = rims.zip(self.motors).map(|((f, u), motor)| motor.power_w(f, u, r));
-                Power {
-                    force_n,
-                    mechanical_w: rims.map(|(f, u)| f * u),
-                    side_w,
-                    bus_w: side_w.sum() + self.standing_w,
-                }
-            }
-            Forces::Paper(paper) => {
-                paper.power(self.robot, &self.motion, self.motors, (normal, along), self.standing_w)
-            }
+        let steady_n = self.kernel.forces_n(normal, along);
+        let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
+        let turning_n = self.turning_n_per_radps2 * acceleration.yaw_radps2;
+        let force_n = Sides {
+            left: steady_n.left + forward_n - turning_n,
+            right: steady_n.right + forward_n + turning_n,
+        };
+        let side_w = self.kernel.side_w(force_n);
+        Power {
+            force_n,
+            mechanical_w: force_n.zip(self.motion.rim_speeds_mps).map(|(f, u)| f * u),
+            side_w,
+            bus_w: self.kernel.bus_w(side_w, along),
         }
     }
 }
+
+/// Slack that takes the floor of the printed form out of play [W].
+const NO_FLOOR_W: f64 = 1e30;
 
 /// Electrical power of a robot at one instant.
 ///

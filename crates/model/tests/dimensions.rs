@@ -4,8 +4,8 @@
 
 use approx::assert_relative_eq;
 use model::{
-    Acceleration, Attitude, FrictionForces, Manoeuvre, Motion, PowerModel, STANDARD_GRAVITY_MPS2, Sides,
-    builtin, rolling, skid,
+    Acceleration, Attitude, Manoeuvre, Motion, PowerModel, STANDARD_GRAVITY_MPS2, Sides, builtin, rolling,
+    skid,
 };
 use uom::si::{
     acceleration::meter_per_second_squared,
@@ -25,13 +25,18 @@ fn gravity() -> LinearAcceleration {
 
 #[test]
 fn eq_2_adds_copper_loss_and_mechanical_power() {
-    let motor = builtin::husky_a200().motors.left.at_temperature(&builtin::husky_a200().motors, 20.0);
+    let robot = builtin::husky_a200();
+    let motor = robot.motors.left.at_temperature(&robot.motors, 20.0);
     let force = Force::new::<newton>(120.0);
     let speed = Velocity::new::<meter_per_second>(0.4);
     let k1 = Power::new::<watt>(motor.k1_w_per_n2) / Force::new::<newton>(1.0) / Force::new::<newton>(1.0);
     let k2 = Ratio::new::<ratio>(motor.k2);
     let power: Power = k1 * force * force + k2 * speed * force;
-    assert_relative_eq!(motor.power_w(120.0, 0.4, 1.0), power.get::<watt>(), epsilon = 1e-12);
+    let motion = Motion::of_body(&robot, 0.4, 0.0);
+    let marble = &robot.surfaces["marble"];
+    let straight = Manoeuvre::new(PowerModel::ForceBalance, &robot, marble, motion, Sides::both(20.0));
+    let side_w = straight.kernel().side_w(Sides::both(120.0)).left;
+    assert_relative_eq!(side_w, power.get::<watt>(), epsilon = 1e-12);
 }
 
 #[test]
@@ -39,9 +44,10 @@ fn eqs_4_and_5_make_forces_of_mass_and_slope() {
     let robot = builtin::husky_a200();
     let attitude = Attitude { pitch_rad: 0.2, roll_rad: 0.1 };
     let motion = Motion::of_body(&robot, 0.5, 0.0);
-    let friction = FrictionForces::new(&robot, &robot.surfaces["marble"], &motion);
+    let marble = &robot.surfaces["marble"];
+    let straight = Manoeuvre::new(PowerModel::ForceBalance, &robot, marble, motion, Sides::both(20.0));
     let acceleration = Acceleration { forward_mps2: 0.3, yaw_radps2: 0.0 };
-    let sides = friction.on_slope_n(&robot, attitude.weight_normal(), attitude.weight_along(), acceleration);
+    let sides = straight.power_accelerating(attitude, acceleration).force_n;
 
     let mass = Mass::new::<kilogram>(robot.mass_kg);
     let along: Force = mass * gravity() * Ratio::new::<ratio>(0.2f64.sin());

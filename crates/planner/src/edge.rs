@@ -74,8 +74,8 @@ impl Step {
 }
 
 /// One way to drive a motion, with everything prepared that does not depend on the cell it starts from.
-pub(crate) struct Chain<'a> {
-    pieces: Vec<PreparedPiece<'a>>,
+pub(crate) struct Chain {
+    pieces: Vec<PreparedPiece>,
     sweep: Vec<(i32, i32)>,
     /// Largest king's distance of a swept cell: with more clearance nothing can be touched.
     reach: u8,
@@ -85,9 +85,9 @@ pub(crate) struct Chain<'a> {
     reverse: bool,
 }
 
-struct PreparedPiece<'a> {
+struct PreparedPiece {
     /// One manoeuvre per surface.
-    manoeuvres: Vec<Manoeuvre<'a>>,
+    manoeuvres: Vec<Manoeuvre>,
     steps: Vec<PreparedStep>,
 }
 
@@ -116,15 +116,15 @@ const STEP_TURN_RAD: f64 = 0.4;
 /// Spacing of the poses whose footprints make up a sweep, in cells.
 const SWEEP_CELLS: f64 = 0.25;
 
-impl<'a> Chain<'a> {
+impl Chain {
     pub(crate) fn new(
         pieces: &[Piece],
         reverse: bool,
         footprint: &Footprint,
         cell_size_m: f64,
-        manoeuvres: &impl Fn(&Piece, bool) -> Vec<Manoeuvre<'a>>,
+        manoeuvres: &impl Fn(&Piece, bool) -> Vec<Manoeuvre>,
     ) -> Self {
-        let prepared: Vec<PreparedPiece<'a>> = pieces
+        let prepared: Vec<PreparedPiece> = pieces
             .iter()
             .map(|piece| PreparedPiece {
                 manoeuvres: manoeuvres(piece, reverse),
@@ -220,7 +220,7 @@ impl PreparedStep {
     #[inline]
     fn drive(
         &self,
-        manoeuvre: &Manoeuvre<'_>,
+        manoeuvre: &Manoeuvre,
         rise_m: f64,
         slope: (f64, f64),
         reverse: bool,

@@ -62,7 +62,7 @@ pub struct Lattice<'a> {
     /// Motions by start heading.
     pub motions: [Vec<Motion>; HEADINGS],
     pub(crate) limits: Limits,
-    chains: [Vec<Vec<Chain<'a>>>; HEADINGS],
+    chains: [Vec<Vec<Chain>>; HEADINGS],
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
 
@@ -78,7 +78,7 @@ impl<'a> Lattice<'a> {
         let motions = motions(robot, cell_size_m, settings.reverse);
         check_cells(robot, cell_size_m)?;
         let footprint = Footprint::of(robot);
-        let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre<'a>> {
+        let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre> {
             let motion = body_motion(robot, &settings, piece, reverse);
             let at = |surface| {
                 let temperature_c = Sides::both(settings.motor_temperature_c);
@@ -192,7 +192,7 @@ impl<'a> Lattice<'a> {
     }
 
     /// One way to drive a motion, step by step.
-    pub(crate) fn chain(&self, heading: Heading, motion: usize, variant: usize) -> &Chain<'a> {
+    pub(crate) fn chain(&self, heading: Heading, motion: usize, variant: usize) -> &Chain {
         &self.chains[heading.index()][motion][variant]
     }
 
