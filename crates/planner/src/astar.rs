@@ -1,15 +1,23 @@
 //! A* over the lattice.
 
-use std::{cmp::Reverse, collections::BinaryHeap, time::Instant};
+use std::time::Instant;
 
-use crate::{heading::HEADINGS, heuristic::GoalField, lattice::Lattice, ordered::Ordered, table::CostTable};
+use crate::{
+    cost::{FORBIDDEN, decode},
+    heading::{HEADINGS, Heading},
+    heuristic::{BUCKET_SHIFT, GoalField, UNREACHED},
+    lattice::{Lattice, State},
+    layout::{Layout, Shift},
+    queue::BucketQueue,
+    table::{CostTable, TILE_STATES},
+};
 
-/// What to search for: states by their position in dense storage.
+/// What to search for.
 pub struct Search<'s> {
     /// Where the robot may start.
-    pub starts: &'s [usize],
-    /// Where it may end, with the cost that is still to be added there.
-    pub goals: &'s [(usize, f64)],
+    pub starts: &'s [State],
+    /// Where it may end, with the cost that is still to be added there, in the objective's unit.
+    pub goals: &'s [(State, f64)],
     /// When to give up.
     pub deadline: Option<Instant>,
 }
@@ -17,12 +25,10 @@ pub struct Search<'s> {
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The best path: its cost, its start, and the motion taken at each state on the way.
+    /// The best path: its start and the motion taken at each state on the way.
     Found {
-        /// Sum of the costs, the goal's included.
-        cost: f64,
         /// The start that was best.
-        start: usize,
+        start: State,
         /// Motions in order.
         motions: Vec<usize>,
         /// States expanded.
@@ -39,84 +45,160 @@ pub enum Outcome {
 
 /// Expansions between two looks at the clock.
 const CLOCK_EVERY: u64 = 4096;
-const NO_MOTION: u8 = u8::MAX;
+
+/// Least cost found so far of every state, in tiles that exist once they are touched.
+struct Reached {
+    tiles: Vec<Option<Box<[u32]>>>,
+}
+
+impl Reached {
+    fn new(layout: &Layout) -> Self {
+        Reached { tiles: vec![None; layout.tiles()] }
+    }
+
+    #[inline(always)]
+    fn at(&mut self, state: u32) -> &mut u32 {
+        let tile = self.tiles[Layout::tile(state)]
+            .get_or_insert_with(|| vec![UNREACHED; TILE_STATES].into_boxed_slice());
+        &mut tile[Layout::within(state)]
+    }
+
+    fn get(&self, state: u32) -> u32 {
+        self.tiles[Layout::tile(state)].as_ref().map_or(UNREACHED, |tile| tile[Layout::within(state)])
+    }
+}
+
+/// A motion as the search takes it.
+#[derive(Clone, Copy, Default)]
+struct Move {
+    shift: Shift,
+    heading: u32,
+}
 
 /// Finds the least-cost path from any start to any goal.
-pub fn search(lattice: &Lattice<'_>, table: &CostTable, field: &GoalField, query: &Search<'_>) -> Outcome {
-    let mut best = vec![f64::INFINITY; lattice.states()];
-    let mut came_by = vec![NO_MOTION; lattice.states()];
-    // A last virtual state stands for "arrived", so that the cost at the goal is part of the search.
-    let arrived = lattice.states();
-    let mut arrival: Option<usize> = None;
-    let mut queue = BinaryHeap::new();
-    let goal_cost = |state: usize| query.goals.iter().find(|g| g.0 == state).map(|g| g.1);
+pub fn search(
+    lattice: &Lattice<'_>,
+    table: &CostTable<'_>,
+    field: &GoalField,
+    query: &Search<'_>,
+) -> Outcome {
+    let layout = &lattice.layout;
+    let columns = lattice.terrain.grid.columns;
+    let estimate = |state: u32| {
+        let cell = layout.unpack(state).cell;
+        field.units_at(cell.row * columns + cell.column)
+    };
+    let moves = moves(lattice);
+    let stride = table.stride();
+    let mut reached = Reached::new(layout);
+    let mut queue = BucketQueue::new(BUCKET_SHIFT);
+    let goals: Vec<(u32, u32)> = query
+        .goals
+        .iter()
+        .map(|(state, after)| (layout.pack(*state), (after * table.units()) as u32))
+        .collect();
     for &start in query.starts {
-        let estimate = field.at(start / HEADINGS);
-        if estimate.is_finite() {
-            best[start] = 0.0;
-            queue.push(Reverse((Ordered(estimate), start)));
+        let packed = layout.pack(start);
+        let ahead = estimate(packed);
+        if ahead != UNREACHED {
+            *reached.at(packed) = 0;
+            queue.push(ahead, (0, packed));
         }
     }
-    let mut least_arrival = f64::INFINITY;
+    let mut best: Option<(u32, u32)> = None;
     let mut expanded = 0u64;
-    while let Some(Reverse((Ordered(estimate), index))) = queue.pop() {
-        if index == arrived {
-            let Some(goal) = arrival else { break };
-            let (start, motions) = walk_back(lattice, &came_by, goal);
-            return Outcome::Found { cost: estimate, start, motions, expanded };
+    while let Some((cost, state)) = queue.pop() {
+        if best.is_some_and(|(total, _)| queue.least_key() >= total) {
+            break;
         }
-        let reached = best[index];
-        if estimate > reached + field.at(index / HEADINGS) {
+        if cost > *reached.at(state) {
             continue;
         }
         if expanded.is_multiple_of(CLOCK_EVERY) && query.deadline.is_some_and(|d| Instant::now() >= d) {
             return Outcome::Timeout { expanded };
         }
         expanded += 1;
-        if let Some(after) = goal_cost(index)
-            && reached + after < least_arrival
+        if let Some(&(_, after)) = goals.iter().find(|(goal, _)| *goal == state)
+            && best.is_none_or(|(total, _)| cost + after < total)
         {
-            least_arrival = reached + after;
-            arrival = Some(index);
-            queue.push(Reverse((Ordered(least_arrival), arrived)));
+            best = Some((cost + after, state));
         }
-        let state = lattice.state(index);
-        for (motion, &cost) in table.costs(index).iter().enumerate() {
-            if cost.is_infinite() {
+        let codes = &table.tile(Layout::tile(state))[Layout::within(state) * stride..][..stride];
+        let moves = &moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];
+        for (code, step) in codes.iter().zip(moves) {
+            if *code == FORBIDDEN {
                 continue;
             }
-            let Some(next) = lattice.successor(state, motion).map(|s| lattice.index(s)) else { continue };
-            let total = reached + f64::from(cost);
-            if total < best[next] {
-                let estimate = total + field.at(next / HEADINGS);
-                if estimate.is_finite() {
-                    best[next] = total;
-                    came_by[next] = motion as u8;
-                    queue.push(Reverse((Ordered(estimate), next)));
+            let next = layout.shift(state, step.shift) | step.heading;
+            let total = cost.saturating_add(decode(*code));
+            let known = reached.at(next);
+            if total < *known {
+                *known = total;
+                let ahead = estimate(next);
+                if ahead != UNREACHED {
+                    queue.push(total.saturating_add(ahead), (total, next));
                 }
             }
         }
     }
-    Outcome::Unreachable
+    let Some((_, goal)) = best else { return Outcome::Unreachable };
+    let (start, motions) = walk_back(lattice, table, &reached, goal);
+    Outcome::Found { start, motions, expanded }
 }
 
-/// The start and the motions that led to a state.
-fn walk_back(lattice: &Lattice<'_>, came_by: &[u8], goal: usize) -> (usize, Vec<usize>) {
+/// All motions by heading, `stride` slots each.
+fn moves(lattice: &Lattice<'_>) -> Vec<Move> {
+    let stride = lattice.motions_per_state().next_multiple_of(4);
+    let mut moves = vec![Move::default(); HEADINGS * stride];
+    for (heading, motions) in lattice.motions.iter().enumerate() {
+        for (i, motion) in motions.iter().enumerate() {
+            let shift = lattice.layout.prepare(motion.columns, motion.rows);
+            moves[heading * stride + i] = Move { shift, heading: motion.to.index() as u32 };
+        }
+    }
+    moves
+}
+
+/// The start and the motions that led to a state: at each state the predecessor with the least cost through it.
+fn walk_back(
+    lattice: &Lattice<'_>,
+    table: &CostTable<'_>,
+    reached: &Reached,
+    goal: u32,
+) -> (State, Vec<usize>) {
+    let layout = &lattice.layout;
     let mut motions = Vec::new();
-    let mut state = goal;
-    while came_by[state] != NO_MOTION {
-        let motion = usize::from(came_by[state]);
-        let end = lattice.state(state);
-        // Motions of one place in the list have the same end heading only from one start heading.
-        let before = crate::heading::Heading::all().find_map(|from| {
-            let m = &lattice.motions[from.index()][motion];
-            let cell = crate::footprint::shifted(lattice.terrain, end.cell, (-m.columns, -m.rows))?;
-            (m.to == end.heading).then(|| lattice.index(crate::lattice::State { cell, heading: from }))
-        });
-        let Some(before) = before else { break };
+    let mut state = layout.unpack(goal);
+    let mut cost = reached.get(goal);
+    while cost > 0 {
+        let before = predecessors(lattice, state)
+            .filter_map(|(before, motion)| {
+                let packed = layout.pack(before);
+                let known = reached.get(packed);
+                let code = table.tile(Layout::tile(packed))[Layout::within(packed) * table.stride() + motion];
+                (known != UNREACHED && code != FORBIDDEN)
+                    .then(|| (known.saturating_add(decode(code)), known, before, motion))
+            })
+            .min_by_key(|(total, ..)| *total);
+        // The cost of each state came from one of its predecessors, whose own can only have fallen since.
+        let Some((total, known, before, motion)) = before else { break };
+        debug_assert!(total <= cost, "a state's cost came from none of its predecessors");
         motions.push(motion);
         state = before;
+        cost = known;
     }
     motions.reverse();
     (state, motions)
+}
+
+/// States from which a motion leads to a state.
+fn predecessors<'a>(lattice: &'a Lattice<'_>, end: State) -> impl Iterator<Item = (State, usize)> + 'a {
+    Heading::all().flat_map(move |from| {
+        lattice.motions[from.index()].iter().enumerate().filter(move |(_, m)| m.to == end.heading).filter_map(
+            move |(index, m)| {
+                let cell = crate::footprint::shifted(lattice.terrain, end.cell, (-m.columns, -m.rows))?;
+                Some((State { cell, heading: from }, index))
+            },
+        )
+    })
 }

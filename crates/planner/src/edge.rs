@@ -1,7 +1,7 @@
 //! What one motion costs on the ground at hand: the edge energy that plan, matrix and reachability share.
 
 use model::{Acceleration, Manoeuvre, Motion as BodyMotion, Robot};
-use terrain::Cell;
+use terrain::{Cell, slope};
 
 use crate::{
     footprint::{Footprint, first_blocked, shifted},
@@ -91,20 +91,20 @@ struct PreparedPiece {
     steps: Vec<PreparedStep>,
 }
 
-struct PreparedStep {
-    horizontal_m: f64,
-    turn_rad: f64,
+pub(crate) struct PreparedStep {
+    pub(crate) horizontal_m: f64,
+    pub(crate) turn_rad: f64,
     end_m: [f64; 2],
     end_heading_rad: f64,
     /// Unit vector of travel half way.
-    travel: (f64, f64),
+    pub(crate) travel: (f64, f64),
     /// Cell under the middle.
-    middle: (i32, i32),
-    end: Sample,
+    pub(crate) middle: (i32, i32),
+    pub(crate) end: Sample,
 }
 
 /// Bilinear interpolation between cell centres at a fixed place relative to the start cell.
-struct Sample {
+pub(crate) struct Sample {
     corner: (i32, i32),
     weights: [f32; 4],
 }
@@ -144,6 +144,32 @@ impl Chain {
         Chain { pieces: prepared, sweep, reach, read_from, read_to, reverse }
     }
 
+    /// The cells it sweeps and their largest king's distance.
+    pub(crate) fn sweep(&self) -> (&[(i32, i32)], u8) {
+        (&self.sweep, self.reach)
+    }
+
+    /// Its steps, each with the manoeuvres of all surfaces and whether it is driven backwards.
+    pub(crate) fn steps_with_manoeuvres(&self) -> impl Iterator<Item = (&PreparedStep, &[Manoeuvre], bool)> {
+        self.pieces
+            .iter()
+            .flat_map(|piece| piece.steps.iter().map(|step| (step, &piece.manoeuvres[..], self.reverse)))
+    }
+
+    /// Totals on level ground of the robot's default surface, whatever its limits.
+    pub(crate) fn on_level_ground(&self) -> Edge {
+        let mut total = Edge::default();
+        for (step, manoeuvres, reverse) in self.steps_with_manoeuvres() {
+            let surface = manoeuvres.len() - 1;
+            if let Some(done) =
+                step.drive(&manoeuvres[surface], 0.0, (0.0, 0.0), reverse, &Limits::NONE, surface)
+            {
+                total.add(&done);
+            }
+        }
+        total
+    }
+
     /// Totals of driving this from a cell; `None` where ground, obstacles or limits forbid it.
     pub(crate) fn edge(&self, lattice: &Lattice<'_>, cell: Cell) -> Option<Edge> {
         let mut total = Edge::default();
@@ -173,7 +199,7 @@ impl Chain {
             for step in &piece.steps {
                 let end_m = step.end.height_m(z, offset(step.end.corner), columns as usize);
                 let middle = offset(step.middle);
-                let slope = (f64::from(lattice.slope.east[middle]), f64::from(lattice.slope.north[middle]));
+                let slope = slope::gradient_at(terrain, terrain.grid.cell(middle));
                 let surface = if lattice.terrain.surfaces().is_some() {
                     lattice.surface_index(terrain.grid.cell(middle))
                 } else {
@@ -199,12 +225,15 @@ impl Chain {
 /// The robot's limits in the form that a step compares with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
-    pitch_grade: f64,
-    roll_grade: f64,
-    side_force_n: f64,
+    pub(crate) pitch_grade: f64,
+    pub(crate) roll_grade: f64,
+    pub(crate) side_force_n: f64,
 }
 
 impl Limits {
+    const NONE: Limits =
+        Limits { pitch_grade: f64::INFINITY, roll_grade: f64::INFINITY, side_force_n: f64::INFINITY };
+
     pub(crate) fn of(robot: &Robot) -> Self {
         let limits = &robot.limits;
         Limits {
@@ -275,6 +304,13 @@ impl Sample {
         let weights =
             [(1.0 - east) * (1.0 - north), east * (1.0 - north), (1.0 - east) * north, east * north];
         Sample { corner: (column as i32, row as i32), weights: weights.map(|w| w as f32) }
+    }
+
+    /// Offsets and weights of the cells that count.
+    pub(crate) fn taps(&self) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
+        let (column, row) = self.corner;
+        let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
+        corners.into_iter().zip(self.weights).filter(|(_, weight)| *weight != 0.0)
     }
 
     /// The corner opposite to `corner`, as far as its weights reach.

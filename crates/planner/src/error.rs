@@ -157,6 +157,16 @@ pub enum Error {
         /// Largest accepted.
         max: f64,
     },
+    /// A map whose states cannot be told apart in 32 bits.
+    #[error(
+        "{rows} × {columns} cells are too many to plan over: crop the map to 16 000 × 16 000 cells or use larger ones"
+    )]
+    TooManyStates {
+        /// Rows of the map.
+        rows: usize,
+        /// Columns of the map.
+        columns: usize,
+    },
     /// A grid too coarse or too fine for this robot's lattice.
     #[error(
         "cells of {cell_size_m} m are too fine for a robot that turns at {radius_m} m: resample the map to {least_m:.3} m or coarser"

@@ -1,11 +1,12 @@
 //! Least cost from every cell to the goal when headings need not join up.
 
-use std::{cmp::Reverse, collections::BinaryHeap};
-
 use crate::{
+    cost::{FORBIDDEN, decode},
+    footprint::shifted,
     heading::{HEADINGS, Heading},
-    lattice::Lattice,
-    ordered::Ordered,
+    lattice::{Lattice, State},
+    layout::Layout,
+    queue::BucketQueue,
     table::CostTable,
 };
 
@@ -13,63 +14,85 @@ use crate::{
 ///
 /// Every lattice motion, seen without its headings, is a step between cells; the field is the exact least cost over
 /// these steps, each as cheap as its cheapest heading and shape. It never exceeds the true cost and falls along every
-/// motion by no more than the motion costs, so A* expands each state at most once.
+/// motion by no more than the motion costs, so A* expands hardly a state twice.
 pub struct GoalField {
-    cost: Vec<f64>,
+    /// In the table's units, by row-major cell; [`UNREACHED`] where no chain of motions leads to the goal.
+    cost: Vec<u32>,
+    units: f64,
 }
 
+pub(crate) const UNREACHED: u32 = u32::MAX;
+
 impl GoalField {
-    /// Backward Dijkstra from goal cells with the cost that still follows there.
-    pub fn new(lattice: &Lattice<'_>, table: &CostTable, goals: &[(usize, f64)]) -> Self {
+    /// Backward Dijkstra from goal cells with the cost that still follows there, in the table's own unit.
+    pub fn new(lattice: &Lattice<'_>, table: &CostTable<'_>, goals: &[(usize, f64)]) -> Self {
         let grid = &lattice.terrain.grid;
         let steps = steps_by_displacement(lattice);
-        let mut cost = vec![f64::INFINITY; grid.cells()];
-        let mut queue = BinaryHeap::new();
+        let mut cost = vec![UNREACHED; grid.cells()];
+        let mut queue = BucketQueue::new(BUCKET_SHIFT);
         for &(cell, after) in goals {
+            let after = (after * table.units()) as u32;
             if after < cost[cell] {
                 cost[cell] = after;
-                queue.push(Reverse((Ordered(after), cell)));
+                queue.push(after, (after, cell as u32));
             }
         }
-        while let Some(Reverse((Ordered(reached), index))) = queue.pop() {
-            if reached > cost[index] {
+        let stride = table.stride();
+        while let Some((reached, index)) = queue.pop() {
+            if reached > cost[index as usize] {
                 continue;
             }
-            let cell = grid.cell(index);
+            let cell = grid.cell(index as usize);
             for (displacement, motions) in &steps {
                 let back = (-displacement.0, -displacement.1);
-                let Some(before) = crate::footprint::shifted(lattice.terrain, cell, back) else { continue };
+                let Some(before) = shifted(lattice.terrain, cell, back) else { continue };
+                let packed = lattice.layout.pack(State { cell: before, heading: Heading::new(0) });
+                let codes =
+                    &table.tile(Layout::tile(packed))[Layout::within(packed) * stride..][..HEADINGS * stride];
+                let least = motions.iter().map(|&slot| codes[slot]).min().unwrap_or(FORBIDDEN);
+                if least == FORBIDDEN {
+                    continue;
+                }
+                let total = reached.saturating_add(decode(least));
                 let before = grid.index(before);
-                let least = motions
-                    .iter()
-                    .map(|&(heading, motion)| table.cost(before * HEADINGS + heading, motion))
-                    .fold(f32::INFINITY, f32::min);
-                let total = reached + f64::from(least);
                 if total < cost[before] {
                     cost[before] = total;
-                    queue.push(Reverse((Ordered(total), before)));
+                    queue.push(total, (total, before as u32));
                 }
             }
         }
-        GoalField { cost }
+        GoalField { cost, units: table.units() }
     }
 
-    /// Least cost from a cell to the goal; infinite where no chain of motions leads there.
-    #[inline]
+    /// Least cost from a cell to the goal, in the objective's unit; infinite where no chain of motions leads there.
     pub fn at(&self, cell: usize) -> f64 {
+        match self.cost[cell] {
+            UNREACHED => f64::INFINITY,
+            units => f64::from(units) / self.units,
+        }
+    }
+
+    /// The same in the table's units.
+    #[inline(always)]
+    pub(crate) fn units_at(&self, cell: usize) -> u32 {
         self.cost[cell]
     }
 }
 
-/// Motions that change the cell, collected by the displacement they make.
-type Displacements = Vec<((i32, i32), Vec<(usize, usize)>)>;
+/// Buckets of 2048 units, a thirtieth of a step on level ground.
+pub(crate) const BUCKET_SHIFT: u32 = 11;
+
+/// Motions that change the cell, as slots of a cell's codes, collected by the displacement they make.
+type Displacements = Vec<((i32, i32), Vec<usize>)>;
 
 fn steps_by_displacement(lattice: &Lattice<'_>) -> Displacements {
-    let mut steps = std::collections::BTreeMap::<(i32, i32), Vec<(usize, usize)>>::new();
+    let stride = lattice.motions_per_state().next_multiple_of(4);
+    let mut steps = std::collections::BTreeMap::<(i32, i32), Vec<usize>>::new();
     for heading in Heading::all() {
         for (index, motion) in lattice.motions[heading.index()].iter().enumerate() {
             if (motion.columns, motion.rows) != (0, 0) {
-                steps.entry((motion.columns, motion.rows)).or_default().push((heading.index(), index));
+                let slot = heading.index() * stride + index;
+                steps.entry((motion.columns, motion.rows)).or_default().push(slot);
             }
         }
     }

@@ -1,13 +1,14 @@
 //! The graph of poses: a robot on a terrain at a speed.
 
 use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
-use terrain::{Cell, SlopeMap, Surfaces, Terrain};
+use terrain::{Cell, Surfaces, Terrain, slope};
 
 use crate::{
     edge::{Chain, Edge, Limits},
     error::{Blocked, Error},
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
+    layout::Layout,
     primitive::{Motion, Piece, motions},
 };
 
@@ -55,14 +56,13 @@ pub struct Lattice<'a> {
     pub robot: &'a Robot,
     /// How it is driven.
     pub settings: Settings,
-    /// Gradient of the ground.
-    pub slope: SlopeMap,
     /// Distance to blocked ground.
     pub clearance: Clearance,
     /// Motions by start heading.
     pub motions: [Vec<Motion>; HEADINGS],
+    pub(crate) layout: Layout,
     pub(crate) limits: Limits,
-    chains: [Vec<Vec<Chain>>; HEADINGS],
+    pub(crate) chains: [Vec<Vec<Chain>>; HEADINGS],
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
 
@@ -75,6 +75,8 @@ impl<'a> Lattice<'a> {
         check_speed(robot, settings.speed_mps)?;
         let surfaces = surface_classes(terrain, robot)?;
         let cell_size_m = terrain.grid.cell_size_m;
+        let (rows, columns) = (terrain.grid.rows, terrain.grid.columns);
+        let layout = Layout::new(&terrain.grid).ok_or(Error::TooManyStates { rows, columns })?;
         let motions = motions(robot, cell_size_m, settings.reverse);
         check_cells(robot, cell_size_m)?;
         let footprint = Footprint::of(robot);
@@ -103,9 +105,9 @@ impl<'a> Lattice<'a> {
             terrain,
             robot,
             settings,
-            slope: SlopeMap::new(terrain),
             clearance: Clearance::new(terrain),
             motions,
+            layout,
             limits: Limits::of(robot),
             chains,
             stand,
@@ -147,8 +149,12 @@ impl<'a> Lattice<'a> {
     /// because 1/k2 ≤ k2; and of all wheel work only friction is left once gravity is taken out. Adding Δφ along any path
     /// from one place to another gives the same sum, so the search may use `E − Δφ` and stay exact (Johnson 1977).
     pub fn potential_j(&self, cell: Cell) -> f64 {
-        let height_m = f64::from(self.terrain.relative_m()[self.terrain.grid.index(cell)]);
-        self.kappa() * self.robot.mass_kg * STANDARD_GRAVITY_MPS2 * height_m
+        f64::from(self.terrain.relative_m()[self.terrain.grid.index(cell)]) * self.lift_j_per_m()
+    }
+
+    /// κ m g: the potential per metre of height [J/m].
+    pub(crate) fn lift_j_per_m(&self) -> f64 {
+        self.kappa() * self.robot.mass_kg * STANDARD_GRAVITY_MPS2
     }
 
     /// Whether the robot can stand in a pose, and if not, why.
@@ -176,7 +182,7 @@ impl<'a> Lattice<'a> {
 
     /// Pitch and roll of the robot standing in a pose, from the slope map [rad].
     pub fn tilt_rad(&self, state: State) -> (f64, f64) {
-        let (east, north) = self.slope.at(self.terrain, state.cell);
+        let (east, north) = slope::gradient_at(self.terrain, state.cell);
         let (sin, cos) = state.heading.angle_rad().sin_cos();
         ((east * cos + north * sin).atan(), (north * cos - east * sin).atan())
     }

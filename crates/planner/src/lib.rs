@@ -8,18 +8,21 @@
 //! Deterministic for any number of threads. No I/O, no async.
 
 mod astar;
+mod cost;
 mod edge;
 mod error;
 mod footprint;
 mod heading;
 mod heuristic;
 mod lattice;
-mod ordered;
+mod layout;
 mod plan;
 mod primitive;
+mod queue;
 mod route;
 mod snap;
 mod table;
+mod tile;
 mod uncertainty;
 
 pub use astar::{Outcome, Search, search};

@@ -138,7 +138,7 @@ pub fn compare(terrain: &Terrain, robot: &Robot, query: &Query) -> Result<Compar
 struct Ends {
     start: Snapped,
     goal: Snapped,
-    starts: Vec<usize>,
+    starts: Vec<State>,
     goals: Vec<State>,
 }
 
@@ -168,11 +168,7 @@ impl Ends {
                 snap_radius_m: snap_radius_m.max(query.goal.tolerance_m),
             },
         )?;
-        let starts = start
-            .headings
-            .iter()
-            .map(|&heading| lattice.index(State { cell: start.cell, heading }))
-            .collect();
+        let starts = start.headings.iter().map(|&heading| State { cell: start.cell, heading }).collect();
         let goals = goal_states(lattice, &goal, &query.goal);
         Ok(Ends { start, goal, starts, goals })
     }
@@ -208,7 +204,7 @@ fn plan_between(
     let table = CostTable::new(lattice, objective);
     let goals = goals_with_potential(lattice, ends, objective);
     let cells: Vec<(usize, f64)> =
-        goals.iter().map(|(state, after)| (state / crate::heading::HEADINGS, *after)).collect();
+        goals.iter().map(|(state, after)| (lattice.terrain.grid.index(state.cell), *after)).collect();
     let field = GoalField::new(lattice, &table, &cells);
     let question = Search { starts: &ends.starts, goals: &goals, deadline: query.deadline };
     let (start, motions, expanded) = match search(lattice, &table, &field, &question) {
@@ -217,7 +213,7 @@ fn plan_between(
         Outcome::Unreachable => return Err(nearest_connected(lattice, &field, ends)),
     };
     let duration = began.elapsed();
-    let route = Route::drive(lattice, objective, lattice.state(start), &motions);
+    let route = Route::drive(lattice, objective, start, &motions);
     let settings = &query.settings;
     let energy_interval_j = energy_interval_j(
         &route,
@@ -237,13 +233,13 @@ fn plan_between(
 }
 
 /// Goals with what is to be added there: for energy, the height that the potential has left out.
-fn goals_with_potential(lattice: &Lattice<'_>, ends: &Ends, objective: Objective) -> Vec<(usize, f64)> {
+fn goals_with_potential(lattice: &Lattice<'_>, ends: &Ends, objective: Objective) -> Vec<(State, f64)> {
     let lowest_j = ends.goals.iter().map(|s| lattice.potential_j(s.cell)).fold(f64::INFINITY, f64::min);
     ends.goals
         .iter()
         .map(|&state| {
             let above_j = lattice.potential_j(state.cell) - lowest_j;
-            (lattice.index(state), if objective == Objective::Energy { above_j } else { 0.0 })
+            (state, if objective == Objective::Energy { above_j } else { 0.0 })
         })
         .collect()
 }

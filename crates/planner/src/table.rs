@@ -1,11 +1,16 @@
-//! Cost of every motion from every state, for one objective.
+//! Cost of every motion from every state, for one objective, evaluated tile by tile as it is asked for.
+
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use crate::{
+    cost::{FORBIDDEN, LARGEST_ROUNDING, UNITS_OF_REFERENCE, decode},
     edge::Edge,
     heading::{HEADINGS, Heading},
     lattice::{Lattice, State},
+    layout::Layout,
+    tile::TileKernel,
 };
 
 /// What a path is to have least of.
@@ -24,13 +29,27 @@ pub enum Objective {
 /// 100 kJ a centimetre.
 const TIE_PER_J: f64 = 1e-7;
 
-/// Costs of all motions, with gravity taken out of energy so that none is negative.
-pub struct CostTable {
-    costs: Vec<f32>,
-    motions: usize,
+/// An objective as weights of what a motion takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Weights {
+    /// Of energy beyond lifting.
+    pub(crate) per_j: f32,
+    /// Of length.
+    pub(crate) per_m: f32,
+    /// Of time.
+    pub(crate) per_s: f32,
 }
 
 impl Objective {
+    pub(crate) fn weights(self) -> Weights {
+        let tie = TIE_PER_J as f32;
+        match self {
+            Objective::Energy => Weights { per_j: 1.0, per_m: 0.0, per_s: 0.0 },
+            Objective::Distance => Weights { per_j: tie, per_m: 1.0, per_s: 0.0 },
+            Objective::Time => Weights { per_j: tie, per_m: 0.0, per_s: 1.0 },
+        }
+    }
+
     /// Cost of a motion that was driven, between places whose height potentials differ by `lifted_j`.
     pub fn cost(self, edge: &Edge, lifted_j: f64) -> f64 {
         let friction_j = edge.energy_j - lifted_j;
@@ -47,36 +66,78 @@ impl Objective {
     }
 }
 
-impl CostTable {
-    /// Evaluates every motion from every state, rows in parallel.
-    pub fn new(lattice: &Lattice<'_>, objective: Objective) -> Self {
-        let motions = lattice.motions_per_state();
-        let columns = lattice.terrain.grid.columns;
-        let mut costs = vec![f32::INFINITY; lattice.states() * motions];
-        costs.par_chunks_mut(columns * HEADINGS * motions).enumerate().for_each(|(row, costs)| {
-            for (i, cost) in costs.iter_mut().enumerate() {
-                let (state, motion) = (i / motions, i % motions);
-                let cell = terrain::Cell { row, column: state / HEADINGS };
-                let state = State { cell, heading: Heading::new(state % HEADINGS) };
-                if let Some((_, least)) = cheapest(lattice, objective, state, motion) {
-                    *cost = least as f32;
-                }
-            }
+/// Costs of all motions, with gravity taken out of energy so that none is negative.
+///
+/// Stored in 16 bits a motion, rounded up by at most [`CostTable::LARGEST_ROUNDING`].
+pub struct CostTable<'l> {
+    lattice: &'l Lattice<'l>,
+    kernel: TileKernel,
+    units: f64,
+    tiles: Vec<OnceLock<Box<[u16]>>>,
+}
+
+impl<'l> CostTable<'l> {
+    /// Largest relative rounding of a cost.
+    pub const LARGEST_ROUNDING: f64 = LARGEST_ROUNDING;
+
+    /// A table that evaluates nothing yet.
+    pub fn lazy(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
+        let units = UNITS_OF_REFERENCE / reference_cost(lattice, objective);
+        CostTable {
+            lattice,
+            kernel: TileKernel::new(lattice, objective.weights(), units),
+            units,
+            tiles: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// A table with every tile evaluated, in parallel.
+    pub fn new(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
+        let table = Self::lazy(lattice, objective);
+        let Layout { tile_rows, tile_columns, .. } = lattice.layout;
+        (0..tile_rows * tile_columns).into_par_iter().for_each(|i| {
+            table.tile(lattice.layout.tile_at(i / tile_columns, i % tile_columns));
         });
-        CostTable { costs, motions }
+        table
     }
 
-    /// Cost of a motion from a state; infinite where it cannot be driven.
-    #[inline]
-    pub fn cost(&self, state: usize, motion: usize) -> f32 {
-        self.costs[state * self.motions + motion]
+    /// Units per joule, metre or second.
+    pub(crate) fn units(&self) -> f64 {
+        self.units
     }
 
-    /// Costs of all motions from a state.
-    #[inline]
-    pub fn costs(&self, state: usize) -> &[f32] {
-        &self.costs[state * self.motions..(state + 1) * self.motions]
+    /// Slots per state; those beyond the motions are forbidden.
+    pub(crate) fn stride(&self) -> usize {
+        self.kernel.stride
     }
+
+    /// The codes of a tile.
+    #[inline(always)]
+    pub(crate) fn tile(&self, tile: usize) -> &[u16] {
+        self.tiles[tile].get_or_init(|| {
+            let (row, column) = self.lattice.layout.tile_place(tile);
+            self.kernel.evaluate(self.lattice, row, column)
+        })
+    }
+
+    /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
+    pub fn cost(&self, state: State, motion: usize) -> f64 {
+        let packed = self.lattice.layout.pack(state);
+        let code = self.tile(Layout::tile(packed))[Layout::within(packed) * self.stride() + motion];
+        if code == FORBIDDEN { f64::INFINITY } else { f64::from(decode(code)) / self.units }
+    }
+}
+
+/// Cost of one step east on level ground, which sets the scale.
+fn reference_cost(lattice: &Lattice<'_>, objective: Objective) -> f64 {
+    let level = lattice.chain(Heading::new(0), 0, 0).on_level_ground();
+    let cost = objective.cost(&level, 0.0);
+    // A robot without any friction still needs a scale: that of lifting it by a thousandth of a cell.
+    cost.max(
+        1e-3 * lattice.lift_j_per_m()
+            * lattice.terrain.grid.cell_size_m
+            * f64::from(objective.weights().per_j),
+    )
 }
 
 /// The cheapest way to drive a motion from a state: its variant and cost.
@@ -94,3 +155,6 @@ pub(crate) fn cheapest(
         .filter_map(|(variant, edge)| Some((variant, objective.cost(&edge?, lifted_j))))
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
+
+/// States of a tile.
+pub(crate) const TILE_STATES: usize = crate::layout::TILE_CELLS * HEADINGS;

@@ -26,15 +26,9 @@ impl SlopeMap {
         let grid = &terrain.grid;
         let mut east = vec![f32::NAN; grid.cells()];
         let mut north = vec![f32::NAN; grid.cells()];
-        let per_cell = 1.0 / (8.0 * grid.cell_size_m as f32);
         east.par_chunks_mut(grid.columns).zip(north.par_chunks_mut(grid.columns)).enumerate().for_each(
             |(row, (east, north))| {
-                let rows = neighbour_rows(terrain, row);
-                for column in 0..grid.columns {
-                    let (gx, gy) = gradient(rows, column);
-                    east[column] = gx * per_cell;
-                    north[column] = gy * per_cell;
-                }
+                self::row(terrain, row, 0, east, north);
             },
         );
         SlopeMap { east, north }
@@ -47,21 +41,62 @@ impl SlopeMap {
     }
 }
 
-/// The rows south of, at and north of a row; the row itself where there is none.
-fn neighbour_rows(terrain: &Terrain, row: usize) -> [&[f32]; 3] {
-    let columns = terrain.grid.columns;
-    let line = |r: usize| &terrain.relative_m()[r * columns..(r + 1) * columns];
-    [line(row.saturating_sub(1)), line(row), line((row + 1).min(terrain.grid.rows - 1))]
+/// Gradients, east and north, of the cells of one row from a column on.
+///
+/// # Panics
+/// When the row does not have that many cells.
+pub fn row(terrain: &Terrain, row: usize, from_column: usize, east: &mut [f32], north: &mut [f32]) {
+    let neighbours = Neighbours::of(terrain, row);
+    for (i, (east, north)) in east.iter_mut().zip(north).enumerate() {
+        (*east, *north) = neighbours.gradient(from_column + i);
+    }
 }
 
-fn gradient([south, here, north]: [&[f32]; 3], column: usize) -> (f32, f32) {
-    let (west, east) = (column.saturating_sub(1), (column + 1).min(here.len() - 1));
-    let level = here[column];
-    let or_level = |z: f32| if z.is_nan() { level } else { z };
-    let [sw, s, se] = [west, column, east].map(|c| or_level(south[c]));
-    let [w, e] = [west, east].map(|c| or_level(here[c]));
-    let [nw, n, ne] = [west, column, east].map(|c| or_level(north[c]));
-    ((ne - nw) + 2.0 * (e - w) + (se - sw), (nw - sw) + 2.0 * (n - s) + (ne - se))
+/// Gradient at one cell, east and north; NaN where the cell is unknown.
+pub fn gradient_at(terrain: &Terrain, cell: Cell) -> (f64, f64) {
+    let (east, north) = Neighbours::of(terrain, cell.row).gradient(cell.column);
+    (f64::from(east), f64::from(north))
+}
+
+/// A row and those south and north of it, where there are any.
+struct Neighbours<'a> {
+    south: Option<&'a [f32]>,
+    here: &'a [f32],
+    north: Option<&'a [f32]>,
+    per_cell: f32,
+}
+
+impl<'a> Neighbours<'a> {
+    fn of(terrain: &'a Terrain, row: usize) -> Self {
+        let columns = terrain.grid.columns;
+        let line = |r: usize| terrain.relative_m().get(r * columns..(r + 1) * columns);
+        Neighbours {
+            south: row.checked_sub(1).and_then(line),
+            here: line(row).unwrap_or_default(),
+            north: line(row + 1),
+            per_cell: 1.0 / (8.0 * terrain.grid.cell_size_m as f32),
+        }
+    }
+
+    #[inline]
+    fn gradient(&self, column: usize) -> (f32, f32) {
+        let level = self.here[column];
+        let or_level = |z: f32| if z.is_nan() { level } else { z };
+        let three = |line: Option<&[f32]>| match line {
+            None => [level; 3],
+            Some(line) => {
+                let west = column.checked_sub(1).map_or(level, |c| line[c]);
+                let east = line.get(column + 1).copied().unwrap_or(level);
+                [or_level(west), or_level(line[column]), or_level(east)]
+            }
+        };
+        let [sw, s, se] = three(self.south);
+        let [w, _, e] = three(Some(self.here));
+        let [nw, n, ne] = three(self.north);
+        let east = (ne - nw) + 2.0 * (e - w) + (se - sw);
+        let north = (nw - sw) + 2.0 * (n - s) + (ne - se);
+        (east * self.per_cell, north * self.per_cell)
+    }
 }
 
 #[cfg(test)]

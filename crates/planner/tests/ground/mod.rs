@@ -4,7 +4,7 @@
 
 use model::{Robot, builtin};
 use petgraph::graph::{DiGraph, NodeIndex};
-use planner::{Goal, Lattice, Objective, Query, Settings, Start};
+use planner::{CostTable, Goal, Lattice, Objective, Query, Settings, Start};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use terrain::{Grid, Surfaces, Terrain, synthetic};
@@ -69,10 +69,7 @@ pub(crate) fn some_query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot
 
 /// Every state and drivable motion as an explicit graph; the weight is (cost less potential, energy) by the edge's own sums.
 pub(crate) fn explicit_graph(lattice: &Lattice<'_>, objective: Objective) -> DiGraph<(), (f64, f64)> {
-    let mut graph = DiGraph::with_capacity(lattice.states(), lattice.states() * lattice.motions_per_state());
-    for _ in 0..lattice.states() {
-        graph.add_node(());
-    }
+    let mut graph = states(lattice);
     for index in 0..lattice.states() {
         let state = lattice.state(index);
         for motion in 0..lattice.motions_per_state() {
@@ -83,6 +80,29 @@ pub(crate) fn explicit_graph(lattice: &Lattice<'_>, objective: Objective) -> DiG
                 graph.add_edge(NodeIndex::new(index), NodeIndex::new(lattice.index(end)), weight);
             }
         }
+    }
+    graph
+}
+
+/// The same graph with the costs that a table holds.
+pub(crate) fn table_graph(lattice: &Lattice<'_>, table: &CostTable<'_>) -> DiGraph<(), f64> {
+    let mut graph = states(lattice);
+    for index in 0..lattice.states() {
+        let state = lattice.state(index);
+        for motion in 0..lattice.motions_per_state() {
+            let cost = table.cost(state, motion);
+            if let Some(end) = lattice.successor(state, motion).filter(|_| cost.is_finite()) {
+                graph.add_edge(NodeIndex::new(index), NodeIndex::new(lattice.index(end)), cost);
+            }
+        }
+    }
+    graph
+}
+
+fn states<E>(lattice: &Lattice<'_>) -> DiGraph<(), E> {
+    let mut graph = DiGraph::with_capacity(lattice.states(), lattice.states() * lattice.motions_per_state());
+    for _ in 0..lattice.states() {
+        graph.add_node(());
     }
     graph
 }

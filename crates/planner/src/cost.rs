@@ -1,0 +1,75 @@
+//! Costs in sixteen bits: eleven of fraction, five of exponent, always rounded up.
+//!
+//! Costs below 2048 units are whole units. Above, a cost is stored as (2048 + m) · 2^e, as floats are, so rounding adds at
+//! most 1/2048 of it, everywhere on the range.
+
+/// The code of a motion that cannot be driven.
+pub(crate) const FORBIDDEN: u16 = u16::MAX;
+/// Largest relative rounding of a cost above 2048 units.
+pub(crate) const LARGEST_ROUNDING: f64 = 1.0 / 2048.0;
+/// Units of the motion that sets the scale: fine enough that a unit is nothing beside any motion, coarse enough that
+/// 65 000 such motions fit 32 bits.
+pub(crate) const UNITS_OF_REFERENCE: f64 = 65_536.0;
+
+const FRACTION_BITS: u32 = 11;
+const IMPLICIT: u32 = 1 << FRACTION_BITS;
+/// Bits of an f32's fraction that are dropped.
+const DROPPED_BITS: u32 = 23 - FRACTION_BITS;
+/// What an f32's exponent has more than the code's, which is 1 from 2048 units on.
+const EXPONENT_BIAS: i32 = (126 + FRACTION_BITS as i32) << FRACTION_BITS;
+/// Largest code: below 2^31 units.
+const LARGEST: i32 = (21 << FRACTION_BITS) - 1;
+
+/// Encodes a cost in units; infinity and beyond the range is forbidden.
+#[inline(always)]
+pub(crate) fn encode(units: f32) -> u16 {
+    // The exponent and upper fraction of an f32, rounded up, are the code itself, less its bias.
+    let bits = units.to_bits() as i32;
+    let large = ((bits + ((1 << DROPPED_BITS) - 1)) >> DROPPED_BITS) - EXPONENT_BIAS;
+    let small = units.ceil() as i32;
+    let code = if units < IMPLICIT as f32 { small } else { large };
+    if code > LARGEST { FORBIDDEN } else { code as u16 }
+}
+
+/// The cost in units; meaningless for [`FORBIDDEN`].
+#[inline(always)]
+pub(crate) fn decode(code: u16) -> u32 {
+    let code = u32::from(code);
+    let exponent = code >> FRACTION_BITS;
+    let normal = u32::from(exponent != 0);
+    ((code & (IMPLICIT - 1)) | (normal << FRACTION_BITS)) << (exponent - normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_cost_is_rounded_up_by_at_most_a_two_thousandth(units in 2048.0f32..2e9) {
+            let stored = f64::from(decode(encode(units)));
+            let units = f64::from(units);
+            prop_assert!(stored >= units && stored <= units * (1.0 + LARGEST_ROUNDING) + 1e-6, "{stored} for {units}");
+        }
+
+        #[test]
+        fn order_is_kept(a in 0.0f32..2e9, b in 0.0f32..2e9) {
+            let (low, high) = if a < b { (a, b) } else { (b, a) };
+            prop_assert!(encode(low) <= encode(high));
+        }
+    }
+
+    #[test]
+    fn small_costs_are_whole_units_and_endless_ones_forbidden() {
+        assert_eq!(decode(encode(0.0)), 0);
+        assert_eq!(decode(encode(0.3)), 1);
+        assert_eq!(decode(encode(2047.5)), 2048);
+        assert_eq!(decode(encode(2048.0)), 2048);
+        assert_eq!(decode(encode(2049.0)), 2049);
+        assert_eq!(decode(encode(4097.0)), 4098);
+        assert_eq!(encode(f32::INFINITY), FORBIDDEN);
+        assert_eq!(encode(1e12), FORBIDDEN);
+    }
+}

@@ -1,0 +1,94 @@
+//! A priority queue of integer keys that only grow: a ring of buckets.
+
+/// Keys are grouped into buckets of 2^`shift`; within a bucket the last in is the first out.
+///
+/// Whoever pops must tolerate that order: a state reached twice in one bucket is simply expanded again.
+pub(crate) struct BucketQueue {
+    ring: Vec<Vec<(u32, u32)>>,
+    shift: u32,
+    /// Number of the bucket that is being emptied.
+    current: u32,
+    len: usize,
+}
+
+impl BucketQueue {
+    pub(crate) fn new(shift: u32) -> Self {
+        BucketQueue { ring: vec![Vec::new(); 1024], shift, current: 0, len: 0 }
+    }
+
+    /// Adds an item under a key; keys below the current bucket are put into it.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, key: u32, item: (u32, u32)) {
+        let bucket = (key >> self.shift).max(self.current);
+        if (bucket - self.current) as usize >= self.ring.len() {
+            self.grow((bucket - self.current) as usize + 1);
+        }
+        let slot = bucket as usize & (self.ring.len() - 1);
+        self.ring[slot].push(item);
+        self.len += 1;
+    }
+
+    /// Takes an item of the lowest bucket.
+    #[inline(always)]
+    pub(crate) fn pop(&mut self) -> Option<(u32, u32)> {
+        if self.len == 0 {
+            return None;
+        }
+        loop {
+            let slot = self.current as usize & (self.ring.len() - 1);
+            if let Some(item) = self.ring[slot].pop() {
+                self.len -= 1;
+                return Some(item);
+            }
+            self.current += 1;
+        }
+    }
+
+    /// Every key still in the queue is at least this.
+    pub(crate) fn least_key(&self) -> u32 {
+        self.current << self.shift
+    }
+
+    #[cold]
+    fn grow(&mut self, needed: usize) {
+        let size = needed.next_power_of_two();
+        let old_size = self.ring.len();
+        let mut ring = vec![Vec::new(); size];
+        for distance in 0..old_size {
+            let bucket = self.current as usize + distance;
+            ring[bucket & (size - 1)] = std::mem::take(&mut self.ring[bucket & (old_size - 1)]);
+        }
+        self.ring = ring;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    #[test]
+    fn items_come_out_in_the_order_of_their_buckets_even_when_the_ring_grows() {
+        let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(1);
+        let mut queue = BucketQueue::new(4);
+        let mut last = 0;
+        queue.push(0, (0, 0));
+        let mut pushed = 1;
+        let mut popped = 0;
+        while let Some((key, _)) = queue.pop() {
+            popped += 1;
+            assert!(key >> 4 >= last >> 4, "{key} after {last}");
+            assert!(queue.least_key() <= key);
+            last = last.max(key);
+            if pushed < 20_000 {
+                for _ in 0..2 {
+                    let far = random.random_range(0..if pushed % 100 == 0 { 200_000 } else { 500 });
+                    queue.push(last + far, (last + far, 0));
+                    pushed += 1;
+                }
+            }
+        }
+        assert_eq!(popped, pushed);
+    }
+}

@@ -1,0 +1,319 @@
+//! Costs of all motions from the cells of one tile, a row of cells side by side.
+
+use model::{PowerKernel, Real};
+use multiversion::multiversion;
+use terrain::{Cell, Terrain, slope};
+
+use crate::{
+    cost::{FORBIDDEN, encode},
+    edge::Chain,
+    footprint::first_blocked,
+    heading::HEADINGS,
+    lattice::Lattice,
+    layout::{TILE, TILE_CELLS},
+    table::Weights,
+};
+
+/// Everything about the lattice that the evaluation of a tile needs, prepared once for all tiles.
+pub(crate) struct TileKernel {
+    chains: Vec<RowChain>,
+    /// Slots per state.
+    pub(crate) stride: usize,
+    halo: usize,
+    limits: RowLimits,
+    weights: Weights,
+    /// Units per joule, metre or second of the objective.
+    units: f32,
+    lift_j_per_m: f32,
+}
+
+#[derive(Clone, Copy)]
+struct RowLimits {
+    pitch_grade: f32,
+    roll_grade: f32,
+    side_force_n: f32,
+}
+
+/// A variant of a motion.
+struct RowChain {
+    heading: usize,
+    motion: usize,
+    /// Whether this is the first variant of its motion.
+    first: bool,
+    reach: u8,
+    sweep: Vec<(i32, i32)>,
+    steps: Vec<RowStep>,
+}
+
+struct RowStep {
+    /// Cells that interpolation reads, relative to the start cell, and their weights.
+    taps: Vec<((i32, i32), f32)>,
+    middle: (i32, i32),
+    horizontal_m: f32,
+    per_horizontal_m: f32,
+    travel: (f32, f32),
+    facing: f32,
+    s_per_m: f32,
+    on_the_spot_s: f32,
+    kernels: Vec<PowerKernel<f32>>,
+}
+
+/// The ground of a tile and around it; unknown and outside are NaN.
+pub(crate) struct Window {
+    width: usize,
+    halo: usize,
+    height_m: Vec<f32>,
+    east: Vec<f32>,
+    north: Vec<f32>,
+    surface: Vec<u8>,
+    /// Surfaces that occur.
+    present: Vec<u8>,
+}
+
+type Lanes = [f32; TILE];
+
+impl TileKernel {
+    pub(crate) fn new(lattice: &Lattice<'_>, weights: Weights, units: f64) -> Self {
+        let mut chains = Vec::new();
+        for (heading, motions) in lattice.chains.iter().enumerate() {
+            for (motion, variants) in motions.iter().enumerate() {
+                for (variant, chain) in variants.iter().enumerate() {
+                    chains.push(RowChain::new(heading, motion, variant == 0, chain));
+                }
+            }
+        }
+        let reads = chains.iter().flat_map(|c| &c.steps).flat_map(RowStep::reads);
+        let halo = reads.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
+        let limits = &lattice.limits;
+        TileKernel {
+            chains,
+            stride: lattice.motions_per_state().next_multiple_of(4),
+            halo,
+            limits: RowLimits {
+                pitch_grade: limits.pitch_grade as f32,
+                roll_grade: limits.roll_grade as f32,
+                side_force_n: limits.side_force_n as f32,
+            },
+            weights,
+            units: units as f32,
+            lift_j_per_m: lattice.lift_j_per_m() as f32,
+        }
+    }
+
+    /// Costs of all motions from all states of a tile: by cell, heading, motion.
+    pub(crate) fn evaluate(&self, lattice: &Lattice<'_>, tile_row: usize, tile_column: usize) -> Box<[u16]> {
+        let mut codes = vec![FORBIDDEN; TILE_CELLS * HEADINGS * self.stride].into_boxed_slice();
+        let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
+        let window = Window::new(lattice, origin, self.halo);
+        let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
+        for row in 0..rows {
+            let row_codes =
+                &mut codes[row * TILE * HEADINGS * self.stride..][..TILE * HEADINGS * self.stride];
+            let mut costs = vec![[f32::INFINITY; TILE]; self.chains.len()];
+            evaluate_row(self, &window, row, &mut costs);
+            self.store(lattice, Cell { row: origin.row + row, ..origin }, &costs, row_codes);
+        }
+        codes
+    }
+
+    /// Takes the cheapest variant of each motion where nothing is in the way, and encodes it.
+    fn store(&self, lattice: &Lattice<'_>, west: Cell, costs: &[Lanes], codes: &mut [u16]) {
+        let columns = TILE.min(lattice.terrain.grid.columns - west.column);
+        let first = lattice.terrain.grid.index(west);
+        for (chain, costs) in self.chains.iter().zip(costs) {
+            let slot = chain.heading * self.stride + chain.motion;
+            for (x, cost) in costs.iter().enumerate().take(columns) {
+                let code = &mut codes[x * HEADINGS * self.stride + slot];
+                let offered = encode(cost * self.units);
+                if offered >= *code {
+                    continue;
+                }
+                let near = lattice.clearance.at(first + x) <= chain.reach;
+                let cell = Cell { column: west.column + x, ..west };
+                if near && first_blocked(lattice.terrain, cell, &chain.sweep).is_some() {
+                    continue;
+                }
+                *code = offered;
+            }
+        }
+    }
+}
+
+/// All chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
+/// is contracted, so the result is the same on every machine.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, costs: &mut [Lanes]) {
+    for (chain, costs) in kernel.chains.iter().zip(costs) {
+        chain.evaluate(kernel, window, row, costs);
+    }
+}
+
+impl RowChain {
+    fn new(heading: usize, motion: usize, first: bool, chain: &Chain) -> Self {
+        let (sweep, reach) = chain.sweep();
+        RowChain { heading, motion, first, reach, sweep: sweep.to_vec(), steps: chain.row_steps().collect() }
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, kernel: &TileKernel, window: &Window, row: usize, costs: &mut Lanes) {
+        let mut height_m = *window.lanes(&window.height_m, row, (0, 0));
+        *costs = [0.0; TILE];
+        for step in &self.steps {
+            step.evaluate(kernel, window, row, &mut height_m, costs);
+        }
+        let _ = self.first;
+    }
+}
+
+impl RowStep {
+    fn reads(&self) -> impl Iterator<Item = (i32, i32)> + '_ {
+        self.taps.iter().map(|(offset, _)| *offset).chain([self.middle])
+    }
+
+    #[inline(always)]
+    fn evaluate(
+        &self,
+        kernel: &TileKernel,
+        window: &Window,
+        row: usize,
+        height_m: &mut Lanes,
+        costs: &mut Lanes,
+    ) {
+        let mut rise_m = [0.0f32; TILE];
+        if !self.taps.is_empty() {
+            let mut end_m = [0.0f32; TILE];
+            for (offset, weight) in &self.taps {
+                let z = window.lanes(&window.height_m, row, *offset);
+                for x in 0..TILE {
+                    end_m[x] += weight * z[x];
+                }
+            }
+            for x in 0..TILE {
+                rise_m[x] = end_m[x] - height_m[x];
+            }
+            *height_m = end_m;
+        }
+        let east = window.lanes(&window.east, row, self.middle);
+        let north = window.lanes(&window.north, row, self.middle);
+        if let [only] = window.present[..] {
+            let power = &self.kernels[usize::from(only)];
+            for x in 0..TILE {
+                costs[x] += self.cost(kernel, power, rise_m[x], east[x], north[x]);
+            }
+            return;
+        }
+        let surface = window.lanes(&window.surface, row, self.middle);
+        for &class in &window.present {
+            let power = &self.kernels[usize::from(class)];
+            for x in 0..TILE {
+                let cost = self.cost(kernel, power, rise_m[x], east[x], north[x]);
+                costs[x] += if surface[x] == class { cost } else { 0.0 };
+            }
+        }
+    }
+
+    /// The cost of the step, infinite where limits forbid it; see `PreparedStep::drive` for the same in double.
+    #[inline(always)]
+    fn cost(&self, kernel: &TileKernel, power: &PowerKernel<f32>, rise_m: f32, east: f32, north: f32) -> f32 {
+        let (cos, sin) = self.travel;
+        let turning = self.horizontal_m == 0.0;
+        let grade = if turning { east * cos + north * sin } else { rise_m * self.per_horizontal_m };
+        let side_grade = north * cos - east * sin;
+        let cos_pitch = 1.0 / (1.0 + grade * grade).sqrt();
+        let cos_roll = 1.0 / (1.0 + side_grade * side_grade).sqrt();
+        let (normal, along) = (cos_pitch * cos_roll, self.facing * grade * cos_pitch);
+        let length_m = self.horizontal_m * (1.0 + grade * grade).sqrt();
+        let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
+        let force_n = power.forces_n(normal, along);
+        let bus_w = power.bus_w(power.side_w(force_n), along);
+        let lifted_m = if turning { f32::ZERO } else { rise_m };
+        let friction_j = bus_w * duration_s - kernel.lift_j_per_m * lifted_m;
+        let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
+        let w = &kernel.weights;
+        let cost = w.per_j * friction_j + w.per_m * length_m + w.per_s * duration_s;
+        let limits = &kernel.limits;
+        // Written so that a NaN of unknown ground fails too.
+        let allowed = (grade.abs() <= limits.pitch_grade)
+            & (side_grade.abs() <= limits.roll_grade)
+            & (force_n.left.abs() <= limits.side_force_n)
+            & (force_n.right.abs() <= limits.side_force_n);
+        if allowed { cost } else { f32::INFINITY }
+    }
+}
+
+impl Chain {
+    /// Its steps in the form that rows are evaluated with.
+    fn row_steps(&self) -> impl Iterator<Item = RowStep> + '_ {
+        self.steps_with_manoeuvres().map(|(step, manoeuvres, reverse)| {
+            let motion = manoeuvres.first().map(|m| *m.motion());
+            let speed_mps = motion.map_or(1.0, |m| m.speed_mps.abs());
+            let yaw_radps = motion.map_or(1.0, |m| m.yaw_rate_radps);
+            let turning = step.horizontal_m == 0.0;
+            RowStep {
+                taps: if turning { Vec::new() } else { step.end.taps().collect() },
+                middle: step.middle,
+                horizontal_m: step.horizontal_m as f32,
+                per_horizontal_m: if turning { 0.0 } else { (1.0 / step.horizontal_m) as f32 },
+                travel: (step.travel.0 as f32, step.travel.1 as f32),
+                facing: if reverse { -1.0 } else { 1.0 },
+                s_per_m: if turning { 0.0 } else { (1.0 / speed_mps) as f32 },
+                on_the_spot_s: if turning { (step.turn_rad / yaw_radps) as f32 } else { 0.0 },
+                kernels: manoeuvres.iter().map(|m| m.kernel().single()).collect(),
+            }
+        })
+    }
+}
+
+impl Window {
+    fn new(lattice: &Lattice<'_>, origin: Cell, halo: usize) -> Self {
+        let terrain = lattice.terrain;
+        // A row of lanes may start anywhere in the halo and is as long as the tile.
+        let width = TILE + 2 * halo;
+        let cells = width * width;
+        let mut window = Window {
+            width,
+            halo,
+            height_m: vec![f32::NAN; cells],
+            east: vec![f32::NAN; cells],
+            north: vec![f32::NAN; cells],
+            surface: vec![0; cells],
+            present: Vec::new(),
+        };
+        for y in 0..width {
+            let Some(row) = (origin.row + y).checked_sub(halo).filter(|r| *r < terrain.grid.rows) else {
+                continue;
+            };
+            let west = origin.column.saturating_sub(halo);
+            let east = (origin.column + TILE + halo).min(terrain.grid.columns);
+            let at = y * width + west + halo - origin.column;
+            let from = terrain.grid.index(Cell { row, column: west });
+            let count = east - west;
+            window.height_m[at..at + count].copy_from_slice(&terrain.relative_m()[from..from + count]);
+            let (east_out, north_out) = (&mut window.east[at..at + count], &mut window.north[at..at + count]);
+            slope::row(terrain, row, west, east_out, north_out);
+            for (i, surface) in window.surface[at..at + count].iter_mut().enumerate() {
+                *surface = surface_of(lattice, terrain, Cell { row, column: west + i });
+            }
+        }
+        window.present = window.surface.clone();
+        window.present.sort_unstable();
+        window.present.dedup();
+        window
+    }
+
+    /// The values under a row of the tile's cells, moved by an offset (columns, rows).
+    #[inline(always)]
+    fn lanes<'w, T>(&self, values: &'w [T], row: usize, (columns, rows): (i32, i32)) -> &'w [T; TILE] {
+        let y = (row + self.halo) as isize + rows as isize;
+        let x = self.halo as isize + columns as isize;
+        let start = (y * self.width as isize + x) as usize;
+        match values[start..].first_chunk::<TILE>() {
+            Some(lanes) => lanes,
+            None => unreachable!("the halo holds every cell that a motion reads"),
+        }
+    }
+}
+
+fn surface_of(lattice: &Lattice<'_>, terrain: &Terrain, cell: Cell) -> u8 {
+    if terrain.surfaces().is_none() { 0 } else { lattice.surface_index(cell) as u8 }
+}
