@@ -217,7 +217,9 @@ fn wrong_requests_are_refused_with_the_pointer_to_the_field() {
             "invalid-robot",
             "/robot/default_surface",
         ),
-        ("/map", with_surface, 422, "unknown-surface", "/robot/surfaces"),
+        ("/map", with_surface, 422, "unknown-surface", "/robot"),
+        ("/start", json!([1.5, 4.5, 0]), 400, "invalid-request", "/start"),
+        ("/map", json!([1.0, [0, 0], 1, 1, [[1]]]), 400, "invalid-request", "/map"),
         ("/start/x_m", json!(-5), 422, "start-outside-map", "/start"),
         ("/goal/y_m", json!(500), 422, "goal-outside-map", "/goal"),
         ("/start/x_m", json!(0.2), 422, "start-blocked", "/start"),
@@ -258,6 +260,9 @@ fn everything_else_that_fails_is_a_problem_document_too() {
     let server = Server::start();
     assert_problem(&server.get("/v2/nothing"), 404, "not-found");
     assert_problem(&server.get("/v1/plan"), 405, "method-not-allowed");
+    assert_problem(&server.get("/v1/maps/%ff"), 404, "not-found");
+    assert_problem(&server.post("/v1/plan", "application/json", b"[]"), 400, "invalid-request");
+    assert_problem(&server.post("/v1/plan", "application/json", b""), 400, "invalid-request");
     assert_problem(&server.post("/v1/plan", "text/html", b"<p>"), 415, "unsupported-media-type");
     assert_problem(&server.post("/v1/maps", "image/png", b"x"), 415, "unsupported-media-type");
     assert_problem(&server.post("/v1/plan", "application/json", b"{\"map\": "), 400, "invalid-request");
@@ -267,6 +272,36 @@ fn everything_else_that_fails_is_a_problem_document_too() {
     assert_problem(&server.post("/v1/maps", "text/plain", b"ncols 3\n"), 400, "invalid-map");
     assert_eq!(server.get("/v1/maps").json()["maps"], json!([]), "nothing half-done remains");
     assert_eq!(server.get("/healthz").json()["status"], "ok");
+}
+
+#[test]
+fn comparing_a_place_with_itself_saves_nothing_and_a_descent_saves_what_it_does() {
+    let server = Server::start();
+    let here = json!({ "x_m": 2.5, "y_m": 2.5 });
+    let nowhere = server.post_json("/v1/compare", &question_with("/goal", here)).json();
+    assert_eq!(nowhere["saving_fraction"], 0.0);
+    let steep = |r: usize| (0..20).map(|c| 6.0 - 0.3 * c as f64 + 0.1 * (r % 3) as f64).collect::<Vec<_>>();
+    let mut map = slope_map(12, 20);
+    map["elevation_m"] = json!((0..12).map(steep).collect::<Vec<_>>());
+    let down = server.post_json("/v1/compare", &question_with("/map", map)).json();
+    let energy = |path: &str| down[path]["energy_j"].as_f64().unwrap();
+    assert!(energy("distance") < 0.0, "the descent returns energy");
+    assert!(energy("energy") <= energy("distance"));
+    assert!(down["saving_fraction"].as_f64().unwrap() >= 0.0, "returning more is a saving");
+}
+
+#[test]
+fn a_robot_without_room_to_turn_is_told_so() {
+    let server = Server::start();
+    let lane =
+        json!({ "cell_size_m": 1.0, "rows": 1, "columns": 8, "elevation_m": [[0, 0, 0, 0, 0, 0, 0, 0]] });
+    let mut question = question_with("/map", lane);
+    question["start"] = json!({ "x_m": 1.5, "y_m": 0.5, "heading_rad": 3.14 });
+    question["goal"] = json!({ "x_m": 6.5, "y_m": 0.5 });
+    let problem = assert_problem(&server.post_json("/v1/plan", &question), 422, "no-path");
+    assert!(problem["detail"].as_str().unwrap().contains("room to turn"), "{problem}");
+    question["reverse"] = json!(true);
+    assert_eq!(server.post_json("/v1/plan", &question).status, 200);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::{
 use clap::Args;
 use model::{PowerModel, robot::RobotFile};
 use service::{
-    Limits,
+    Limits, Patience,
     routes::{
         plan::{GoalPose, ObjectiveName, PlanRequest, StartPose},
         robots::RobotChoice,
@@ -131,9 +131,9 @@ impl Question {
 }
 
 /// When a command's search has to give up: the service's own limit, ten times over.
-pub(crate) fn deadline() -> Instant {
+pub(crate) fn patience() -> Patience {
     const PATIENCE: u32 = 10;
-    Instant::now() + Limits::default().plan_time * PATIENCE
+    Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
 }
 
 fn read_map(path: &Path) -> anyhow::Result<Terrain> {

@@ -41,11 +41,14 @@ pub(crate) fn compare(answer: &CompareAnswer) -> String {
         text.push_str(line.join("  ").trim_end());
         text.push('\n');
     }
-    let extra = 100.0 * (answer.energy.distance_m / answer.distance.distance_m - 1.0);
-    text.push_str(&format!(
-        "\nThe energy-minimal path saves {:.1} % of the shortest path's energy by driving {extra:.1} % further.",
-        100.0 * answer.saving_fraction
-    ));
+    let (least, shortest) = (&answer.energy, &answer.distance);
+    let saved = energy(shortest.energy_j - least.energy_j);
+    let further_m = least.distance_m - shortest.distance_m;
+    text.push_str(&format!("\nThe energy-minimal path saves {saved}"));
+    if shortest.energy_j > 0.0 {
+        text.push_str(&format!(", {:.1} % of the shortest path's energy,", 100.0 * answer.saving_fraction));
+    }
+    text.push_str(&format!(" by driving {further_m:.1} m further."));
     text
 }
 

@@ -5,7 +5,7 @@
 use std::{error::Error, path::PathBuf, time::Instant};
 
 use model::builtin;
-use planner::{Comparison, Goal, Query, Settings, Start, compare};
+use planner::{Comparison, Goal, Patience, Query, Settings, Start, compare};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use terrain::{Terrain, io};
@@ -63,7 +63,7 @@ fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) ->
             goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
             settings,
             snap_radius_m: None,
-            deadline: None,
+            patience: Patience::default(),
         };
     }
 }

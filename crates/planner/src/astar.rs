@@ -1,6 +1,6 @@
 //! A* over the lattice.
 
-use std::time::Instant;
+use std::collections::HashMap;
 
 use crate::{
     cost::{FORBIDDEN, decode},
@@ -8,6 +8,7 @@ use crate::{
     heuristic::{BUCKET_SHIFT, GoalField, UNREACHED},
     lattice::{Lattice, State},
     layout::{Layout, Shift},
+    patience::Patience,
     queue::BucketQueue,
     table::{CostTable, TILE_STATES},
 };
@@ -19,7 +20,7 @@ pub struct Search<'s> {
     /// Where it may end, with the cost that is still to be added there, in the objective's unit.
     pub goals: &'s [(State, f64)],
     /// When to give up.
-    pub deadline: Option<Instant>,
+    pub patience: &'s Patience,
 }
 
 /// How a search ended.
@@ -92,11 +93,10 @@ pub fn search(
     let stride = table.stride();
     let mut reached = Reached::new(layout);
     let mut queue = BucketQueue::new(BUCKET_SHIFT);
-    let goals: Vec<(u32, u32)> = query
-        .goals
-        .iter()
-        .map(|(state, after)| (layout.pack(*state), (after * table.units()) as u32))
-        .collect();
+    let units = |after: f64| (after * table.units()) as u32;
+    let goals: HashMap<u32, u32> =
+        query.goals.iter().map(|(state, after)| (layout.pack(*state), units(*after))).collect();
+    let highest_after = goals.values().copied().max().unwrap_or(0);
     for &start in query.starts {
         let packed = layout.pack(start);
         let ahead = estimate(packed);
@@ -114,11 +114,13 @@ pub fn search(
         if cost > *reached.at(state) {
             continue;
         }
-        if expanded.is_multiple_of(CLOCK_EVERY) && query.deadline.is_some_and(|d| Instant::now() >= d) {
+        if expanded.is_multiple_of(CLOCK_EVERY) && query.patience.is_over() {
             return Outcome::Timeout { expanded };
         }
         expanded += 1;
-        if let Some(&(_, after)) = goals.iter().find(|(goal, _)| *goal == state)
+        // Only where the field is as low as at a goal is it worth looking the state up.
+        if estimate(state) <= highest_after
+            && let Some(&after) = goals.get(&state)
             && best.is_none_or(|(total, _)| cost + after < total)
         {
             best = Some((cost + after, state));

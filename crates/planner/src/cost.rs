@@ -26,8 +26,10 @@ pub(crate) fn encode(units: f32) -> u16 {
     // The exponent and upper fraction of an f32, rounded up, are the code itself, less its bias.
     let bits = units.to_bits() as i32;
     let large = ((bits + ((1 << DROPPED_BITS) - 1)) >> DROPPED_BITS) - EXPONENT_BIAS;
-    let small = units.ceil() as i32;
-    let code = if units < IMPLICIT as f32 { small } else { large };
+    let is_small = units < IMPLICIT as f32;
+    let whole = if is_small { units as i32 } else { 0 };
+    let small = whole + i32::from((whole as f32) < units);
+    let code = if is_small { small } else { large };
     if code > LARGEST { FORBIDDEN } else { code as u16 }
 }
 

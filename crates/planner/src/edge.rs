@@ -336,10 +336,9 @@ impl Sample {
 }
 
 fn prepare_steps(piece: &Piece, reverse: bool, cell_size_m: f64) -> Vec<PreparedStep> {
-    let by_length = (piece.length_m / (STEP_CELLS * cell_size_m)).ceil();
-    // The longest straights are √5 cells; rounding must not add a step.
-    let count =
-        (by_length - 1e-9).ceil().max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
+    // Rounding must not add a step to whole cells.
+    let by_length = (piece.length_m / (STEP_CELLS * cell_size_m) - 1e-9).ceil();
+    let count = by_length.max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
     let facing_rad = if reverse { std::f64::consts::PI } else { 0.0 };
     (0..count)
         .map(|i| {
@@ -361,14 +360,21 @@ fn prepare_steps(piece: &Piece, reverse: bool, cell_size_m: f64) -> Vec<Prepared
 /// Every cell that the footprint touches along the pieces, sorted.
 fn sweep(pieces: &[Piece], footprint: &Footprint, cell_size_m: f64) -> Vec<(i32, i32)> {
     let half_length_m = footprint.length_m / 2.0;
-    let mut cells = std::collections::BTreeSet::new();
+    // A bitmap about the start cell, wide enough for any pose of the pieces.
+    let far_m = pieces.iter().map(|p| p.start_m[0].hypot(p.start_m[1]) + p.length_m).fold(0.0, f64::max);
+    let reach = ((far_m + footprint.length_m.hypot(footprint.width_m)) / cell_size_m).ceil() as i32 + 2;
+    let side = (2 * reach + 1) as usize;
+    let mut touched = vec![false; side * side];
     for piece in pieces {
         // A turning robot's corners move by its half length times the turn.
         let travelled_m = piece.length_m + piece.turn_rad.abs() * half_length_m;
         let poses = (travelled_m / (SWEEP_CELLS * cell_size_m)).ceil().max(1.0) as usize;
         for i in 0..=poses {
-            cells.extend(footprint.cells_at(piece.pose_at(i as f64 / poses as f64), cell_size_m));
+            for (column, row) in footprint.cells_at(piece.pose_at(i as f64 / poses as f64), cell_size_m) {
+                touched[(row + reach) as usize * side + (column + reach) as usize] = true;
+            }
         }
     }
-    cells.into_iter().collect()
+    let place = |i: usize| ((i % side) as i32 - reach, (i / side) as i32 - reach);
+    (0..touched.len()).filter(|i| touched[*i]).map(place).collect()
 }

@@ -129,6 +129,16 @@ pub enum Error {
         /// Its y [m].
         y_m: f64,
     },
+    /// Ground connects start and goal, but no chain of motions does.
+    #[error(
+        "no path: open ground joins the start ({x_m:.2}, {y_m:.2}) and the goal, but no chain of motions does; there may be no room to turn: leave the headings open, allow reverse, or give more room"
+    )]
+    NoRoomToTurn {
+        /// Start, x [m].
+        x_m: f64,
+        /// Start, y [m].
+        y_m: f64,
+    },
     /// The search was told to stop before it had an answer.
     #[error(
         "the search stopped at its deadline after {expanded} expansions; allow more time or plan a shorter way"
@@ -169,13 +179,11 @@ pub enum Error {
     },
     /// A grid too coarse or too fine for this robot's lattice.
     #[error(
-        "cells of {cell_size_m} m are too fine for a robot that turns at {radius_m} m: resample the map to {least_m:.3} m or coarser"
+        "cells of {cell_size_m} m are too fine for a robot of this size: resample the map to {least_m:.3} m or coarser"
     )]
     CellsTooFine {
         /// The map's cell size [m].
         cell_size_m: f64,
-        /// Half the slip track [m].
-        radius_m: f64,
         /// Smallest usable cell [m].
         least_m: f64,
     },

@@ -6,6 +6,7 @@ use crate::{
     heading::{HEADINGS, Heading},
     lattice::{Lattice, State},
     layout::Layout,
+    patience::Patience,
     queue::BucketQueue,
     table::CostTable,
 };
@@ -25,7 +26,14 @@ pub(crate) const UNREACHED: u32 = u32::MAX;
 
 impl GoalField {
     /// Backward Dijkstra from goal cells with the cost that still follows there, in the table's own unit.
-    pub fn new(lattice: &Lattice<'_>, table: &CostTable<'_>, goals: &[(usize, f64)]) -> Self {
+    ///
+    /// `None` when patience ends first.
+    pub fn new(
+        lattice: &Lattice<'_>,
+        table: &CostTable<'_>,
+        goals: &[(usize, f64)],
+        patience: &Patience,
+    ) -> Option<Self> {
         let grid = &lattice.terrain.grid;
         let steps = steps_by_displacement(lattice);
         let mut cost = vec![UNREACHED; grid.cells()];
@@ -38,10 +46,15 @@ impl GoalField {
             }
         }
         let stride = table.stride();
+        let mut settled = 0u32;
         while let Some((reached, index)) = queue.pop() {
             if reached > cost[index as usize] {
                 continue;
             }
+            if settled.is_multiple_of(CLOCK_EVERY) && patience.is_over() {
+                return None;
+            }
+            settled += 1;
             let cell = grid.cell(index as usize);
             for (displacement, motions) in &steps {
                 let back = (-displacement.0, -displacement.1);
@@ -61,7 +74,7 @@ impl GoalField {
                 }
             }
         }
-        GoalField { cost, units: table.units() }
+        Some(GoalField { cost, units: table.units() })
     }
 
     /// Least cost from a cell to the goal, in the objective's unit; infinite where no chain of motions leads there.
@@ -78,6 +91,9 @@ impl GoalField {
         self.cost[cell]
     }
 }
+
+/// Cells between two looks at the clock.
+const CLOCK_EVERY: u32 = 1024;
 
 /// Buckets of 2048 units, a thirtieth of a step on level ground.
 pub(crate) const BUCKET_SHIFT: u32 = 11;

@@ -9,7 +9,8 @@ use crate::{
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
     layout::Layout,
-    primitive::{Motion, Piece, motions},
+    primitive::{LONGEST_LEAD, Motion, Piece, motions},
+    table::{Objective, Weights},
 };
 
 /// How the robot is to be driven; the defaults are what a plain request gets.
@@ -77,8 +78,8 @@ impl<'a> Lattice<'a> {
         let cell_size_m = terrain.grid.cell_size_m;
         let (rows, columns) = (terrain.grid.rows, terrain.grid.columns);
         let layout = Layout::new(&terrain.grid).ok_or(Error::TooManyStates { rows, columns })?;
-        let motions = motions(robot, cell_size_m, settings.reverse);
         check_cells(robot, cell_size_m)?;
+        let motions = motions(robot, cell_size_m, settings.reverse);
         let footprint = Footprint::of(robot);
         let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre> {
             let motion = body_motion(robot, &settings, piece, reverse);
@@ -202,6 +203,21 @@ impl<'a> Lattice<'a> {
         &self.chains[heading.index()][motion][variant]
     }
 
+    /// Totals of a step east on level ground.
+    pub(crate) fn level_step(&self) -> Edge {
+        self.chain(Heading::new(0), 0, 0).on_level_ground()
+    }
+
+    /// An objective's weights for this robot.
+    pub(crate) fn weights(&self, objective: Objective) -> Weights {
+        objective.weights(&self.level_step())
+    }
+
+    /// Cost of a motion that was driven, between places whose height potentials differ by `lifted_j`.
+    pub fn cost(&self, objective: Objective, edge: &Edge, lifted_j: f64) -> f64 {
+        self.weights(objective).cost(edge, lifted_j)
+    }
+
     /// The state a motion leads to, if it lies on the map.
     pub fn successor(&self, state: State, motion: usize) -> Option<State> {
         let m = &self.motions[state.heading.index()][motion];
@@ -246,12 +262,17 @@ fn check_speed(robot: &Robot, speed_mps: f64) -> Result<(), Error> {
     Err(Error::OutOfRange { field: "speed_mps", value: speed_mps, min, max })
 }
 
-/// Arcs at R' must fit a corner of at most 64 lattice steps.
+/// Most cells along the robot: with more, the cells that its motions sweep fill memory.
+const MOST_CELLS_ALONG: f64 = 160.0;
+
+/// Arcs at R' must fit a corner of at most 64 lattice steps, and the robot a bearable number of cells.
 fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
-    let radius_m = robot.half_slip_track_m();
     // Sharpest corner: 45° between legs of one cell.
-    let least_m = radius_m * (std::f64::consts::FRAC_PI_8).tan() / 64.0;
-    if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, radius_m, least_m }) }
+    let for_arcs_m = robot.half_slip_track_m() * std::f64::consts::FRAC_PI_8.tan() / f64::from(LONGEST_LEAD);
+    let footprint = Footprint::of(robot);
+    let for_sweeps_m = footprint.length_m.max(footprint.width_m) / MOST_CELLS_ALONG;
+    let least_m = for_arcs_m.max(for_sweeps_m);
+    if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, least_m }) }
 }
 
 /// Body speeds on a piece: the asked speed, lowered where the outer wheel would exceed its limit.

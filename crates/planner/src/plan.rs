@@ -11,6 +11,7 @@ use crate::{
     heading::Heading,
     heuristic::GoalField,
     lattice::{Lattice, Settings, State},
+    patience::Patience,
     route::Route,
     snap::{Asked, Snapped, cells_within, snap},
     table::{CostTable, Objective},
@@ -42,7 +43,7 @@ pub struct Goal {
 }
 
 /// A question to the planner.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Query {
     /// Where the robot stands.
     pub start: Start,
@@ -53,7 +54,7 @@ pub struct Query {
     /// How far a start or goal may be moved to ground where the robot can stand; `None` means one cell [m].
     pub snap_radius_m: Option<f64>,
     /// When to give up.
-    pub deadline: Option<Instant>,
+    pub patience: Patience,
 }
 
 /// How far an end was moved to the lattice.
@@ -101,9 +102,13 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Share of the shortest path's energy that the energy-minimal one saves.
+    /// What the energy-minimal path saves, as a share of the size of the shortest path's energy.
+    ///
+    /// Above 1 where the energy-minimal path returns energy and the shortest takes some; 0 between equal places.
     pub fn saving_fraction(&self) -> f64 {
-        1.0 - self.energy.route.total.energy_j / self.distance.route.total.energy_j
+        let shortest_j = self.distance.route.total.energy_j;
+        let saved_j = shortest_j - self.energy.route.total.energy_j;
+        if shortest_j == 0.0 { 0.0 } else { saved_j / shortest_j.abs() }
     }
 }
 
@@ -201,12 +206,13 @@ fn plan_between(
     objective: Objective,
     began: Instant,
 ) -> Result<Plan, Error> {
-    let table = CostTable::new(lattice, objective);
+    let late = Error::Timeout { expanded: 0 };
+    let table = CostTable::new(lattice, objective, &query.patience).ok_or(late.clone())?;
     let goals = goals_with_potential(lattice, ends, objective);
     let cells: Vec<(usize, f64)> =
         goals.iter().map(|(state, after)| (lattice.terrain.grid.index(state.cell), *after)).collect();
-    let field = GoalField::new(lattice, &table, &cells);
-    let question = Search { starts: &ends.starts, goals: &goals, deadline: query.deadline };
+    let field = GoalField::new(lattice, &table, &cells, &query.patience).ok_or(late)?;
+    let question = Search { starts: &ends.starts, goals: &goals, patience: &query.patience };
     let (start, motions, expanded) = match search(lattice, &table, &field, &question) {
         Outcome::Found { start, motions, expanded, .. } => (start, motions, expanded),
         Outcome::Timeout { expanded } => return Err(Error::Timeout { expanded }),
@@ -255,6 +261,9 @@ fn nearest_connected(lattice: &Lattice<'_>, field: &GoalField, ends: &Ends) -> E
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let [gx, gy] = grid.center_m(ends.goal.cell);
     let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
+    if gap_m == 0.0 {
+        return Error::NoRoomToTurn { x_m, y_m };
+    }
     Error::NoPath { gap_m, x_m, y_m }
 }
 

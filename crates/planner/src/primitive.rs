@@ -58,7 +58,7 @@ const ARC_TURNS: [i32; 4] = [1, -1, 2, -2];
 /// Headings in half a turn.
 const HALF_CIRCLE: i32 = HEADINGS as i32 / 2;
 /// Longest lead-in, in lattice steps, that an arc may need to fit its radius.
-const LONGEST_LEAD: i32 = 64;
+pub(crate) const LONGEST_LEAD: i32 = 64;
 
 impl Piece {
     /// Signed turning radius, positive with the centre on the left; `None` on a straight, 0 on the spot [m].
@@ -146,8 +146,9 @@ fn arc(robot: &Robot, from: Heading, turns: i32, cell_size_m: f64) -> Option<Mot
     };
     let widest_m = |lead: i32| f64::from(lead) * step_m(from).min(step_m(to)) / (turn.abs() / 2.0).tan();
     let tightest_m = robot.half_slip_track_m();
-    let lead = (1..=LONGEST_LEAD).find(|lead| widest_m(*lead) >= tightest_m)?;
-    let widest_m = widest_m(lead);
+    // Rounding must not cost an arc at the finest cells that the lattice accepts.
+    let lead = (1..=LONGEST_LEAD).find(|lead| widest_m(*lead) >= tightest_m * (1.0 - 1e-9))?;
+    let widest_m = widest_m(lead).max(tightest_m);
     let leads_m = [f64::from(lead) * step_m(from), f64::from(lead) * step_m(to)];
     let variants = [tightest_m, (tightest_m * widest_m).sqrt(), widest_m]
         .map(|radius_m| rounded_corner(from.angle_rad(), turn, leads_m, radius_m))

@@ -65,8 +65,9 @@ impl Route {
             edges: Vec::new(),
         };
         let mut state = start;
+        let weights = lattice.weights(objective);
         for &motion in motions {
-            let Some((variant, _)) = cheapest(lattice, objective, state, motion) else { break };
+            let Some((variant, _)) = cheapest(lattice, &weights, state, motion) else { break };
             let Some(end) = lattice.successor(state, motion) else { break };
             let mut edge = Edge::default();
             let origin_m = lattice.terrain.grid.center_m(state.cell);

@@ -3,7 +3,7 @@
 use terrain::Cell;
 
 use crate::{
-    error::{Error, Place},
+    error::{Blocked, Error, Place},
     heading::{Heading, turn_rad},
     lattice::{Lattice, State},
 };
@@ -62,13 +62,10 @@ pub(crate) fn snap(lattice: &Lattice<'_>, asked: &Asked) -> Result<Snapped, Erro
             return Ok(Snapped { cell, headings, distance_m: distance_m(cell), turn_rad: turned });
         }
     }
+    // The home cell was among the candidates, so whatever heading was wanted is blocked there.
     let heading = wanted.unwrap_or(Heading::new(0));
-    match lattice.stand(State { cell: home, heading }) {
-        Err(reason) => {
-            Err(Error::PlaceBlocked { place, x_m, y_m, snap_radius_m: asked.snap_radius_m, reason })
-        }
-        Ok(()) => Err(Error::NoPath { gap_m: 0.0, x_m, y_m }),
-    }
+    let reason = lattice.stand(State { cell: home, heading }).err().unwrap_or(Blocked::Edge);
+    Err(Error::PlaceBlocked { place, x_m, y_m, snap_radius_m: asked.snap_radius_m, reason })
 }
 
 /// Cells within a distance of a cell, by king's moves, on the map.

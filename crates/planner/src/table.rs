@@ -7,9 +7,10 @@ use rayon::prelude::*;
 use crate::{
     cost::{FORBIDDEN, LARGEST_ROUNDING, UNITS_OF_REFERENCE, decode},
     edge::Edge,
-    heading::{HEADINGS, Heading},
+    heading::HEADINGS,
     lattice::{Lattice, State},
     layout::Layout,
+    patience::Patience,
     tile::TileKernel,
 };
 
@@ -25,44 +26,42 @@ pub enum Objective {
     Time,
 }
 
-/// What a joule weighs where length or time decide, in metres or seconds: enough to choose between equals, and at
-/// 100 kJ a centimetre.
-const TIE_PER_J: f64 = 1e-7;
+/// Share of a path's length or time that its energy may weigh on level ground, to choose between equals.
+const TIE_SHARE: f64 = 1e-5;
 
 /// An objective as weights of what a motion takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights {
     /// Of energy beyond lifting.
-    pub(crate) per_j: f32,
+    pub(crate) per_j: f64,
     /// Of length.
-    pub(crate) per_m: f32,
+    pub(crate) per_m: f64,
     /// Of time.
-    pub(crate) per_s: f32,
+    pub(crate) per_s: f64,
 }
 
 impl Objective {
-    pub(crate) fn weights(self) -> Weights {
-        let tie = TIE_PER_J as f32;
+    /// The objective's weights for a robot that takes `level` for a step on level ground.
+    pub(crate) fn weights(self, level: &Edge) -> Weights {
+        let tie = |amount: f64| if level.energy_j > 0.0 { TIE_SHARE * amount / level.energy_j } else { 0.0 };
         match self {
             Objective::Energy => Weights { per_j: 1.0, per_m: 0.0, per_s: 0.0 },
-            Objective::Distance => Weights { per_j: tie, per_m: 1.0, per_s: 0.0 },
-            Objective::Time => Weights { per_j: tie, per_m: 0.0, per_s: 1.0 },
+            Objective::Distance => Weights { per_j: tie(level.length_m), per_m: 1.0, per_s: 0.0 },
+            Objective::Time => Weights { per_j: tie(level.duration_s), per_m: 0.0, per_s: 1.0 },
         }
     }
+}
 
+impl Weights {
     /// Cost of a motion that was driven, between places whose height potentials differ by `lifted_j`.
-    pub fn cost(self, edge: &Edge, lifted_j: f64) -> f64 {
+    pub(crate) fn cost(&self, edge: &Edge, lifted_j: f64) -> f64 {
         let friction_j = edge.energy_j - lifted_j;
         debug_assert!(
             friction_j >= -1e-6 * (1.0 + lifted_j.abs()),
             "a motion gained {friction_j} J besides gravity"
         );
-        let friction_j = friction_j.max(0.0);
-        match self {
-            Objective::Energy => friction_j,
-            Objective::Distance => edge.length_m + TIE_PER_J * friction_j,
-            Objective::Time => edge.duration_s + TIE_PER_J * friction_j,
-        }
+        // Only rounding can have made it negative.
+        self.per_j * friction_j.max(0.0) + self.per_m * edge.length_m + self.per_s * edge.duration_s
     }
 }
 
@@ -82,23 +81,28 @@ impl<'l> CostTable<'l> {
 
     /// A table that evaluates nothing yet.
     pub fn lazy(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
-        let units = UNITS_OF_REFERENCE / reference_cost(lattice, objective);
+        let weights = lattice.weights(objective);
+        let units = UNITS_OF_REFERENCE / reference_cost(lattice, &weights);
         CostTable {
             lattice,
-            kernel: TileKernel::new(lattice, objective.weights(), units),
+            kernel: TileKernel::new(lattice, weights, units),
             units,
             tiles: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
         }
     }
 
-    /// A table with every tile evaluated, in parallel.
-    pub fn new(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
+    /// A table with every tile evaluated, in parallel; `None` when patience ends first.
+    pub fn new(lattice: &'l Lattice<'l>, objective: Objective, patience: &Patience) -> Option<Self> {
         let table = Self::lazy(lattice, objective);
         let Layout { tile_rows, tile_columns, .. } = lattice.layout;
-        (0..tile_rows * tile_columns).into_par_iter().for_each(|i| {
+        let evaluated = (0..tile_rows * tile_columns).into_par_iter().try_for_each(|i| {
+            if patience.is_over() {
+                return None;
+            }
             table.tile(lattice.layout.tile_at(i / tile_columns, i % tile_columns));
+            Some(())
         });
-        table
+        evaluated.map(|()| table)
     }
 
     /// Units per joule, metre or second.
@@ -129,21 +133,16 @@ impl<'l> CostTable<'l> {
 }
 
 /// Cost of one step east on level ground, which sets the scale.
-fn reference_cost(lattice: &Lattice<'_>, objective: Objective) -> f64 {
-    let level = lattice.chain(Heading::new(0), 0, 0).on_level_ground();
-    let cost = objective.cost(&level, 0.0);
+fn reference_cost(lattice: &Lattice<'_>, weights: &Weights) -> f64 {
+    let cost = weights.cost(&lattice.level_step(), 0.0);
     // A robot without any friction still needs a scale: that of lifting it by a thousandth of a cell.
-    cost.max(
-        1e-3 * lattice.lift_j_per_m()
-            * lattice.terrain.grid.cell_size_m
-            * f64::from(objective.weights().per_j),
-    )
+    cost.max(1e-3 * lattice.lift_j_per_m() * lattice.terrain.grid.cell_size_m * weights.per_j)
 }
 
 /// The cheapest way to drive a motion from a state: its variant and cost.
 pub(crate) fn cheapest(
     lattice: &Lattice<'_>,
-    objective: Objective,
+    weights: &Weights,
     state: State,
     motion: usize,
 ) -> Option<(usize, f64)> {
@@ -152,7 +151,7 @@ pub(crate) fn cheapest(
     lattice
         .variants(state.cell, state.heading, motion)
         .enumerate()
-        .filter_map(|(variant, edge)| Some((variant, objective.cost(&edge?, lifted_j))))
+        .filter_map(|(variant, edge)| Some((variant, weights.cost(&edge?, lifted_j))))
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

@@ -21,7 +21,9 @@ pub(crate) struct TileKernel {
     pub(crate) stride: usize,
     halo: usize,
     limits: RowLimits,
-    weights: Weights,
+    per_j: f32,
+    per_m: f32,
+    per_s: f32,
     /// Units per joule, metre or second of the objective.
     units: f32,
     lift_j_per_m: f32,
@@ -38,8 +40,6 @@ struct RowLimits {
 struct RowChain {
     heading: usize,
     motion: usize,
-    /// Whether this is the first variant of its motion.
-    first: bool,
     reach: u8,
     sweep: Vec<(i32, i32)>,
     steps: Vec<RowStep>,
@@ -77,8 +77,8 @@ impl TileKernel {
         let mut chains = Vec::new();
         for (heading, motions) in lattice.chains.iter().enumerate() {
             for (motion, variants) in motions.iter().enumerate() {
-                for (variant, chain) in variants.iter().enumerate() {
-                    chains.push(RowChain::new(heading, motion, variant == 0, chain));
+                for chain in variants {
+                    chains.push(RowChain::new(heading, motion, chain));
                 }
             }
         }
@@ -94,7 +94,9 @@ impl TileKernel {
                 roll_grade: limits.roll_grade as f32,
                 side_force_n: limits.side_force_n as f32,
             },
-            weights,
+            per_j: weights.per_j as f32,
+            per_m: weights.per_m as f32,
+            per_s: weights.per_s as f32,
             units: units as f32,
             lift_j_per_m: lattice.lift_j_per_m() as f32,
         }
@@ -149,9 +151,9 @@ fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, costs: &mut [L
 }
 
 impl RowChain {
-    fn new(heading: usize, motion: usize, first: bool, chain: &Chain) -> Self {
+    fn new(heading: usize, motion: usize, chain: &Chain) -> Self {
         let (sweep, reach) = chain.sweep();
-        RowChain { heading, motion, first, reach, sweep: sweep.to_vec(), steps: chain.row_steps().collect() }
+        RowChain { heading, motion, reach, sweep: sweep.to_vec(), steps: chain.row_steps().collect() }
     }
 
     #[inline(always)]
@@ -161,7 +163,6 @@ impl RowChain {
         for step in &self.steps {
             step.evaluate(kernel, window, row, &mut height_m, costs);
         }
-        let _ = self.first;
     }
 }
 
@@ -229,8 +230,7 @@ impl RowStep {
         let lifted_m = if turning { f32::ZERO } else { rise_m };
         let friction_j = bus_w * duration_s - kernel.lift_j_per_m * lifted_m;
         let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
-        let w = &kernel.weights;
-        let cost = w.per_j * friction_j + w.per_m * length_m + w.per_s * duration_s;
+        let cost = kernel.per_j * friction_j + kernel.per_m * length_m + kernel.per_s * duration_s;
         let limits = &kernel.limits;
         // Written so that a NaN of unknown ground fails too.
         let allowed = (grade.abs() <= limits.pitch_grade)

@@ -1,6 +1,6 @@
 //! How far a path's energy may be off, given what is known of the robot.
 
-use model::{PowerModel, Robot};
+use model::{PowerModel, Robot, robot::Surface};
 
 use crate::route::Route;
 
@@ -12,8 +12,8 @@ type Parameter = (f64, fn(&mut Robot, f64));
 
 /// Central 95 % interval of a path's energy [J].
 ///
-/// To first order: the energy is computed anew with each parameter one sigma up and one down, half the differences
-/// are taken as independent standard deviations.
+/// The energy is computed anew with each parameter one sigma up and one down; the larger of the two changes counts as
+/// that parameter's standard deviation, and the parameters as independent.
 pub(crate) fn energy_interval_j(
     route: &Route,
     robot: &Robot,
@@ -24,8 +24,8 @@ pub(crate) fn energy_interval_j(
     let energy_j = |changed: &Robot| route.energy_with_j(changed, model, surfaces, motor_temperature_c);
     let u = &robot.uncertainty;
     let parameters: [Parameter; 5] = [
-        (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| s.mu_roll *= factor)),
-        (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| s.mu_skid *= factor)),
+        (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| scale_rolling(s, factor))),
+        (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| scale_skid(s, factor))),
         (u.k1, |r, factor| {
             r.motors.left.k1_w_per_n2 *= factor;
             r.motors.right.k1_w_per_n2 *= factor;
@@ -42,9 +42,27 @@ pub(crate) fn energy_interval_j(
             let mut changed = [robot.clone(), robot.clone()];
             scale(&mut changed[0], 1.0 + sigma);
             scale(&mut changed[1], 1.0 - sigma);
-            ((energy_j(&changed[0]) - energy_j(&changed[1])) / 2.0).powi(2)
+            let [up_j, down_j] = changed.map(|r| (energy_j(&r) - route.total.energy_j).abs());
+            up_j.max(down_j).powi(2)
         })
         .sum();
     let half_j = NORMAL_95 * variance_j2.sqrt();
     [route.total.energy_j - half_j, route.total.energy_j + half_j]
+}
+
+fn scale_rolling(surface: &mut Surface, factor: f64) {
+    surface.mu_roll *= factor;
+    for row in surface.dogru_marques.iter_mut().flat_map(|paper| &mut paper.by_speed) {
+        row.mu_roll *= factor;
+    }
+}
+
+/// Turning against each other the sides mostly skid, so the printed form's inner friction goes with μ_S.
+fn scale_skid(surface: &mut Surface, factor: f64) {
+    surface.mu_skid *= factor;
+    let Some(paper) = &mut surface.dogru_marques else { return };
+    paper.inner_friction = paper.inner_friction.map(|friction| friction * factor);
+    for row in &mut paper.by_speed {
+        row.mu_skid *= factor;
+    }
 }

@@ -5,7 +5,7 @@
 use approx::assert_relative_eq;
 use model::{Attitude, Motion, PowerModel, Sides, builtin, power};
 use planner::{
-    Error, Goal, HEADINGS, Lattice, Objective, Plan, Query, Settings, Start, State, compare, plan,
+    Error, Goal, HEADINGS, Lattice, Objective, Patience, Plan, Query, Settings, Start, State, compare, plan,
 };
 use rand::RngExt;
 use terrain::{Cell, Grid, Terrain, io, synthetic};
@@ -27,7 +27,7 @@ fn across(terrain: &Terrain, robot: &model::Robot) -> Query {
         goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
         settings: Settings::of(robot),
         snap_radius_m: None,
-        deadline: None,
+        patience: Patience::default(),
     }
 }
 
@@ -172,7 +172,7 @@ fn turned_and_mirrored_ground_gives_the_same_costs() {
         let straight = plan(&terrain, &robot, &query, Objective::Energy).unwrap();
         let place = |mirror: bool, x: f64, y: f64| if mirror { (side_m - x, y) } else { (side_m - y, x) };
         for mirror in [false, true] {
-            let mut other = query;
+            let mut other = query.clone();
             (other.start.x_m, other.start.y_m) = place(mirror, query.start.x_m, query.start.y_m);
             (other.goal.x_m, other.goal.y_m) = place(mirror, query.goal.x_m, query.goal.y_m);
             let heading = query.start.heading_rad.unwrap();
@@ -253,10 +253,10 @@ fn obstacles_are_kept_clear_of_and_reversing_helps_where_there_is_no_room_to_tur
         goal: Goal { x_m: 8.0, y_m: 2.5, heading_rad: Some(std::f64::consts::PI), tolerance_m: 0.0 },
         settings: Settings::of(&robot),
         snap_radius_m: None,
-        deadline: None,
+        patience: Patience::default(),
     };
     let error = plan(&terrain, &robot, &query, Objective::Energy).unwrap_err();
-    assert!(matches!(error, Error::NoPath { .. }), "{error}");
+    assert!(matches!(error, Error::NoRoomToTurn { .. }), "{error}");
     query.settings.reverse = true;
     let out = plan(&terrain, &robot, &query, Objective::Energy).unwrap();
     assert!(out.route.steps.iter().all(|s| s.motion.speed_mps <= 0.0), "it must back out");
@@ -279,7 +279,7 @@ fn on_the_real_map_the_energy_minimal_path_is_cheaper_on_nine_of_ten_pairs_and_n
             goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
             settings: Settings::of(&robot),
             snap_radius_m: None,
-            deadline: None,
+            patience: Patience::default(),
         };
         let both = compare(&terrain, &robot, &query).unwrap();
         let (e, d, t) = (&both.energy.route.total, &both.distance.route.total, &both.time.route.total);

@@ -5,7 +5,7 @@
 use std::time::{Duration, Instant};
 
 use model::builtin;
-use planner::{Blocked, Error, Goal, Objective, Place, Query, Settings, Start, plan};
+use planner::{Blocked, Error, Goal, Objective, Patience, Place, Query, Settings, Start, plan};
 use terrain::{Cell, Grid, Surfaces, Terrain};
 
 const GRID: Grid = Grid { rows: 20, columns: 20, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
@@ -20,7 +20,7 @@ fn query(start: (f64, f64), goal: (f64, f64)) -> Query {
         goal: Goal { x_m: goal.0, y_m: goal.1, heading_rad: None, tolerance_m: 0.0 },
         settings: Settings::of(&builtin::husky_a200()),
         snap_radius_m: None,
-        deadline: None,
+        patience: Patience::default(),
     }
 }
 
@@ -109,6 +109,10 @@ fn cells_finer_than_the_lattice_can_turn_on_are_refused_with_the_size_that_works
     wide.slip_track_m = 5.0;
     let error = plan(&terrain, &wide, &query((0.1, 0.1), (0.2, 0.2)), Objective::Energy).unwrap_err();
     assert!(matches!(error, Error::CellsTooFine { .. }), "{error}");
+    let mut long = builtin::husky_a200();
+    long.wheelbase_m = 10.0;
+    let error = plan(&terrain, &long, &query((0.1, 0.1), (0.2, 0.2)), Objective::Energy).unwrap_err();
+    assert!(error.to_string().contains("resample"), "{error}");
 }
 
 #[test]
@@ -116,6 +120,6 @@ fn a_deadline_in_the_past_stops_a_long_search() {
     let grid = Grid { rows: 120, columns: 120, ..GRID };
     let terrain = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
     let mut long = query((5.5, 5.5), (115.5, 80.5));
-    long.deadline = Some(Instant::now() - Duration::from_secs(1));
+    long.patience = Patience::until(Instant::now() - Duration::from_secs(1));
     assert!(matches!(refused(&terrain, &long), Error::Timeout { .. }));
 }

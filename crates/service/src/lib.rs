@@ -16,6 +16,7 @@ mod store;
 
 pub use engine::Engine;
 pub use limits::Limits;
+pub use planner::Patience;
 pub use problem::{Problem, ProblemType};
 pub use router::{openapi, router};
 pub use serve::{Running, serve, start};

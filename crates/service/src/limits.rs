@@ -13,8 +13,12 @@ pub struct Limits {
     pub plan_states: usize,
     /// Most cells over all stored maps. Default 200 million.
     pub stored_cells: usize,
-    /// Plans that run at the same time; more wait. Default: one for each core.
+    /// Computations that run at the same time; more wait. Default: one for each core.
     pub parallel_plans: usize,
+    /// Longest pause while a body is sent [s]. Default 30 s.
+    pub body_pause: Duration,
+    /// Longest wait for requests under way when the service is asked to end [s]. Default 10 s.
+    pub drain_time: Duration,
 }
 
 impl Default for Limits {
@@ -25,6 +29,15 @@ impl Default for Limits {
             plan_states: 32_000_000,
             stored_cells: 200_000_000,
             parallel_plans: std::thread::available_parallelism().map_or(1, usize::from),
+            body_pause: Duration::from_secs(30),
+            drain_time: Duration::from_secs(10),
         }
+    }
+}
+
+impl Limits {
+    /// Most cells of a map that can be planned over.
+    pub fn map_cells(&self) -> u64 {
+        (self.plan_states / planner::HEADINGS) as u64
     }
 }

@@ -143,6 +143,17 @@ impl Problem {
         self
     }
 
+    /// Moves pointers into a field that the request did not have to the one that stood for it.
+    #[must_use]
+    pub(crate) fn moved(mut self, from: &str, to: &str) -> Self {
+        for error in
+            self.errors.iter_mut().filter(|e| e.pointer == from || e.pointer.starts_with(&format!("{from}/")))
+        {
+            to.clone_into(&mut error.pointer);
+        }
+        self
+    }
+
     /// A map that cannot be used; `under` is where it stands in the request.
     pub fn invalid_map(error: &terrain::Error, under: &str) -> Self {
         let kind = match error {
@@ -183,11 +194,12 @@ impl Problem {
                     if *end == Place::Start { ProblemType::StartBlocked } else { ProblemType::GoalBlocked };
                 (kind, Some(place(end).to_owned()))
             }
-            E::NoPath { .. } => (ProblemType::NoPath, None),
+            E::NoPath { .. } | E::NoRoomToTurn { .. } => (ProblemType::NoPath, None),
             E::Timeout { .. } => (ProblemType::Timeout, None),
             E::UnknownSurface { .. } => (ProblemType::UnknownSurface, Some("/robot/surfaces".into())),
             E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, Some(pointer(field))),
             E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
+            E::TooManyStates { .. } => (ProblemType::TooLarge, Some("/map".into())),
             _ => (ProblemType::Internal, None),
         };
         let problem = Problem::new(kind, error.to_string());
@@ -203,9 +215,14 @@ pub(crate) fn pointer(path: &str) -> String {
     let mut pointer = String::new();
     for part in path.split(['.', '[']).map(|part| part.trim_end_matches(']')).filter(|p| !p.is_empty()) {
         pointer.push('/');
-        pointer.push_str(&part.replace('~', "~0").replace('/', "~1"));
+        pointer.push_str(&escaped(part));
     }
     pointer
+}
+
+/// A name as part of a JSON pointer.
+pub(crate) fn escaped(name: &str) -> String {
+    name.replace('~', "~0").replace('/', "~1")
 }
 
 impl IntoResponse for Problem {

@@ -10,8 +10,13 @@ use axum::{
 };
 use tower::ServiceBuilder;
 use tower_http::{
-    ServiceBuilderExt, catch_panic::CatchPanicLayer, request_id::MakeRequestUuid, trace::TraceLayer,
+    ServiceBuilderExt,
+    catch_panic::CatchPanicLayer,
+    request_id::MakeRequestUuid,
+    timeout::RequestBodyTimeoutLayer,
+    trace::{DefaultMakeSpan, DefaultOnResponse, TraceLayer},
 };
+use tracing::Level;
 use utoipa::OpenApi;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
@@ -57,6 +62,7 @@ pub fn openapi() -> utoipa::openapi::OpenApi {
 pub fn router(engine: Engine) -> Router {
     let (routes, description) = described();
     let document = description.to_pretty_json().unwrap_or_default();
+    let body_pause = engine.limits().body_pause;
     let request_id = HeaderName::from_static("x-request-id");
     routes
         .route("/openapi.json", get(|| async move { ([("content-type", "application/json")], document) }))
@@ -71,9 +77,14 @@ pub fn router(engine: Engine) -> Router {
         .layer(
             ServiceBuilder::new()
                 .set_request_id(request_id.clone(), MakeRequestUuid)
-                .layer(TraceLayer::new_for_http())
+                .layer(
+                    TraceLayer::new_for_http()
+                        .make_span_with(DefaultMakeSpan::new().level(Level::INFO))
+                        .on_response(DefaultOnResponse::new().level(Level::INFO)),
+                )
                 .propagate_request_id(request_id)
-                .layer(CatchPanicLayer::custom(panicked)),
+                .layer(CatchPanicLayer::custom(panicked))
+                .layer(RequestBodyTimeoutLayer::new(body_pause)),
         )
         .with_state(engine)
 }

@@ -15,7 +15,11 @@ use crate::{Engine, router};
 /// # Errors
 /// When the listener or the runtime cannot be used.
 pub fn serve(listener: TcpListener, engine: Engine) -> io::Result<()> {
-    runtime()?.block_on(run(listener, engine, asked_to_end()))
+    let runtime = runtime()?;
+    let outcome = runtime.block_on(run(listener, engine, asked_to_end()));
+    // Computations that outlast the drain have no one to answer.
+    runtime.shutdown_background();
+    outcome
 }
 
 /// A service on a thread of its own, for a program that talks to it.
@@ -35,9 +39,11 @@ pub fn start(listener: TcpListener, engine: Engine) -> io::Result<Running> {
     let runtime = runtime()?;
     let (stop, stopped) = oneshot::channel();
     let thread = std::thread::spawn(move || {
-        runtime.block_on(run(listener, engine, async {
+        let outcome = runtime.block_on(run(listener, engine, async {
             let _ = stopped.await;
-        }))
+        }));
+        runtime.shutdown_background();
+        outcome
     });
     Ok(Running { address, stop: Some(stop), thread: Some(thread) })
 }
@@ -62,7 +68,21 @@ async fn run(
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    axum::serve(listener, router(engine)).with_graceful_shutdown(stop).await
+    let drain_time = engine.limits().drain_time;
+    let (draining, drained) = oneshot::channel();
+    let stop = async {
+        stop.await;
+        let _ = draining.send(());
+    };
+    let serving = axum::serve(listener, router(engine)).with_graceful_shutdown(stop);
+    tokio::select! {
+        outcome = serving.into_future() => outcome,
+        // A client that stalls must not keep the service from ending.
+        () = async {
+            let _ = drained.await;
+            tokio::time::sleep(drain_time).await;
+        } => Ok(()),
+    }
 }
 
 async fn asked_to_end() {

@@ -7,41 +7,50 @@ use std::{
 
 use terrain::Terrain;
 
-use crate::problem::{Problem, ProblemType};
+use crate::{
+    problem::{Problem, ProblemType},
+    routes::maps::MapSummary,
+};
 
 /// Maps by content hash, in memory.
 #[derive(Debug, Default)]
 pub(crate) struct MapStore {
-    maps: RwLock<BTreeMap<String, Arc<Terrain>>>,
+    maps: RwLock<BTreeMap<String, Stored>>,
+}
+
+/// A map with what is told of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Stored {
+    pub(crate) terrain: Arc<Terrain>,
+    pub(crate) summary: MapSummary,
 }
 
 impl MapStore {
-    /// Keeps a map; the same map twice is one. Returns its id and whether it is new.
-    pub(crate) fn insert(&self, terrain: Terrain, most_cells: usize) -> Result<(String, bool), Problem> {
-        let id = terrain.content_id();
+    /// Keeps a map; the same map twice is one. Returns whether it is new.
+    pub(crate) fn insert(&self, map: Stored, most_cells: usize) -> Result<bool, Problem> {
         let mut maps = self.maps.write().unwrap_or_else(PoisonError::into_inner);
-        if maps.contains_key(&id) {
-            return Ok((id, false));
+        if maps.contains_key(&map.summary.id) {
+            return Ok(false);
         }
-        let held: usize = maps.values().map(|map| map.grid.cells()).sum();
-        if held + terrain.grid.cells() > most_cells {
+        let held: usize = maps.values().map(|map| map.terrain.grid.cells()).sum();
+        if held + map.terrain.grid.cells() > most_cells {
             let detail = format!("{held} of {most_cells} cells are taken: delete a map first");
             return Err(Problem::new(ProblemType::StoreFull, detail));
         }
-        maps.insert(id.clone(), Arc::new(terrain));
-        Ok((id, true))
+        maps.insert(map.summary.id.clone(), map);
+        Ok(true)
     }
 
     /// The map with an id.
     pub(crate) fn get(&self, id: &str) -> Result<Arc<Terrain>, Problem> {
         let maps = self.maps.read().unwrap_or_else(PoisonError::into_inner);
-        maps.get(id).cloned().ok_or_else(|| unknown(id))
+        maps.get(id).map(|map| Arc::clone(&map.terrain)).ok_or_else(|| unknown(id))
     }
 
-    /// All maps in the order of their ids.
-    pub(crate) fn list(&self) -> Vec<(String, Arc<Terrain>)> {
+    /// All maps in brief, in the order of their ids.
+    pub(crate) fn list(&self) -> Vec<MapSummary> {
         let maps = self.maps.read().unwrap_or_else(PoisonError::into_inner);
-        maps.iter().map(|(id, map)| (id.clone(), Arc::clone(map))).collect()
+        maps.values().map(|map| map.summary.clone()).collect()
     }
 
     /// Forgets a map.

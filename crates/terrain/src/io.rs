@@ -22,16 +22,17 @@ pub fn read_path(path: &Path) -> Result<Terrain, Error> {
     match ending.as_str() {
         "json" => json::read(text(&bytes()?)?),
         "asc" => ascii::read(text(&bytes()?)?),
-        "tif" | "tiff" => geotiff::read(&bytes()?),
+        "tif" | "tiff" => geotiff::read(&bytes()?, Terrain::MAX_CELLS),
         "yaml" | "yml" => ros_map::read(text(&bytes()?)?, path.parent().unwrap_or(Path::new("."))),
         _ => Err(Error::UnknownFormat { path: path.display().to_string() }),
     }
 }
 
-/// The bytes as text.
+/// The bytes as text, without a byte order mark.
 ///
 /// # Errors
 /// [`Error::NotText`] with the first byte that is not UTF-8.
 pub fn text(bytes: &[u8]) -> Result<&str, Error> {
-    std::str::from_utf8(bytes).map_err(|e| Error::NotText { position: e.valid_up_to() })
+    let text = std::str::from_utf8(bytes).map_err(|e| Error::NotText { position: e.valid_up_to() })?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }

@@ -10,7 +10,7 @@ pub struct Terrain {
     /// Elevation that `relative_m` counts from [m].
     base_m: f64,
     /// Elevation above `base_m`, row-major, NaN where unknown [m]. Single precision over the relief only keeps
-    /// it below a tenth of a millimetre, whatever the height above the sea.
+    /// it to a tenth of a millimetre up to 1.6 km of relief, whatever the height above the sea.
     relative_m: Vec<f32>,
     surfaces: Option<Surfaces>,
     obstacle: Option<Vec<bool>>,

@@ -10,6 +10,10 @@ use tiff::{
     tags::Tag,
 };
 
+fn read(tiff: &[u8]) -> Result<Terrain, Error> {
+    io::geotiff::read(tiff, Terrain::MAX_CELLS)
+}
+
 fn shipped(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../maps").join(name)
 }
@@ -74,34 +78,29 @@ fn check_sample(terrain: &Terrain) {
 
 #[test]
 fn float_and_integer_geotiffs_are_read_and_nodata_is_unknown() {
-    let f = io::geotiff::read(
-        &Sample::plain().write::<colortype::Gray32Float>(&[1.0, 2.0, -9999.0, 4.0, 5.0, 6.0]),
-    );
+    let f = read(&Sample::plain().write::<colortype::Gray32Float>(&[1.0, 2.0, -9999.0, 4.0, 5.0, 6.0]));
     let f = f.unwrap();
     check_sample(&f);
     assert_eq!(f.elevation_m(Cell { row: 1, column: 2 }), None);
-    let i = io::geotiff::read(&Sample::plain().write::<colortype::GrayI16>(&[1, 2, -9999, 4, 5, 6])).unwrap();
+    let i = read(&Sample::plain().write::<colortype::GrayI16>(&[1, 2, -9999, 4, 5, 6])).unwrap();
     check_sample(&i);
     assert_eq!(i.elevation_m(Cell { row: 1, column: 2 }), None);
-    check_sample(
-        &io::geotiff::read(&Sample::plain().write::<colortype::Gray16>(&[1, 2, 3, 4, 5, 6])).unwrap(),
-    );
+    check_sample(&read(&Sample::plain().write::<colortype::Gray16>(&[1, 2, 3, 4, 5, 6])).unwrap());
     let d = Sample::plain().write::<colortype::Gray64Float>(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-    check_sample(&io::geotiff::read(&d).unwrap());
+    check_sample(&read(&d).unwrap());
 }
 
 #[test]
 fn a_point_raster_lies_half_a_cell_further_out() {
     let keys = vec![1, 1, 0, 2, 1024, 0, 1, 1, 1025, 0, 1, 2];
     let tiff = Sample { keys, ..Sample::plain() }.write::<colortype::GrayI16>(&[1, 2, 3, 4, 5, 6]);
-    assert_eq!(io::geotiff::read(&tiff).unwrap().grid.origin_m, [99.75, 200.25]);
+    assert_eq!(read(&tiff).unwrap().grid.origin_m, [99.75, 200.25]);
 }
 
 #[test]
 fn unusable_geotiffs_are_refused_by_what_they_lack() {
     let samples = [1, 2, 3, 4, 5, 6];
-    let refused =
-        |sample: &Sample| io::geotiff::read(&sample.write::<colortype::GrayI16>(&samples)).unwrap_err();
+    let refused = |sample: &Sample| read(&sample.write::<colortype::GrayI16>(&samples)).unwrap_err();
     let no_scale = refused(&Sample { scale: None, ..Sample::plain() });
     assert!(no_scale.to_string().contains("ModelPixelScale"), "{no_scale}");
     let degrees = refused(&Sample { keys: vec![1, 1, 0, 1, 1024, 0, 1, 2], ..Sample::plain() });
@@ -112,17 +111,23 @@ fn unusable_geotiffs_are_refused_by_what_they_lack() {
     assert!(oblong.to_string().contains("pixel height"), "{oblong}");
     let unmarked =
         Sample { nodata: None, ..Sample::plain() }.write::<colortype::GrayI16>(&[1, 2, -9999, 4, 5, 6]);
-    let unmarked = io::geotiff::read(&unmarked).unwrap_err();
+    let unmarked = read(&unmarked).unwrap_err();
     assert_eq!(unmarked.field().as_deref(), Some("elevation_m[1][2]"));
+    let us_foot = Sample { keys: vec![1, 1, 0, 1, 4099, 0, 1, 9003], ..Sample::plain() };
+    assert!(refused(&us_foot).to_string().contains("vertical"));
+    let crowded = io::geotiff::read(&Sample::plain().write::<colortype::GrayI16>(&samples), 5).unwrap_err();
+    assert!(matches!(crowded, Error::TooManyCells { limit: 5, .. }), "{crowded}");
+    let endless = Sample { nodata: Some("-inf"), ..Sample::plain() }.write::<colortype::GrayI16>(&samples);
+    assert!(read(&endless).is_ok(), "a nodata mark that no sample has");
     let rgb = Sample::plain().write::<colortype::RGB8>(&[0; 18]);
-    assert!(matches!(io::geotiff::read(&rgb), Err(Error::TiffSamples { .. })));
+    assert!(matches!(read(&rgb), Err(Error::TiffSamples { .. })));
 }
 
 #[test]
 fn a_truncated_or_boasting_geotiff_is_refused_without_its_size_being_allocated() {
     let whole = std::fs::read(shipped("minnesota.tif")).unwrap();
     for keep in [0, 7, 100, 1000, whole.len() / 2, whole.len() - 1] {
-        assert!(io::geotiff::read(&whole[..keep]).is_err(), "{keep} bytes were accepted");
+        assert!(read(&whole[..keep]).is_err(), "{keep} bytes were accepted");
     }
     // Patch the declared size of a small file to 23 170 × 23 170 floats, 2.1 GB; then to 11 000 × 11 000.
     for side in [23_170u32, 11_000] {
@@ -130,7 +135,7 @@ fn a_truncated_or_boasting_geotiff_is_refused_without_its_size_being_allocated()
         patch_tag(&mut small, 256, side);
         patch_tag(&mut small, 257, side);
         patch_tag(&mut small, 278, side);
-        let message = io::geotiff::read(&small).unwrap_err().to_string();
+        let message = read(&small).unwrap_err().to_string();
         assert!(message.contains("truncated") || message.contains("crop"), "{message}");
     }
 }

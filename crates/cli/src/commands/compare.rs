@@ -4,7 +4,7 @@ use clap::Args;
 use service::routes::{compare::answer, plan::ObjectiveName};
 
 use crate::{
-    arguments::{Question, deadline},
+    arguments::{Question, patience},
     failure::Refused,
     table,
 };
@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (terrain, request) = arguments.question.read(ObjectiveName::Energy)?;
-    let found = answer(&terrain, &request, deadline()).map_err(Refused)?;
+    let found = answer(&terrain, &request, &patience()).map_err(Refused)?;
     if arguments.question.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {

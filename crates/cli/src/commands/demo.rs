@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::Args;
 use serde_json::json;
 use service::{Engine, Limits, routes::compare::CompareAnswer, start};
-use terrain::io;
+use terrain::{Terrain, io};
 
 use crate::{picture, table};
 
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let url = format!("http://{}", service.address);
     println!("service    {url}, started in {:.0} ms", milliseconds(began));
 
-    let terrain = io::geotiff::read(MAP)?;
+    let terrain = io::geotiff::read(MAP, Terrain::MAX_CELLS)?;
     let began = Instant::now();
     let stored: serde_json::Value = ureq::post(format!("{url}/v1/maps"))
         .content_type("image/tiff")

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use service::routes::plan::{ObjectiveName, answer};
 
 use crate::{
-    arguments::{Question, deadline},
+    arguments::{Question, patience},
     failure::Refused,
     table,
 };
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Objective::Time => ObjectiveName::Time,
     };
     let (terrain, request) = arguments.question.read(objective)?;
-    let found = answer(&terrain, &request, deadline()).map_err(Refused)?;
+    let found = answer(&terrain, &request, &patience()).map_err(Refused)?;
     if arguments.question.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {

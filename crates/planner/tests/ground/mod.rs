@@ -4,7 +4,7 @@
 
 use model::{Robot, builtin};
 use petgraph::graph::{DiGraph, NodeIndex};
-use planner::{CostTable, Goal, Lattice, Objective, Query, Settings, Start};
+use planner::{CostTable, Goal, Lattice, Objective, Patience, Query, Settings, Start};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use terrain::{Grid, Surfaces, Terrain, synthetic};
@@ -63,7 +63,7 @@ pub(crate) fn some_query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot
         },
         settings: Settings { reverse: random.random_bool(0.3), ..Settings::of(robot) },
         snap_radius_m: None,
-        deadline: None,
+        patience: Patience::default(),
     }
 }
 
@@ -76,7 +76,7 @@ pub(crate) fn explicit_graph(lattice: &Lattice<'_>, objective: Objective) -> DiG
             let Some(end) = lattice.successor(state, motion) else { continue };
             let lifted_j = lattice.potential_j(end.cell) - lattice.potential_j(state.cell);
             for edge in lattice.variants(state.cell, state.heading, motion).flatten() {
-                let weight = (objective.cost(&edge, lifted_j), edge.energy_j);
+                let weight = (lattice.cost(objective, &edge, lifted_j), edge.energy_j);
                 graph.add_edge(NodeIndex::new(index), NodeIndex::new(lattice.index(end)), weight);
             }
         }

@@ -1,8 +1,7 @@
 //! `POST /v1/compare`: the energy-minimal, shortest and fastest paths side by side.
 
-use std::time::Instant;
-
 use axum::{Json, extract::State};
+use planner::Patience;
 use serde::{Deserialize, Serialize};
 use terrain::Terrain;
 use utoipa::ToSchema;
@@ -19,7 +18,8 @@ pub struct CompareAnswer {
     pub distance: PlanAnswer,
     /// Least time.
     pub time: PlanAnswer,
-    /// Share of the shortest path's energy that the energy-minimal one saves.
+    /// What the energy-minimal path saves, as a share of the size of the shortest path's energy: above 1 where the
+    /// energy-minimal path returns energy and the shortest takes some, 0 between equal places.
     pub saving_fraction: f64,
 }
 
@@ -48,9 +48,13 @@ pub(crate) async fn handler(
 ///
 /// # Errors
 /// As [`super::plan::answer`].
-pub fn answer(terrain: &Terrain, request: &PlanRequest, deadline: Instant) -> Result<CompareAnswer, Problem> {
+pub fn answer(
+    terrain: &Terrain,
+    request: &PlanRequest,
+    patience: &Patience,
+) -> Result<CompareAnswer, Problem> {
     let robot = request.robot.robot()?;
-    let query = request.query(&robot, deadline);
+    let query = request.query(&robot, patience);
     let found = planner::compare(terrain, &robot, &query).map_err(|e| Problem::no_plan(&e))?;
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),

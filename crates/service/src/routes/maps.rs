@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::{
     Json,
-    extract::{Path, Request, State},
+    extract::{Request, State},
     http::StatusCode,
 };
 use serde::Serialize;
@@ -13,8 +13,9 @@ use utoipa::ToSchema;
 
 use crate::{
     Engine,
-    body::{content_type, from_json, read as read_body},
+    body::{Id, content_type, from_json, read as read_body},
     problem::{Problem, ProblemType},
+    store::Stored,
 };
 
 /// A map in brief.
@@ -91,28 +92,31 @@ pub(crate) async fn create(
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
     let parse = parser(&content_type(&request))?;
     let bytes = read_body(request, &engine).await?;
-    let terrain = engine.compute(move || parse(&bytes)).await?;
-    let cells = terrain.grid.cells();
-    if cells > engine.limits().stored_cells {
-        let detail = format!("{cells} cells are more than this service keeps: crop the map");
-        return Err(Problem::new(ProblemType::TooLarge, detail));
-    }
-    let (id, new) = engine.maps().insert(terrain, engine.limits().stored_cells)?;
-    let summary = MapSummary::of(id.clone(), &*engine.maps().get(&id)?);
+    let most_cells = engine.limits().map_cells();
+    let map = engine
+        .compute(move |_| {
+            let terrain = parse(&bytes, most_cells)?;
+            refuse_too_large(&terrain, most_cells)?;
+            let summary = MapSummary::of(terrain.content_id(), &terrain);
+            Ok(Stored { terrain: Arc::new(terrain), summary })
+        })
+        .await?;
+    let summary = map.summary.clone();
+    let new = engine.maps().insert(map, engine.limits().stored_cells)?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
 }
 
-type Parser = fn(&[u8]) -> Result<Terrain, Problem>;
+type Parser = fn(&[u8], u64) -> Result<Terrain, Problem>;
 
 /// The reader for a content type.
 fn parser(kind: &str) -> Result<Parser, Problem> {
     Ok(match kind {
-        "application/json" => |bytes| terrain_from(from_json(bytes)?, ""),
+        "application/json" => |bytes, _| terrain_from(from_json(bytes)?, ""),
         "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => {
-            |bytes| io::text(bytes).and_then(io::ascii::read).map_err(|e| Problem::invalid_map(&e, ""))
+            |bytes, _| io::text(bytes).and_then(io::ascii::read).map_err(|e| Problem::invalid_map(&e, ""))
         }
         "image/tiff" | "image/geotiff" | "application/geotiff" => {
-            |bytes| io::geotiff::read(bytes).map_err(|e| Problem::invalid_map(&e, ""))
+            |bytes, most| io::geotiff::read(bytes, most).map_err(|e| Problem::invalid_map(&e, ""))
         }
         _ => {
             let detail = format!(
@@ -123,6 +127,18 @@ fn parser(kind: &str) -> Result<Parser, Problem> {
     })
 }
 
+/// Refuses a map that could be kept but not planned over.
+pub(crate) fn refuse_too_large(terrain: &Terrain, most_cells: u64) -> Result<(), Problem> {
+    let cells = terrain.grid.cells();
+    if cells as u64 <= most_cells {
+        return Ok(());
+    }
+    let detail = format!(
+        "the map has {cells} cells, more than the {most_cells} that can be planned over: crop it or use larger cells"
+    );
+    Err(Problem::new(ProblemType::TooLarge, detail))
+}
+
 /// A JSON grid as terrain; `under` is where it stands in the request.
 pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Problem> {
     Terrain::try_from(file).map_err(|error| Problem::invalid_map(&error, under))
@@ -131,8 +147,7 @@ pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Proble
 /// Maps at hand.
 #[utoipa::path(get, path = "/v1/maps", tag = "maps", responses((status = 200, body = MapList)))]
 pub(crate) async fn list(State(engine): State<Engine>) -> Json<MapList> {
-    let maps = engine.maps().list().into_iter().map(|(id, map)| MapSummary::of(id, &map)).collect();
-    Json(MapList { maps })
+    Json(MapList { maps: engine.maps().list() })
 }
 
 /// One map as a JSON grid.
@@ -141,10 +156,7 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Json<MapList> {
     params(("id" = String, Path, description = "Content hash of the map")),
     responses((status = 200, body = MapFile), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
-pub(crate) async fn read(
-    State(engine): State<Engine>,
-    Path(id): Path<String>,
-) -> Result<Json<MapFile>, Problem> {
+pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<MapFile>, Problem> {
     let map: Arc<Terrain> = engine.maps().get(&id)?;
     Ok(Json(MapFile::from(&*map)))
 }
@@ -155,10 +167,7 @@ pub(crate) async fn read(
     params(("id" = String, Path, description = "Content hash of the map")),
     responses((status = 204, description = "Forgotten"), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
-pub(crate) async fn remove(
-    State(engine): State<Engine>,
-    Path(id): Path<String>,
-) -> Result<StatusCode, Problem> {
+pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
     engine.maps().remove(&id)?;
     Ok(StatusCode::NO_CONTENT)
 }

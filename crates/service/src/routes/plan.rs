@@ -1,9 +1,6 @@
 //! `POST /v1/plan`: one path.
 
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{sync::Arc, time::Duration};
 
 use axum::{
     Json,
@@ -12,15 +9,18 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use model::PowerModel;
-use planner::{Goal, HEADINGS, Objective, Plan, Pose, Query, Settings, Snap, Start};
+use planner::{Goal, Objective, Patience, Plan, Pose, Query, Settings, Snap, Start};
 use serde::{Deserialize, Serialize};
 use terrain::{MapFile, Terrain};
 use utoipa::ToSchema;
 
-use super::{maps::terrain_from, robots::RobotChoice};
+use super::{
+    maps::{refuse_too_large, terrain_from},
+    robots::RobotChoice,
+};
 use crate::{
     Engine,
-    body::JsonBody,
+    body::{JsonBody, object, optional_object},
     geojson,
     problem::{Problem, ProblemType},
 };
@@ -30,14 +30,17 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub struct PlanRequest {
     /// The map itself; give this or `map_id`.
+    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, or a robot.
     pub robot: RobotChoice,
     /// Where the robot stands.
+    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// Where it is to go.
+    #[serde(deserialize_with = "object")]
     pub goal: GoalPose,
     /// What the path is to have least of. Default: `energy`.
     #[serde(default)]
@@ -185,10 +188,8 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Response, Problem> {
-    let as_geojson = headers
-        .get(header::ACCEPT)
-        .and_then(|v| v.to_str().ok())
-        .is_some_and(|accept| accept.contains("application/geo+json"));
+    let accept = headers.get(header::ACCEPT).and_then(|v| v.to_str().ok()).unwrap_or("*/*");
+    let as_geojson = preference(accept, "application/geo+json") > preference(accept, "application/json");
     let found = with_terrain(&engine, &mut request, answer).await?;
     if as_geojson {
         let body = geojson::path(&found);
@@ -197,31 +198,54 @@ pub(crate) async fn handler(
     Ok(Json(found).into_response())
 }
 
+/// How much an `Accept` header wants a media type, 0 to 1 (RFC 9110, section 12.5.1); the most specific range counts.
+fn preference(accept: &str, media_type: &str) -> f64 {
+    let group = media_type.split('/').next().unwrap_or_default();
+    let mut found = (0, 0.0);
+    for range in accept.split(',') {
+        let mut parts = range.split(';').map(str::trim);
+        let name = parts.next().unwrap_or_default();
+        let exactness = match name.split_once('/') {
+            _ if name.eq_ignore_ascii_case(media_type) => 3,
+            Some((g, "*")) if g == group => 2,
+            Some(("*", "*")) => 1,
+            _ => continue,
+        };
+        let weight = parts.find_map(|p| p.strip_prefix("q=")?.parse().ok()).unwrap_or(1.0);
+        if exactness > found.0 {
+            found = (exactness, weight);
+        }
+    }
+    found.1
+}
+
 /// Finds the request's map and answers on a thread for computations.
 pub(crate) async fn with_terrain<T: Send + 'static>(
     engine: &Engine,
     request: &mut PlanRequest,
-    answer: fn(&Terrain, &PlanRequest, Instant) -> Result<T, Problem>,
+    answer: fn(&Terrain, &PlanRequest, &Patience) -> Result<T, Problem>,
 ) -> Result<T, Problem> {
-    let deadline = Instant::now() + engine.limits().plan_time;
     let stored = choose_map(engine, request)?;
     let (inline, request) = (request.map.take(), request.clone());
-    let most_states = engine.limits().plan_states;
+    let most_cells = engine.limits().map_cells();
     engine
-        .compute(move || {
+        .compute(move |patience| {
             let terrain = match (stored, inline) {
                 (Some(stored), _) => stored,
                 (None, Some(file)) => Arc::new(terrain_from(file, "/map")?),
                 (None, None) => return Err(no_map()),
             };
-            let states = terrain.grid.cells() * HEADINGS;
-            if states > most_states {
-                let detail = format!(
-                    "a plan over this map has {states} states, more than the {most_states} allowed: crop the map or use larger cells"
-                );
-                return Err(Problem::new(ProblemType::TooLarge, detail).at("/map"));
-            }
-            answer(&terrain, &request, deadline)
+            refuse_too_large(&terrain, most_cells).map_err(|problem| problem.at("/map"))?;
+            answer(&terrain, &request, patience).map_err(|problem| {
+                let problem = match &request.map_id {
+                    Some(_) => problem.moved("/map", "/map_id"),
+                    None => problem,
+                };
+                match &request.robot {
+                    RobotChoice::Name(_) => problem.moved("/robot", "/robot"),
+                    RobotChoice::File(_) => problem,
+                }
+            })
         })
         .await
 }
@@ -250,9 +274,9 @@ fn no_map() -> Problem {
 ///
 /// # Errors
 /// An unusable robot, an unusable end, no path, or a passed deadline.
-pub fn answer(terrain: &Terrain, request: &PlanRequest, deadline: Instant) -> Result<PlanAnswer, Problem> {
+pub fn answer(terrain: &Terrain, request: &PlanRequest, patience: &Patience) -> Result<PlanAnswer, Problem> {
     let robot = request.robot.robot()?;
-    let query = request.query(&robot, deadline);
+    let query = request.query(&robot, patience);
     let objective = match request.objective {
         ObjectiveName::Energy => Objective::Energy,
         ObjectiveName::Distance => Objective::Distance,
@@ -264,7 +288,7 @@ pub fn answer(terrain: &Terrain, request: &PlanRequest, deadline: Instant) -> Re
 
 impl PlanRequest {
     /// The question as the planner takes it.
-    pub(crate) fn query(&self, robot: &model::Robot, deadline: Instant) -> Query {
+    pub(crate) fn query(&self, robot: &model::Robot, patience: &Patience) -> Query {
         let usual = Settings::of(robot);
         Query {
             start: Start { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: self.start.heading_rad },
@@ -281,7 +305,7 @@ impl PlanRequest {
                 ..usual
             },
             snap_radius_m: self.snap_radius_m,
-            deadline: Some(deadline),
+            patience: patience.clone(),
         }
     }
 }
@@ -334,4 +358,25 @@ impl From<&Snap> for SnapAnswer {
 
 fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_preferred_media_type_is_the_one_with_the_greater_weight() {
+        let geojson =
+            |accept| preference(accept, "application/geo+json") > preference(accept, "application/json");
+        assert!(geojson("application/geo+json"));
+        assert!(geojson("application/json;q=0.5, application/geo+json"));
+        for accept in [
+            "*/*",
+            "application/json",
+            "application/json, application/geo+json;q=0.1",
+            "text/html, */*;q=0.8",
+        ] {
+            assert!(!geojson(accept), "{accept}");
+        }
+    }
 }

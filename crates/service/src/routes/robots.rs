@@ -1,6 +1,6 @@
 //! `GET /v1/robots`, and robots as requests name them.
 
-use axum::{Json, extract::Path};
+use axum::Json;
 use model::{Robot, builtin, robot::RobotFile};
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -8,7 +8,7 @@ use serde::{
 };
 use utoipa::ToSchema;
 
-use crate::problem::Problem;
+use crate::{body::Id, problem::Problem};
 
 /// A robot by the name of a built-in one, or in full.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
@@ -79,7 +79,7 @@ pub(crate) async fn list() -> Json<RobotList> {
     params(("id" = String, Path, description = "Name of the robot", example = "husky-a200")),
     responses((status = 200, body = Robot), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
-pub(crate) async fn read(Path(id): Path<String>) -> Result<Json<Robot>, Problem> {
+pub(crate) async fn read(Id(id): Id) -> Result<Json<Robot>, Problem> {
     let found = builtin::by_name(&id).map_err(|error| {
         let mut problem = Problem::invalid_robot(&error, "");
         problem.errors.clear();

@@ -18,13 +18,17 @@ type TiffDecoder<'a> = Decoder<Cursor<&'a [u8]>>;
 /// Most bytes that one byte of a compressed TIFF can stand for; LZW reaches about 2700, deflate 1032.
 const LARGEST_COMPRESSION: u64 = 4096;
 
-/// Reads a GeoTIFF elevation model.
+/// Reads a GeoTIFF elevation model of at most so many cells.
 ///
 /// # Errors
 /// A missing or unusable tag by name, truncation, or an elevation out of range by cell.
-pub fn read(bytes: &[u8]) -> Result<Terrain, Error> {
+pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
     let mut decoder = Decoder::new(Cursor::new(bytes))?;
     let (columns, rows) = decoder.dimensions()?;
+    if u64::from(columns) * u64::from(rows) > most_cells {
+        let (rows, columns) = (u64::from(rows), u64::from(columns));
+        return Err(Error::TooManyCells { rows, columns, limit: most_cells });
+    }
     let frame = Frame::read(&mut decoder)?;
     let north_m = frame.north_west_m[1];
     let origin_m = [frame.north_west_m[0], north_m - f64::from(rows) * frame.cell_size_m];
@@ -89,25 +93,38 @@ impl Frame {
     }
 }
 
-/// The short-valued entries of the GeoKey directory.
-struct GeoKeys(Vec<(u16, u16)>);
+/// The entries of the GeoKey directory that hold short values, and the unit size among its doubles.
+struct GeoKeys {
+    shorts: Vec<(u16, u16)>,
+    linear_unit_m: Option<f64>,
+}
 
 impl GeoKeys {
     const MODEL_TYPE: u16 = 1024;
     const RASTER_TYPE: u16 = 1025;
     const LINEAR_UNITS: u16 = 3076;
+    const LINEAR_UNIT_SIZE: u16 = 3077;
+    const VERTICAL_UNITS: u16 = 4099;
 
     fn read(decoder: &mut TiffDecoder<'_>) -> Result<Self, Error> {
         let directory = match decoder.find_tag(Tag::GeoKeyDirectoryTag)? {
             Some(value) => value.into_u16_vec()?,
             None => Vec::new(),
         };
-        let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
-        Ok(GeoKeys(entries.filter(|e| e[1] == 0).map(|e| (e[0], e[3])).collect()))
+        let entries = || directory.get(4..).unwrap_or_default().chunks_exact(4);
+        let doubles = match decoder.find_tag(Tag::GeoDoubleParamsTag)? {
+            Some(value) => value.into_f64_vec()?,
+            None => Vec::new(),
+        };
+        let size = entries().find(|e| e[0] == Self::LINEAR_UNIT_SIZE);
+        Ok(GeoKeys {
+            shorts: entries().filter(|e| e[1] == 0).map(|e| (e[0], e[3])).collect(),
+            linear_unit_m: size.and_then(|e| doubles.get(usize::from(e[3])).copied()),
+        })
     }
 
     fn get(&self, key: u16) -> Option<u16> {
-        self.0.iter().find(|(k, _)| *k == key).map(|(_, value)| *value)
+        self.shorts.iter().find(|(k, _)| *k == key).map(|(_, value)| *value)
     }
 
     fn pixel_is_point(&self) -> bool {
@@ -126,12 +143,24 @@ impl GeoKeys {
                 expected: "1, projected",
             });
         }
-        match self.get(Self::LINEAR_UNITS) {
-            None | Some(METRE | USER_DEFINED) => Ok(()),
-            Some(unit) => Err(Error::TiffFrame {
-                what: "linear unit (ProjLinearUnitsGeoKey)",
-                value: f64::from(unit),
-                expected: "9001, metres",
+        for (key, what) in [
+            (Self::LINEAR_UNITS, "linear unit (ProjLinearUnitsGeoKey)"),
+            (Self::VERTICAL_UNITS, "vertical unit (VerticalUnitsGeoKey)"),
+        ] {
+            match self.get(key) {
+                None | Some(METRE | USER_DEFINED) => {}
+                Some(unit) => {
+                    let value = f64::from(unit);
+                    return Err(Error::TiffFrame { what, value, expected: "9001, metres" });
+                }
+            }
+        }
+        match self.linear_unit_m {
+            None | Some(1.0) => Ok(()),
+            Some(value) => Err(Error::TiffFrame {
+                what: "linear unit size (ProjLinearUnitSizeGeoKey)",
+                value,
+                expected: "1 metre",
             }),
         }
     }
@@ -168,13 +197,13 @@ fn nodata(decoder: &mut TiffDecoder<'_>) -> Result<Option<f64>, Error> {
 
 /// Whether a sample is the nodata mark, which writers round in their own ways.
 fn marks_nodata(z: f64, mark: f64) -> bool {
-    z == mark || (z - mark).abs() <= mark.abs() * 1e-6 || (mark.is_nan() && z.is_nan())
+    z == mark || (mark.is_finite() && (z - mark).abs() <= mark.abs() * 1e-6)
 }
 
 /// All samples, northernmost row first.
 fn read_samples(decoder: &mut TiffDecoder<'_>, rows: usize, columns: usize) -> Result<Vec<f64>, Error> {
     match decoder.colortype()? {
-        ColorType::Gray(_) => {}
+        ColorType::Gray(8 | 16 | 32 | 64) => {}
         other => return Err(Error::TiffSamples { found: format!("{other:?} samples") }),
     }
     let mut samples = vec![f64::NAN; rows * columns];
@@ -184,7 +213,11 @@ fn read_samples(decoder: &mut TiffDecoder<'_>, rows: usize, columns: usize) -> R
     for index in 0..across * down {
         let Ok(chunk) = u32::try_from(index) else { break };
         let (width, height) = decoder.chunk_data_dimensions(chunk);
-        let values = as_f64(decoder.read_chunk(chunk)?)?;
+        let values = as_f64(decoder.read_chunk(chunk)?);
+        if values.len() != width as usize * height as usize {
+            let found = format!("{} samples in a chunk of {width} × {height}", values.len());
+            return Err(Error::TiffSamples { found });
+        }
         let left = (index % across) * chunk_width as usize;
         let top = (index / across) * chunk_height as usize;
         for (y, line) in values.chunks(width as usize).take(height as usize).enumerate() {
@@ -197,11 +230,11 @@ fn read_samples(decoder: &mut TiffDecoder<'_>, rows: usize, columns: usize) -> R
     Ok(samples)
 }
 
-fn as_f64(samples: DecodingResult) -> Result<Vec<f64>, Error> {
+fn as_f64(samples: DecodingResult) -> Vec<f64> {
     fn wide<T: Into<f64>>(values: Vec<T>) -> Vec<f64> {
         values.into_iter().map(Into::into).collect()
     }
-    Ok(match samples {
+    match samples {
         DecodingResult::U8(v) => wide(v),
         DecodingResult::U16(v) => wide(v),
         DecodingResult::U32(v) => wide(v),
@@ -213,5 +246,5 @@ fn as_f64(samples: DecodingResult) -> Result<Vec<f64>, Error> {
         DecodingResult::U64(v) => v.into_iter().map(|z| z as f64).collect(),
         DecodingResult::I64(v) => v.into_iter().map(|z| z as f64).collect(),
         DecodingResult::F16(v) => v.into_iter().map(|z| f64::from(z.to_f32())).collect(),
-    })
+    }
 }
