@@ -296,7 +296,7 @@ fn a_robot_without_room_to_turn_is_told_so() {
     let lane =
         json!({ "cell_size_m": 1.0, "rows": 1, "columns": 8, "elevation_m": [[0, 0, 0, 0, 0, 0, 0, 0]] });
     let mut question = question_with("/map", lane);
-    question["start"] = json!({ "x_m": 1.5, "y_m": 0.5, "heading_rad": 3.14 });
+    question["start"] = json!({ "x_m": 1.5, "y_m": 0.5, "heading_rad": 3.1 });
     question["goal"] = json!({ "x_m": 6.5, "y_m": 0.5 });
     let problem = assert_problem(&server.post_json("/v1/plan", &question), 422, "no-path");
     assert!(problem["detail"].as_str().unwrap().contains("room to turn"), "{problem}");
