@@ -87,7 +87,7 @@ fn the_best_path_equals_petgraphs_dijkstra_on_hundreds_of_random_maps() {
                 assert!(cost >= best - 2e-3, "{objective:?}: {cost} beats the best, {best}");
             }
             Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => {
-                assert!(best.is_infinite(), "there is a path of cost {best}")
+                assert!(best.is_infinite(), "there is a path of cost {best}");
             }
             Err(other) => panic!("{other}"),
         }
