@@ -84,11 +84,7 @@ pub fn search(
     query: &Search<'_>,
 ) -> Outcome {
     let layout = &lattice.layout;
-    let columns = lattice.terrain.grid.columns;
-    let estimate = |state: u32| {
-        let cell = layout.unpack(state).cell;
-        field.units_at(cell.row * columns + cell.column)
-    };
+    let estimate = |state: u32| field.units_at(state);
     let moves = moves(lattice);
     let stride = table.stride();
     let mut reached = Reached::new(layout);

@@ -109,10 +109,11 @@ pub(crate) struct Sample {
     weights: [f32; 4],
 }
 
-/// Longest step, in cells: elevation between neighbouring centres is a straight line.
-const STEP_CELLS: f64 = 1.0;
-/// Largest turn within a step [rad]: pitch changes by its sine times the slope, under a tenth of it at 0.4.
-const STEP_TURN_RAD: f64 = 0.4;
+/// Longest step, in cells: half of the longest straight between lattice points, √5, with a little room.
+const STEP_CELLS: f64 = 1.25;
+/// Largest turn within a step [rad]: the widest between neighbouring headings, 0.464. Half way the pitch is that of the
+/// chord, and the error of second order in the turn.
+const STEP_TURN_RAD: f64 = 0.47;
 /// Spacing of the poses whose footprints make up a sweep, in cells.
 const SWEEP_CELLS: f64 = 0.25;
 

@@ -71,6 +71,29 @@ impl Layout {
         (state & ((1 << WITHIN_BITS) - 1)) as usize
     }
 
+    /// Position of a packed state's cell among all cells of all tiles.
+    #[inline(always)]
+    pub(crate) fn cell(state: u32) -> usize {
+        (state >> HEADING_BITS) as usize
+    }
+
+    /// The packed state of a cell's position and a heading of zero.
+    #[inline(always)]
+    pub(crate) fn state_of_cell(cell: u32) -> u32 {
+        cell << HEADING_BITS
+    }
+
+    /// Number of cells in all tiles that the packing distinguishes.
+    pub(crate) fn cells(&self) -> usize {
+        self.tiles() * TILE_CELLS
+    }
+
+    /// Whether a tile holds cells of the grid.
+    pub(crate) fn holds(&self, tile: usize) -> bool {
+        let (row, column) = self.tile_place(tile);
+        row < self.tile_rows && column < self.tile_columns
+    }
+
     /// The tile at a tile row and column.
     pub(crate) fn tile_at(&self, tile_row: usize, tile_column: usize) -> usize {
         (tile_row << self.tile_column_bits) | tile_column

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use model::Robot;
-use terrain::Terrain;
+use terrain::{Cell, Terrain};
 
 use crate::{
     astar::{Outcome, Search, search},
@@ -209,8 +209,7 @@ fn plan_between(
     let late = Error::Timeout { expanded: 0 };
     let table = CostTable::new(lattice, objective, &query.patience).ok_or(late.clone())?;
     let goals = goals_with_potential(lattice, ends, objective);
-    let cells: Vec<(usize, f64)> =
-        goals.iter().map(|(state, after)| (lattice.terrain.grid.index(state.cell), *after)).collect();
+    let cells: Vec<(Cell, f64)> = goals.iter().map(|(state, after)| (state.cell, *after)).collect();
     let field = GoalField::new(lattice, &table, &cells, &query.patience).ok_or(late)?;
     let question = Search { starts: &ends.starts, goals: &goals, patience: &query.patience };
     let (start, motions, expanded) = match search(lattice, &table, &field, &question) {
@@ -255,8 +254,9 @@ fn nearest_connected(lattice: &Lattice<'_>, field: &GoalField, ends: &Ends) -> E
     let grid = &lattice.terrain.grid;
     let [sx, sy] = grid.center_m(ends.start.cell);
     let nearest = (0..grid.cells())
-        .filter(|&i| field.at(i).is_finite())
-        .map(|i| grid.center_m(grid.cell(i)))
+        .map(|i| grid.cell(i))
+        .filter(|&cell| field.at(cell).is_finite())
+        .map(|cell| grid.center_m(cell))
         .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let [gx, gy] = grid.center_m(ends.goal.cell);

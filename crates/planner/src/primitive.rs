@@ -84,8 +84,8 @@ impl Piece {
 /// All motions that start at each heading, in a fixed order.
 ///
 /// One straight, arcs by one and two headings to either side, a point turn to either side; with `reverse` also the
-/// straight and the arcs backwards. Arcs are driven at R' (half the slip track), at the widest radius that fits their
-/// corner, and at the geometric mean of the two.
+/// straight and the arcs backwards. Arcs are driven at R' (half the slip track) or at the widest radius that fits their
+/// corner, whichever costs less where they are.
 pub fn motions(robot: &Robot, cell_size_m: f64, reverse: bool) -> [Vec<Motion>; HEADINGS] {
     std::array::from_fn(|index| {
         let from = Heading::new(index);
@@ -150,7 +150,7 @@ fn arc(robot: &Robot, from: Heading, turns: i32, cell_size_m: f64) -> Option<Mot
     let lead = (1..=LONGEST_LEAD).find(|lead| widest_m(*lead) >= tightest_m * (1.0 - 1e-9))?;
     let widest_m = widest_m(lead).max(tightest_m);
     let leads_m = [f64::from(lead) * step_m(from), f64::from(lead) * step_m(to)];
-    let variants = [tightest_m, (tightest_m * widest_m).sqrt(), widest_m]
+    let variants = [tightest_m, widest_m]
         .map(|radius_m| rounded_corner(from.angle_rad(), turn, leads_m, radius_m))
         .to_vec();
     let ((c0, r0), (c1, r1)) = (from.step(), to.step());

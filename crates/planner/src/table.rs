@@ -1,6 +1,6 @@
 //! Cost of every motion from every state, for one objective, evaluated tile by tile as it is asked for.
 
-use std::sync::OnceLock;
+use std::{collections::BTreeMap, sync::OnceLock};
 
 use rayon::prelude::*;
 
@@ -72,7 +72,8 @@ pub struct CostTable<'l> {
     lattice: &'l Lattice<'l>,
     kernel: TileKernel,
     units: f64,
-    tiles: Vec<OnceLock<Box<[u16]>>>,
+    tiles: Vec<OnceLock<Tile>>,
+    displacements: Vec<Displacement>,
 }
 
 impl<'l> CostTable<'l> {
@@ -88,6 +89,7 @@ impl<'l> CostTable<'l> {
             kernel: TileKernel::new(lattice, weights, units),
             units,
             tiles: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+            displacements: Displacement::of(lattice),
         }
     }
 
@@ -115,13 +117,37 @@ impl<'l> CostTable<'l> {
         self.kernel.stride
     }
 
-    /// The codes of a tile.
+    /// A tile, evaluated when it is first asked for.
     #[inline(always)]
-    pub(crate) fn tile(&self, tile: usize) -> &[u16] {
+    fn whole_tile(&self, tile: usize) -> &Tile {
         self.tiles[tile].get_or_init(|| {
             let (row, column) = self.lattice.layout.tile_place(tile);
-            self.kernel.evaluate(self.lattice, row, column)
+            let codes = self.kernel.evaluate(self.lattice, row, column);
+            let least = Displacement::least(&self.displacements, &codes, HEADINGS * self.stride());
+            Tile { codes, least }
         })
+    }
+
+    /// The codes of all motions of a tile's states.
+    #[inline(always)]
+    pub(crate) fn tile(&self, tile: usize) -> &[u16] {
+        &self.whole_tile(tile).codes
+    }
+
+    /// Steps between cells that motions make.
+    pub(crate) fn displacements(&self) -> &[Displacement] {
+        &self.displacements
+    }
+
+    /// The least code of the motions by a displacement from any heading of a packed state's cell; forbidden beyond the map.
+    #[inline(always)]
+    pub(crate) fn least(&self, state: u32, displacement: usize) -> u16 {
+        let tile = Layout::tile(state);
+        if !self.lattice.layout.holds(tile) {
+            return FORBIDDEN;
+        }
+        let cell = Layout::within(state) / HEADINGS;
+        self.whole_tile(tile).least[cell * self.displacements.len() + displacement]
     }
 
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
@@ -129,6 +155,47 @@ impl<'l> CostTable<'l> {
         let packed = self.lattice.layout.pack(state);
         let code = self.tile(Layout::tile(packed))[Layout::within(packed) * self.stride() + motion];
         if code == FORBIDDEN { f64::INFINITY } else { f64::from(decode(code)) / self.units }
+    }
+}
+
+/// The costs of one tile.
+struct Tile {
+    /// By cell, heading and motion.
+    codes: Box<[u16]>,
+    /// By cell and displacement, the least over headings and motions.
+    least: Box<[u16]>,
+}
+
+/// A step between cells and the motions that make it, as slots among the codes of a cell.
+pub(crate) struct Displacement {
+    pub(crate) columns: i32,
+    pub(crate) rows: i32,
+    slots: Vec<usize>,
+}
+
+impl Displacement {
+    /// All steps of a lattice's motions; turning on the spot is none.
+    fn of(lattice: &Lattice<'_>) -> Vec<Self> {
+        let stride = lattice.motions_per_state().next_multiple_of(4);
+        let mut steps = BTreeMap::<(i32, i32), Vec<usize>>::new();
+        for (heading, motions) in lattice.motions.iter().enumerate() {
+            for (index, motion) in motions.iter().enumerate() {
+                if (motion.columns, motion.rows) != (0, 0) {
+                    steps.entry((motion.columns, motion.rows)).or_default().push(heading * stride + index);
+                }
+            }
+        }
+        steps.into_iter().map(|((columns, rows), slots)| Displacement { columns, rows, slots }).collect()
+    }
+
+    /// The least code of each displacement from each cell.
+    fn least(displacements: &[Self], codes: &[u16], codes_per_cell: usize) -> Box<[u16]> {
+        let least_of =
+            |cell: &[u16], d: &Self| d.slots.iter().map(|&slot| cell[slot]).min().unwrap_or(FORBIDDEN);
+        codes
+            .chunks_exact(codes_per_cell)
+            .flat_map(|cell| displacements.iter().map(move |d| least_of(cell, d)))
+            .collect()
     }
 }
 

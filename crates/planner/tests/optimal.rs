@@ -137,7 +137,8 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
         let objective = [Objective::Energy, Objective::Distance, Objective::Time][case / 4];
         let table = CostTable::new(&lattice, objective, &Patience::default()).unwrap();
         let goal = random.random_range(0..terrain.grid.cells());
-        let field = GoalField::new(&lattice, &table, &[(goal, 0.0)], &Patience::default()).unwrap();
+        let field = GoalField::new(&lattice, &table, &[(terrain.grid.cell(goal), 0.0)], &Patience::default())
+            .unwrap();
         let mut graph = ground::table_graph(&lattice, &table);
         graph.reverse();
         let mut truth = vec![f64::INFINITY; lattice.states()];
@@ -148,12 +149,12 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
             }
         }
         for (state, truth) in truth.iter().enumerate() {
-            let bound = field.at(state / HEADINGS);
+            let bound = field.at(terrain.grid.cell(state / HEADINGS));
             assert!(bound <= truth * (1.0 + 1e-6) + 1e-6, "state {state}: bound {bound} above {truth}");
             for motion in 0..lattice.motions_per_state() {
                 let cost = table.cost(lattice.state(state), motion);
                 let Some(next) = lattice.successor(lattice.state(state), motion) else { continue };
-                let next_bound = field.at(terrain.grid.index(next.cell));
+                let next_bound = field.at(next.cell);
                 assert!(bound <= cost + next_bound + 1e-9, "the bound drops faster than the cost");
             }
         }

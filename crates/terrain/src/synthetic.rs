@@ -1,6 +1,6 @@
 //! Ground made from a seed, for trials at sizes and shapes that no survey covers.
 
-use crate::{Cell, Grid, Surfaces, Terrain};
+use crate::{Cell, Error, Grid, Surfaces, Terrain};
 
 /// Natural-looking relief: value noise in octaves, each half as long and `ROUGHNESS` as high as the one before.
 ///
@@ -88,6 +88,25 @@ fn is_yard_obstacle(seed: u64, x_m: f64, y_m: f64) -> bool {
     wall || (0..5).any(crate_at)
 }
 
+/// Ground of any size from a smaller piece: copies of it side by side, every other one mirrored, so that it joins without
+/// steps.
+///
+/// # Errors
+/// When the size is out of range.
+pub fn mirrored(terrain: &Terrain, rows: usize, columns: usize) -> Result<Terrain, Error> {
+    let from = &terrain.grid;
+    let grid = Terrain::check_size(rows as u64, columns as u64, from.cell_size_m, from.origin_m)?;
+    let fold = |i: usize, n: usize| if (i / n).is_multiple_of(2) { i % n } else { n - 1 - i % n };
+    let elevation_m: Vec<f64> = (0..grid.cells())
+        .map(|index| {
+            let cell = grid.cell(index);
+            let source = Cell { row: fold(cell.row, from.rows), column: fold(cell.column, from.columns) };
+            terrain.elevation_m(source).unwrap_or(f64::NAN)
+        })
+        .collect();
+    Terrain::new(grid, &elevation_m)
+}
+
 /// Scatters single blocked cells over ground, each cell with probability `share`; the borders stay free.
 pub fn scatter_obstacles(terrain: Terrain, seed: u64, share: f64) -> Terrain {
     let grid = terrain.grid;
@@ -109,6 +128,17 @@ mod tests {
     fn the_same_seed_gives_the_same_ground_and_another_seed_another() {
         assert_eq!(yard(7), yard(7));
         assert_ne!(yard(7), yard(8));
+    }
+
+    #[test]
+    fn mirrored_copies_join_without_a_step_and_repeat_after_two() {
+        let yard = yard(7);
+        let (rows, columns) = (yard.grid.rows, yard.grid.columns);
+        let large = mirrored(&yard, 3 * rows, 3 * columns).unwrap();
+        let z = |row, column| large.elevation_m(Cell { row, column });
+        assert_eq!(z(rows - 1, 5), z(rows, 5));
+        assert_eq!(z(3, columns - 1), z(3, columns));
+        assert_eq!(z(7, 9), z(7 + 2 * rows, 9 + 2 * columns));
     }
 
     #[test]
