@@ -9,6 +9,7 @@ use crate::{
     lattice::{Lattice, State},
     layout::{Layout, Shift},
     patience::Patience,
+    prefetch::prefetch,
     queue::BucketQueue,
     table::{CostTable, TILE_STATES},
 };
@@ -46,6 +47,8 @@ pub enum Outcome {
 
 /// Expansions between two looks at the clock.
 const CLOCK_EVERY: u64 = 4096;
+/// How many states before its turn a state is asked of memory. Asking for its successors too gained nothing measurable.
+const CODES_AHEAD: usize = 3;
 
 /// Least cost found so far of every state, in tiles that exist once they are touched.
 struct Reached {
@@ -62,6 +65,14 @@ impl Reached {
         let tile = self.tiles[Layout::tile(state)]
             .get_or_insert_with(|| vec![UNREACHED; TILE_STATES].into_boxed_slice());
         &mut tile[Layout::within(state)]
+    }
+
+    /// Hints that a state will be asked for; the packing of one beyond the map may name no tile.
+    #[inline(always)]
+    fn prefetch(&self, state: u32) {
+        if let Some(Some(tile)) = self.tiles.get(Layout::tile(state)) {
+            prefetch(tile, Layout::within(state));
+        }
     }
 
     fn get(&self, state: u32) -> u32 {
@@ -120,6 +131,10 @@ pub fn search(
             && best.is_none_or(|(total, _)| cost + after < total)
         {
             best = Some((cost + after, state));
+        }
+        if let Some((_, soon)) = queue.peek(CODES_AHEAD) {
+            prefetch(table.tile(Layout::tile(soon)), Layout::within(soon) * stride);
+            reached.prefetch(soon);
         }
         let codes = &table.tile(Layout::tile(state))[Layout::within(state) * stride..][..stride];
         let moves = &moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];

@@ -18,6 +18,7 @@ mod lattice;
 mod layout;
 mod patience;
 mod plan;
+mod prefetch;
 mod primitive;
 mod queue;
 mod route;

@@ -44,6 +44,13 @@ impl BucketQueue {
         }
     }
 
+    /// The item that will be popped next but for `further` others, if it is in the current bucket.
+    #[inline(always)]
+    pub(crate) fn peek(&self, further: usize) -> Option<(u32, u32)> {
+        let bucket = &self.ring[self.current as usize & (self.ring.len() - 1)];
+        bucket.get(bucket.len().wrapping_sub(1 + further)).copied()
+    }
+
     /// Every key still in the queue is at least this.
     pub(crate) fn least_key(&self) -> u32 {
         self.current << self.shift

@@ -27,7 +27,16 @@ pub fn read(text: &str) -> Result<Terrain, Error> {
                 column: position + 1,
                 found: excerpt(word),
             })?;
-            from_north.push(if Some(value) == header.nodata { f64::NAN } else { value });
+            let is_nodata =
+                header.nodata.is_some_and(|mark| value == mark || (mark.is_nan() && value.is_nan()));
+            if value.is_nan() && !is_nodata {
+                return Err(Error::AsciiNumber {
+                    line: index + 1,
+                    column: position + 1,
+                    found: excerpt(word),
+                });
+            }
+            from_north.push(if is_nodata { f64::NAN } else { value });
         }
     }
     if from_north.len() != grid.cells() {
@@ -104,6 +113,12 @@ mod tests {
     }
 
     #[test]
+    fn a_file_may_mark_unknown_cells_with_nan() {
+        let text = SMALL.replace("-9999", "nan");
+        assert_eq!(read(&text).unwrap().elevation_m(Cell { row: 0, column: 1 }), None);
+    }
+
+    #[test]
     fn a_centre_reference_lies_half_a_cell_further_out() {
         let text = SMALL.replace("xllcorner", "XLLCENTER").replace("yllcorner", "yllcenter");
         assert_eq!(read(&text).unwrap().grid.origin_m, [9.75, 19.75]);
@@ -114,6 +129,7 @@ mod tests {
         let long_row = SMALL.replace("1 2 3", "1 2 3 4");
         for (text, said) in [
             (SMALL.replace("4 -9999 6", "4 x 6"), "line 8, value 2: `x`"),
+            (SMALL.replace("4 -9999 6", "4 nan 6"), "line 8, value 2: `nan`"),
             (SMALL.replace("nrows 2", "rows 2"), "line 2"),
             (SMALL.replace("cellsize 0.5", "cellsize"), "line 5"),
             (SMALL.replace("4 -9999 6\n", ""), "truncated"),
@@ -121,7 +137,7 @@ mod tests {
             (SMALL.replace("cellsize 0.5", "cellsize -2"), "cell_size_m"),
             (SMALL.replace("ncols 3", "ncols 2.5"), "line 1"),
             (SMALL.replace("ncols 3", "ncols -3"), "columns"),
-            (SMALL.replace("4 -9999 6", "4 nan 6e99"), "elevation_m"),
+            (SMALL.replace("4 -9999 6", "4 5 6e99"), "elevation_m"),
             (String::new(), "line 1"),
         ] {
             let message = read(&text).unwrap_err().to_string();

@@ -18,7 +18,8 @@ type TiffDecoder<'a> = Decoder<Cursor<&'a [u8]>>;
 /// Most bytes that one byte of a compressed TIFF can stand for; LZW reaches about 2700, deflate 1032.
 const LARGEST_COMPRESSION: u64 = 4096;
 
-/// Reads a GeoTIFF elevation model of at most so many cells.
+/// Reads a GeoTIFF elevation model of at most so many cells. Samples that are NaN are unknown ground, as GIS programs
+/// write it, with or without a nodata tag.
 ///
 /// # Errors
 /// A missing or unusable tag by name, truncation, or an elevation out of range by cell.
