@@ -10,8 +10,8 @@ use std::{
 
 use model::builtin;
 use planner::{
-    CostTable, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Search, Settings, State,
-    search,
+    CostTable, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Search,
+    Settings, State, search,
 };
 use terrain::{Cell, io, synthetic};
 
@@ -43,7 +43,9 @@ fn measure(tile: &terrain::Terrain, side: usize) -> Result<(), Box<dyn Error + S
     let goal = Cell { row: at(0.88), column: at(0.9) };
     let goals: Vec<(State, f64)> =
         standing(goal).filter(|s| lattice.stand(*s).is_ok()).map(|s| (s, 0.0)).collect();
-    let (field, field_time) = timed(|| GoalField::new(&lattice, &table, &[(goal, 0.0)], &patience));
+    let goal_cells = [(goal, 0.0)];
+    let everywhere = FieldEnds { goals: &goal_cells, starts: &[] };
+    let (field, field_time) = timed(|| GoalField::new(&lattice, &table, everywhere, &patience));
     let field = field.ok_or("the field was not built")?;
     let question = Search { starts: &starts, goals: &goals, patience: &patience };
     let (outcome, search_time) = timed(|| search(&lattice, &table, &field, &question));

@@ -32,7 +32,7 @@ pub use edge::{Edge, Step};
 pub use error::{Blocked, Error, Place};
 pub use footprint::{Clearance, Footprint};
 pub use heading::{HEADINGS, Heading};
-pub use heuristic::GoalField;
+pub use heuristic::{FieldEnds, GoalField};
 pub use lattice::{Lattice, Settings, State};
 pub use patience::Patience;
 pub use plan::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start, compare, plan};

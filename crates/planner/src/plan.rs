@@ -9,7 +9,7 @@ use crate::{
     astar::{Outcome, Search, search},
     error::{Error, Place},
     heading::Heading,
-    heuristic::GoalField,
+    heuristic::{FieldEnds, GoalField},
     lattice::{Lattice, Settings, State},
     patience::Patience,
     route::Route,
@@ -207,10 +207,11 @@ fn plan_between(
     began: Instant,
 ) -> Result<Plan, Error> {
     let late = Error::Timeout { expanded: 0 };
-    let table = CostTable::new(lattice, objective, &query.patience).ok_or(late.clone())?;
+    let table = CostTable::lazy(lattice, objective);
     let goals = goals_with_potential(lattice, ends, objective);
     let cells: Vec<(Cell, f64)> = goals.iter().map(|(state, after)| (state.cell, *after)).collect();
-    let field = GoalField::new(lattice, &table, &cells, &query.patience).ok_or(late)?;
+    let field_ends = FieldEnds { goals: &cells, starts: &[ends.start.cell] };
+    let field = GoalField::new(lattice, &table, field_ends, &query.patience).ok_or(late)?;
     let question = Search { starts: &ends.starts, goals: &goals, patience: &query.patience };
     let (start, motions, expanded) = match search(lattice, &table, &field, &question) {
         Outcome::Found { start, motions, expanded, .. } => (start, motions, expanded),

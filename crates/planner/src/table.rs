@@ -80,7 +80,7 @@ impl<'l> CostTable<'l> {
     /// Largest relative rounding of a cost.
     pub const LARGEST_ROUNDING: f64 = LARGEST_ROUNDING;
 
-    /// A table that evaluates nothing yet.
+    /// A table that evaluates a tile when it is first asked for one of its costs.
     pub fn lazy(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
         let weights = lattice.weights(objective);
         let units = UNITS_OF_REFERENCE / reference_cost(lattice, &weights);
@@ -101,7 +101,7 @@ impl<'l> CostTable<'l> {
             if patience.is_over() {
                 return None;
             }
-            table.tile(lattice.layout.tile_at(i / tile_columns, i % tile_columns));
+            table.evaluated(lattice.layout.tile_at(i / tile_columns, i % tile_columns));
             Some(())
         });
         evaluated.map(|()| table)
@@ -120,7 +120,34 @@ impl<'l> CostTable<'l> {
     /// A tile, evaluated when it is first asked for.
     #[inline(always)]
     fn whole_tile(&self, tile: usize) -> &Tile {
+        match self.tiles[tile].get() {
+            Some(evaluated) => evaluated,
+            None => self.evaluate_around(tile),
+        }
+    }
+
+    /// Evaluates a tile together with its neighbours, in parallel: a search that needs one will soon need those.
+    #[cold]
+    fn evaluate_around(&self, tile: usize) -> &Tile {
+        let layout = &self.lattice.layout;
+        let (row, column) = layout.tile_place(tile);
+        let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        let around: Vec<usize> = near(row, layout.tile_rows)
+            .flat_map(|r| near(column, layout.tile_columns).map(move |c| layout.tile_at(r, c)))
+            .filter(|t| self.tiles[*t].get().is_none())
+            .collect();
+        around.into_par_iter().for_each(|t| {
+            self.evaluated(t);
+        });
+        self.evaluated(tile)
+    }
+
+    /// One tile; those beyond the grid hold nothing.
+    fn evaluated(&self, tile: usize) -> &Tile {
         self.tiles[tile].get_or_init(|| {
+            if !self.lattice.layout.holds(tile) {
+                return Tile::default();
+            }
             let (row, column) = self.lattice.layout.tile_place(tile);
             let codes = self.kernel.evaluate(self.lattice, row, column);
             let least = Displacement::least(&self.displacements, &codes, HEADINGS * self.stride());
@@ -142,12 +169,9 @@ impl<'l> CostTable<'l> {
     /// The least code of the motions by a displacement from any heading of a packed state's cell; forbidden beyond the map.
     #[inline(always)]
     pub(crate) fn least(&self, state: u32, displacement: usize) -> u16 {
-        let tile = Layout::tile(state);
-        if !self.lattice.layout.holds(tile) {
-            return FORBIDDEN;
-        }
         let cell = Layout::within(state) / HEADINGS;
-        self.whole_tile(tile).least[cell * self.displacements.len() + displacement]
+        let place = cell * self.displacements.len() + displacement;
+        self.whole_tile(Layout::tile(state)).least.get(place).copied().unwrap_or(FORBIDDEN)
     }
 
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
@@ -159,6 +183,7 @@ impl<'l> CostTable<'l> {
 }
 
 /// The costs of one tile.
+#[derive(Default)]
 struct Tile {
     /// By cell, heading and motion.
     codes: Box<[u16]>,

@@ -8,7 +8,8 @@ use petgraph::{
     graph::NodeIndex,
 };
 use planner::{
-    CostTable, Error, GoalField, HEADINGS, Heading, Lattice, Objective, Patience, Settings, State, plan,
+    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Patience, Settings, State,
+    plan,
 };
 use rand::RngExt;
 
@@ -128,8 +129,9 @@ fn the_least_energy_equals_bellman_fords_on_energies_that_may_be_negative() {
 #[test]
 fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_costs() {
     let mut random = ground::random(22);
+    let mut ended_early = 0;
     for case in 0..12 {
-        let terrain = ground::small_terrain(&mut random, 8);
+        let terrain = ground::small_terrain(&mut random, if case % 2 == 1 { 40 } else { 8 });
         let robot = ground::some_robot(&mut random, [0.0, 0.5, 1.0][case % 3]);
         let mut settings = planner::Settings::of(&robot);
         settings.speed_mps = random.random_range(0.1..1.0);
@@ -137,8 +139,12 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
         let objective = [Objective::Energy, Objective::Distance, Objective::Time][case / 4];
         let table = CostTable::new(&lattice, objective, &Patience::default()).unwrap();
         let goal = random.random_range(0..terrain.grid.cells());
-        let field = GoalField::new(&lattice, &table, &[(terrain.grid.cell(goal), 0.0)], &Patience::default())
-            .unwrap();
+        let goals = [(terrain.grid.cell(goal), 0.0)];
+        // Half of the fields end early, soon after one cell.
+        let near = |goal: usize| goal.saturating_sub(5);
+        let start = [terrain.grid.cell(near(goal))];
+        let ends = FieldEnds { goals: &goals, starts: if case % 2 == 0 { &[] } else { &start } };
+        let field = GoalField::new(&lattice, &table, ends, &Patience::default()).unwrap();
         let mut graph = ground::table_graph(&lattice, &table);
         graph.reverse();
         let mut truth = vec![f64::INFINITY; lattice.states()];
@@ -148,6 +154,10 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
                 truth[node.index()] = truth[node.index()].min(cost);
             }
         }
+        let whole = GoalField::new(&lattice, &table, FieldEnds { starts: &[], ..ends }, &Patience::default())
+            .unwrap();
+        let cells = || (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i));
+        ended_early += usize::from(cells().any(|cell| field.at(cell) < whole.at(cell)));
         for (state, truth) in truth.iter().enumerate() {
             let bound = field.at(terrain.grid.cell(state / HEADINGS));
             assert!(bound <= truth * (1.0 + 1e-6) + 1e-6, "state {state}: bound {bound} above {truth}");
@@ -159,6 +169,7 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
             }
         }
     }
+    assert!(ended_early >= 2, "fields must end early in some cases, {ended_early} did");
 }
 
 #[test]
