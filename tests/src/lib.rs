@@ -83,6 +83,16 @@ impl Server {
         Answer::from(agent().delete(format!("{}{path}", self.url)).call())
     }
 
+    /// Asks the server to end, as a process manager does, and waits until it has.
+    ///
+    /// # Panics
+    /// When it cannot be asked.
+    pub fn terminate(&mut self) -> std::process::ExitStatus {
+        let asked = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status();
+        assert!(asked.is_ok_and(|status| status.success()), "the server could not be asked to end");
+        self.child.wait().unwrap_or_else(|error| panic!("the server's end was not seen: {error}"))
+    }
+
     /// The most memory that the server has held [bytes], where the system tells (Linux).
     pub fn peak_memory_bytes(&self) -> Option<u64> {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;

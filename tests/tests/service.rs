@@ -305,6 +305,30 @@ fn a_robot_without_room_to_turn_is_told_so() {
 }
 
 #[test]
+fn a_pointer_names_the_field_that_the_request_has() {
+    let server = Server::start();
+    let fine = json!({ "cell_size_m": 0.01, "rows": 1, "columns": 2, "elevation_m": [[0, 0]] });
+    let id = server.post_json("/v1/maps", &fine).json()["id"].clone();
+    let mut long = server.get("/v1/robots/husky-a200").json();
+    long["wheelbase_m"] = json!(5.0);
+    let mut question = question_with("/robot", long);
+    question["map"] = Value::Null;
+    question["map_id"] = id;
+    let problem = assert_problem(&server.post_json("/v1/plan", &question), 400, "invalid-map");
+    assert_eq!(problem["errors"][0]["pointer"], "/map_id", "{problem}");
+}
+
+#[test]
+fn a_client_that_stalls_does_not_keep_the_service_from_ending() {
+    let mut server = Server::start();
+    let mut stalled = TcpStream::connect(server.url.trim_start_matches("http://")).unwrap();
+    let head = "POST /v1/plan HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 100\r\n\r\n{";
+    stalled.write_all(head.as_bytes()).unwrap();
+    assert_eq!(server.get("/healthz").status, 200);
+    assert!(server.terminate().success());
+}
+
+#[test]
 fn a_body_over_the_limit_is_refused_before_it_is_sent() {
     let server = Server::start();
     let mut stream = TcpStream::connect(server.url.trim_start_matches("http://")).unwrap();

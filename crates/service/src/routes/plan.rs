@@ -241,6 +241,7 @@ pub(crate) async fn with_terrain<T: Send + 'static>(
                     Some(_) => problem.moved("/map", "/map_id"),
                     None => problem,
                 };
+                // A robot given by name has no fields to point into.
                 match &request.robot {
                     RobotChoice::Name(_) => problem.moved("/robot", "/robot"),
                     RobotChoice::File(_) => problem,
