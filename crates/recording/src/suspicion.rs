@@ -38,8 +38,8 @@ pub(crate) fn find(recording: &Recording) -> Vec<Suspicion> {
             }
         }
         doubts.extend(turning(recording, run));
-        doubts.extend(unit_of_run(recording, run));
     }
+    doubts.extend(units_of_runs(recording));
     doubts.extend(unsigned(recording));
     doubts
 }
@@ -64,6 +64,17 @@ fn saturated(present: &[f64]) -> Option<String> {
     const SPIKE: f64 = 5.0;
     /// Neighbours that are looked at.
     const NEIGHBOURS: usize = 10;
+    let (least, greatest) =
+        present.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| (l.min(*v), g.max(*v)));
+    let often = |value: f64| {
+        let count = present.iter().filter(|v| **v == value).count();
+        // Zero is where an unsigned channel rests, not where it is clipped.
+        value != 0.0 && count >= LEAST_ROWS && count as f64 >= LEAST_SHARE * present.len() as f64
+    };
+    // Sorting a million rows takes longer than reading them, and hardly any channel needs it.
+    if !often(least) && !often(greatest) {
+        return None;
+    }
     let mut sorted = present.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let counts: Vec<(f64, usize)> =
@@ -74,9 +85,7 @@ fn saturated(present: &[f64]) -> Option<String> {
     let spike = |ends: &mut dyn Iterator<Item = &(f64, usize)>| {
         let (value, count) = *ends.next()?;
         let near: usize = ends.take(NEIGHBOURS).map(|(_, count)| count).sum();
-        let often = count as f64 >= LEAST_SHARE * present.len() as f64 && count >= LEAST_ROWS;
-        // Zero is where an unsigned channel rests, not where it is clipped.
-        let clipped = often && value != 0.0 && count as f64 >= SPIKE * near as f64 / NEIGHBOURS as f64;
+        let clipped = often(value) && count as f64 >= SPIKE * near as f64 / NEIGHBOURS as f64;
         clipped.then(|| format!("it stands at its limit {value} in {count} of {} rows", present.len()))
     };
     spike(&mut counts.iter().rev()).or_else(|| spike(&mut counts.iter()))
@@ -101,26 +110,32 @@ fn high_magnitude(present: &[f64]) -> Option<f64> {
 }
 
 /// A run whose power is a thousandth or a thousand times that of the others was logged in another unit.
-fn unit_of_run(recording: &Recording, run: &Run) -> Vec<Suspicion> {
+fn units_of_runs(recording: &Recording) -> Vec<Suspicion> {
     /// Between the largest honest ratio of two drives of a robot (about 20) and that of kW to W.
     const RATIO: f64 = 150.0;
     let mut doubts = Vec::new();
     for (&channel, values) in recording.channels.iter().filter(|(channel, _)| channel.tells_power()) {
-        let of = |rows: std::ops::Range<usize>| -> Vec<f64> {
-            values.get(rows).unwrap_or_default().iter().copied().filter(|value| !value.is_nan()).collect()
+        let high = |run: &Run| {
+            let rows = values.get(run.rows.clone()).unwrap_or_default();
+            let present: Vec<f64> = rows.iter().copied().filter(|value| !value.is_nan()).collect();
+            if present.len() < LEAST_ROWS {
+                None
+            } else {
+                high_magnitude(&present).filter(|high| *high > 0.0)
+            }
         };
-        let here = of(run.rows.clone());
-        let mut rest = of(0..run.rows.start);
-        rest.extend(of(run.rows.end..values.len()));
-        if here.len() < LEAST_ROWS || rest.len() < LEAST_ROWS {
-            continue;
-        }
-        let (Some(here), Some(rest)) = (high_magnitude(&here), high_magnitude(&rest)) else { continue };
-        if here > 0.0 && rest > 0.0 && (here / rest > RATIO || rest / here > RATIO) {
-            let statement = format!(
-                "its 99th percentile is {here:.4} here and {rest:.4} in the other runs: mixed units?"
-            );
-            doubts.push(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Unit, statement });
+        let of_runs: Vec<(&Run, f64)> =
+            recording.runs.iter().filter_map(|run| high(run).map(|high| (run, high))).collect();
+        let mut sorted: Vec<f64> = of_runs.iter().map(|(_, high)| *high).collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let Some(&median) = sorted.get(sorted.len() / 2) else { continue };
+        for (run, high) in of_runs {
+            if high / median > RATIO || median / high > RATIO {
+                let statement = format!(
+                    "its 99th percentile is {high:.4} here and {median:.4} in most runs: mixed units?"
+                );
+                doubts.push(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Unit, statement });
+            }
         }
     }
     doubts

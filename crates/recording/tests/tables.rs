@@ -239,12 +239,27 @@ fn real_files() -> Option<Vec<PathBuf>> {
 }
 
 #[test]
+fn a_run_in_kilowatts_among_others_in_watts_is_suspicious() {
+    let mut text = "run,t_s,v_left_mps,v_right_mps,power_w\n".to_owned();
+    for (run, scale) in [("a", 1.0), ("b", 1.0), ("c", 0.001)] {
+        for row in 0..60 {
+            text += &format!("{run},{row},1,0.9,{}\n", scale * f64::from(100 + row));
+        }
+    }
+    let report = csv(&text).unwrap().report;
+    let mixed =
+        report.suspicions.iter().filter(|d| d.kind == SuspicionKind::Unit && d.channel == Channel::Power);
+    let runs: Vec<&str> = mixed.filter_map(|doubt| doubt.run.as_deref()).collect();
+    assert_eq!(runs, ["c"], "{report}");
+}
+
+#[test]
 fn the_real_recordings_are_read_whole_and_their_oddities_told() {
     let Some(files) = real_files() else { return };
     for map in [None, Map::built_in("borealtc")] {
         let (recording, reports) = read_paths(&files, map.as_ref()).unwrap();
         assert_eq!(recording.rows(), 2790 + 4780 + 3716 + 2233 + 4481);
-        assert_eq!(recording.runs.len(), 35);
+        assert_eq!(recording.runs.len(), 4 + 5 + 5 + 8 + 14);
         assert_eq!(recording.power_form(), Some(PowerForm::MotorCurrents));
         for report in &reports {
             assert!(report.ignored.is_empty() && report.repairs.is_empty(), "{report}");
@@ -252,6 +267,9 @@ fn the_real_recordings_are_read_whole_and_their_oddities_told() {
             let of = |kind| report.suspicions.iter().filter(move |doubt| doubt.kind == kind);
             assert_eq!(of(SuspicionKind::Unsigned).count(), 2, "{report}");
             assert_eq!(of(SuspicionKind::Unit).count(), 0, "{report}");
+        }
+        if map.is_none() {
+            reports.iter().for_each(|report| eprintln!("{report}"));
         }
         // On snow the wheels turn and the robot does not; on flooring it does.
         let slips =
