@@ -92,6 +92,9 @@ impl Stream {
     }
 
     fn drop_repeats(&mut self) -> usize {
+        if self.t_ns.windows(2).all(|pair| pair[0] != pair[1]) {
+            return 0;
+        }
         let new = |at: &usize| *at == 0 || self.t_ns[*at] != self.t_ns[at - 1];
         let kept: Vec<usize> = (0..self.t_ns.len()).filter(new).collect();
         let dropped = self.t_ns.len() - kept.len();

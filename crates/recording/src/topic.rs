@@ -183,10 +183,12 @@ impl<'m> Topics<'m> {
             }
             let messages = topic.samples.log_ns.len();
             let stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
-            let rate_hz = gap::median_step_s(&stream.t_s(0)).map(|step_s| 1.0 / step_s);
+            let step_s = gap::median_step_s(&stream.t_s(stream.t_ns.first().copied().unwrap_or(0)));
+            let rate_hz = step_s.map(|step_s| 1.0 / step_s);
+            let step_s = step_s.unwrap_or(f64::INFINITY);
             let (topic_name, clock, type_name) = (topic.name.clone(), stream.clock, topic.type_name);
             report.streams.push(StreamReport { topic: topic_name, type_name, messages, rate_hz, clock });
-            streams.push(Named { topic: topic.name, sources: topic.sources, stream });
+            streams.push(Named { topic: topic.name, sources: topic.sources, stream, step_s });
         }
         let chosen = self.choose(&streams);
         if chosen.is_empty() {
@@ -261,8 +263,7 @@ impl<'m> Topics<'m> {
         let power =
             |source: usize| matches!(&self.map.sources[source].target, Target::Channel(c) if c.tells_power());
         let tells = chosen.iter().filter(|(source, ..)| power(*source)).map(|(_, stream, _)| *stream);
-        let step_s = |at: &usize| gap::median_step_s(&streams[*at].stream.t_s(0)).unwrap_or(f64::INFINITY);
-        let slowest = tells.max_by(|a, b| step_s(a).total_cmp(&step_s(b)));
+        let slowest = tells.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s));
         Ok(slowest.or(chosen.first().map(|(_, stream, _)| *stream)).unwrap_or(0))
     }
 
@@ -280,10 +281,11 @@ impl<'m> Topics<'m> {
         let mut max_gaps = BTreeMap::new();
         for &(source, at, column) in chosen {
             let (source, named) = (&self.map.sources[source], &streams[at]);
-            let (own_s, values) = (named.stream.t_s(origin_ns), &named.stream.columns[column]);
+            let values = &named.stream.columns[column];
             let values = if at == base {
                 values.clone()
             } else {
+                let own_s = named.stream.t_s(origin_ns);
                 let max_gap_s = self.map.max_gap_s.unwrap_or_else(|| gap::threshold_s(&own_s));
                 max_gaps.insert(named.topic.clone(), max_gap_s);
                 let between = if source.target == Target::Channel(Channel::Heading) {
@@ -324,6 +326,8 @@ struct Named {
     topic: String,
     sources: Vec<(usize, usize)>,
     stream: Stream,
+    /// Its median step \[s\]; infinite for a single message.
+    step_s: f64,
 }
 
 fn fields(place: &Place) -> String {
