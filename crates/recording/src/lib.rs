@@ -31,7 +31,7 @@ mod units;
 
 pub use channel::{Channel, Quantity};
 pub use error::Error;
-pub use map::{Combine, Map, Source, Stamp};
+pub use map::{Combine, Map, Place, Source, Stamp, Target};
 pub use reading::{Format, Reading, read, read_path, read_paths};
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{
