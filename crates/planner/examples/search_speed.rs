@@ -44,9 +44,19 @@ fn measure(tile: &terrain::Terrain, side: usize) -> Result<(), Box<dyn Error + S
     let goals: Vec<(State, f64)> =
         standing(goal).filter(|s| lattice.stand(*s).is_ok()).map(|s| (s, 0.0)).collect();
     let goal_cells = [(goal, 0.0)];
-    let everywhere = FieldEnds { goals: &goal_cells, starts: &[] };
+    let everywhere = FieldEnds { goals: &goal_cells, start: None };
     let (field, field_time) = timed(|| GoalField::new(&lattice, &table, everywhere, &patience));
     let field = field.ok_or("the field was not built")?;
+    let towards = FieldEnds { goals: &goal_cells, start: starts.first().map(|s| s.cell) };
+    let (t, tt) = timed(|| GoalField::new(&lattice, &table, towards, &patience));
+    let t = t.ok_or("x")?;
+    let question = Search { starts: &starts, goals: &goals, patience: &patience };
+    let (outcome, st) = timed(|| search(&lattice, &table, &t, &question));
+    let Outcome::Found { expanded, .. } = outcome else { return Err("no path".into()) };
+    println!("towards: {tt:?} search {st:?} {expanded}, start {} over {}, lazily", t.at(starts[0].cell), field.at(starts[0].cell));
+    let lazy = CostTable::lazy(&lattice, Objective::Energy);
+    let (t, tt) = timed(|| GoalField::new(&lattice, &lazy, towards, &patience));
+    println!("lazy {tt:?}");
     let question = Search { starts: &starts, goals: &goals, patience: &patience };
     let (outcome, search_time) = timed(|| search(&lattice, &table, &field, &question));
     let Outcome::Found { expanded, .. } = outcome else { return Err("no path".into()) };

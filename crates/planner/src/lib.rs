@@ -21,6 +21,7 @@ mod plan;
 mod prefetch;
 mod primitive;
 mod queue;
+mod rate;
 mod route;
 mod snap;
 mod table;

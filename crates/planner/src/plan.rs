@@ -210,7 +210,7 @@ fn plan_between(
     let table = CostTable::lazy(lattice, objective);
     let goals = goals_with_potential(lattice, ends, objective);
     let cells: Vec<(Cell, f64)> = goals.iter().map(|(state, after)| (state.cell, *after)).collect();
-    let field_ends = FieldEnds { goals: &cells, starts: &[ends.start.cell] };
+    let field_ends = FieldEnds { goals: &cells, start: Some(ends.start.cell) };
     let field = GoalField::new(lattice, &table, field_ends, &query.patience).ok_or(late)?;
     let question = Search { starts: &ends.starts, goals: &goals, patience: &query.patience };
     let (start, motions, expanded) = match search(lattice, &table, &field, &question) {

@@ -9,9 +9,10 @@ use crate::{
     edge::Edge,
     heading::HEADINGS,
     lattice::{Lattice, State},
-    layout::Layout,
+    layout::{Layout, TILE, TILE_CELLS},
     patience::Patience,
-    tile::TileKernel,
+    rate::least_cost_per_m,
+    tile::{Codes, TileKernel},
 };
 
 /// What a path is to have least of.
@@ -74,6 +75,7 @@ pub struct CostTable<'l> {
     units: f64,
     tiles: Vec<OnceLock<Tile>>,
     displacements: Vec<Displacement>,
+    least_units_per_cell: f32,
 }
 
 impl<'l> CostTable<'l> {
@@ -90,7 +92,15 @@ impl<'l> CostTable<'l> {
             units,
             tiles: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             displacements: Displacement::of(lattice),
+            least_units_per_cell: (least_cost_per_m(lattice, &weights)
+                * units
+                * lattice.terrain.grid.cell_size_m) as f32,
         }
+    }
+
+    /// Least cost of a motion per cell of distance between its ends, in units.
+    pub(crate) fn least_units_per_cell(&self) -> f32 {
+        self.least_units_per_cell
     }
 
     /// A table with every tile evaluated, in parallel; `None` when patience ends first.
@@ -148,10 +158,8 @@ impl<'l> CostTable<'l> {
             if !self.lattice.layout.holds(tile) {
                 return Tile::default();
             }
-            let (row, column) = self.lattice.layout.tile_place(tile);
-            let codes = self.kernel.evaluate(self.lattice, row, column);
-            let least = Displacement::least(&self.displacements, &codes, HEADINGS * self.stride());
-            Tile { codes, least }
+            let place = self.lattice.layout.tile_place(tile);
+            self.kernel.evaluate(self.lattice, place, &self.displacements, &Patience::default()).unwrap_or_default()
         })
     }
 
@@ -169,8 +177,7 @@ impl<'l> CostTable<'l> {
     /// The least code of the motions by a displacement from any heading of a packed state's cell; forbidden beyond the map.
     #[inline(always)]
     pub(crate) fn least(&self, state: u32, displacement: usize) -> u16 {
-        let cell = Layout::within(state) / HEADINGS;
-        let place = cell * self.displacements.len() + displacement;
+        let place = displacement * TILE_CELLS + Layout::within(state) / HEADINGS;
         self.whole_tile(Layout::tile(state)).least.get(place).copied().unwrap_or(FORBIDDEN)
     }
 
@@ -184,11 +191,48 @@ impl<'l> CostTable<'l> {
 
 /// The costs of one tile.
 #[derive(Default)]
-struct Tile {
+pub(crate) struct Tile {
     /// By cell, heading and motion.
     codes: Box<[u16]>,
-    /// By cell and displacement, the least over headings and motions.
+    /// By displacement and cell, the least over headings and motions.
     least: Box<[u16]>,
+}
+
+impl Tile {
+    /// A tile without any motion.
+    pub(crate) fn forbidden(stride: usize, displacements: usize) -> Self {
+        Tile {
+            codes: vec![FORBIDDEN; TILE_STATES * stride].into_boxed_slice(),
+            least: vec![FORBIDDEN; TILE_CELLS * displacements].into_boxed_slice(),
+        }
+    }
+
+    /// Stores the codes of a row of cells, given slot by slot.
+    pub(crate) fn store_row(&mut self, row: usize, slots: &[Codes], displacements: &[Displacement]) {
+        let codes = &mut self.codes[row * TILE * slots.len()..][..TILE * slots.len()];
+        // Eight slots at a time, so that neighbouring codes are written together.
+        for (at, eight) in slots.chunks(8).enumerate() {
+            for (x, cell) in codes.chunks_exact_mut(slots.len()).enumerate() {
+                for (code, slot) in cell[8 * at..].iter_mut().zip(eight) {
+                    *code = slot[x];
+                }
+            }
+        }
+        for (d, displacement) in displacements.iter().enumerate() {
+            let least = &mut self.least[d * TILE_CELLS + row * TILE..][..TILE];
+            for &slot in &displacement.slots {
+                lower(least, &slots[slot]);
+            }
+        }
+    }
+}
+
+/// Lowers codes to others where those are lower.
+#[inline(always)]
+pub(crate) fn lower(codes: &mut [u16], others: &[u16]) {
+    for (code, other) in codes.iter_mut().zip(others) {
+        *code = (*code).min(*other);
+    }
 }
 
 /// A step between cells and the motions that make it, as slots among the codes of a cell.
@@ -200,7 +244,7 @@ pub(crate) struct Displacement {
 
 impl Displacement {
     /// All steps of a lattice's motions; turning on the spot is none.
-    fn of(lattice: &Lattice<'_>) -> Vec<Self> {
+    pub(crate) fn of(lattice: &Lattice<'_>) -> Vec<Self> {
         let stride = lattice.motions_per_state().next_multiple_of(4);
         let mut steps = BTreeMap::<(i32, i32), Vec<usize>>::new();
         for (heading, motions) in lattice.motions.iter().enumerate() {
@@ -211,16 +255,6 @@ impl Displacement {
             }
         }
         steps.into_iter().map(|((columns, rows), slots)| Displacement { columns, rows, slots }).collect()
-    }
-
-    /// The least code of each displacement from each cell.
-    fn least(displacements: &[Self], codes: &[u16], codes_per_cell: usize) -> Box<[u16]> {
-        let least_of =
-            |cell: &[u16], d: &Self| d.slots.iter().map(|&slot| cell[slot]).min().unwrap_or(FORBIDDEN);
-        codes
-            .chunks_exact(codes_per_cell)
-            .flat_map(|cell| displacements.iter().map(move |d| least_of(cell, d)))
-            .collect()
     }
 }
 
@@ -248,4 +282,4 @@ pub(crate) fn cheapest(
 }
 
 /// States of a tile.
-pub(crate) const TILE_STATES: usize = crate::layout::TILE_CELLS * HEADINGS;
+pub(crate) const TILE_STATES: usize = TILE_CELLS * HEADINGS;
