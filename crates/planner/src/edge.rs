@@ -172,7 +172,7 @@ impl Chain {
     }
 
     /// Totals of driving this from a cell; `None` where ground, obstacles or limits forbid it.
-    pub(crate) fn edge(&self, lattice: &Lattice<'_>, cell: Cell) -> Option<Edge> {
+    pub(crate) fn edge(&self, lattice: &Lattice, cell: Cell) -> Option<Edge> {
         let mut total = Edge::default();
         self.drive(lattice, cell, |step| total.add(step))?;
         Some(total)
@@ -181,11 +181,11 @@ impl Chain {
     /// Visits every step of driving this from a cell; `None`, possibly after some visits, where it is forbidden.
     pub(crate) fn drive(
         &self,
-        lattice: &Lattice<'_>,
+        lattice: &Lattice,
         cell: Cell,
         mut visit: impl FnMut(&Step),
     ) -> Option<()> {
-        let terrain = lattice.terrain;
+        let terrain = &lattice.terrain;
         let index = terrain.grid.index(cell);
         shifted(terrain, cell, self.read_from)?;
         shifted(terrain, cell, self.read_to)?;

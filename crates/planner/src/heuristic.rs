@@ -5,11 +5,11 @@ use terrain::Cell;
 use crate::{
     cost::{FORBIDDEN, decode},
     heading::Heading,
-    lattice::{Lattice, State},
+    lattice::State,
     layout::{Layout, Shift, TILE, TILE_CELLS},
     patience::Patience,
     queue::BucketQueue,
-    table::CostTable,
+    table::{CostTable, place_of_least},
 };
 
 /// A lower bound of the cost to the goal, cell by cell.
@@ -85,12 +85,11 @@ impl GoalField {
     /// less its distance from the start at least. The smaller of both bounds is a bound again, and no motion drops it by
     /// more than it costs.
     pub fn new(
-        lattice: &Lattice<'_>,
-        table: &CostTable<'_>,
+        table: &CostTable,
         ends: FieldEnds<'_>,
         patience: &Patience,
     ) -> Option<Self> {
-        let layout = lattice.layout;
+        let layout = table.lattice().layout;
         let mut field = GoalField {
             complement: vec![0u32; layout.cells()],
             beyond: Beyond::Unreachable,
@@ -128,7 +127,7 @@ impl GoalField {
     /// Settles cells; `Some(None)` when all were, `Some(floor)` when it ended before.
     fn settle(
         &mut self,
-        table: &CostTable<'_>,
+        table: &CostTable,
         ends: &FieldEnds<'_>,
         home: &Home,
         touched: &mut [bool],
@@ -176,7 +175,8 @@ impl GoalField {
                 if *known >= !reached {
                     continue;
                 }
-                let code = table.least(before, i);
+                let least = table.least(Layout::tile(before), patience)?;
+                let code = least.get(place_of_least(before, i)).copied().unwrap_or(FORBIDDEN);
                 if code == FORBIDDEN {
                     continue;
                 }
@@ -189,6 +189,11 @@ impl GoalField {
             }
         }
         Some(None)
+    }
+
+    /// Bytes held, memory that was never touched included.
+    pub fn bytes(&self) -> usize {
+        self.complement.len() * size_of::<u32>()
     }
 
     /// Lower bound of the cost from a cell to the goal, in the objective's unit; infinite where no chain of motions leads

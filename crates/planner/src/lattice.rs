@@ -1,5 +1,7 @@
 //! The graph of poses: a robot on a terrain at a speed.
 
+use std::sync::Arc;
+
 use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
 use terrain::{Cell, Surfaces, Terrain, slope};
 
@@ -50,11 +52,11 @@ pub struct State {
 }
 
 /// A robot on a terrain: its motions, their costs, and where it may stand.
-pub struct Lattice<'a> {
+pub struct Lattice {
     /// The ground.
-    pub terrain: &'a Terrain,
+    pub terrain: Terrain,
     /// The robot.
-    pub robot: &'a Robot,
+    pub robot: Robot,
     /// How it is driven.
     pub settings: Settings,
     /// Distance to blocked ground.
@@ -67,12 +69,12 @@ pub struct Lattice<'a> {
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
 
-impl<'a> Lattice<'a> {
+impl Lattice {
     /// Prepares motions, manoeuvres, slopes and clearances.
     ///
     /// # Errors
     /// A speed out of range, a surface that the robot does not know, or cells too fine for its turning radius.
-    pub fn new(terrain: &'a Terrain, robot: &'a Robot, settings: Settings) -> Result<Self, Error> {
+    pub fn new(terrain: &Terrain, robot: &Robot, settings: Settings) -> Result<Arc<Self>, Error> {
         check_speed(robot, settings.speed_mps)?;
         let surfaces = surface_classes(terrain, robot)?;
         let cell_size_m = terrain.grid.cell_size_m;
@@ -102,9 +104,9 @@ impl<'a> Lattice<'a> {
         });
         let stand =
             std::array::from_fn(|h| footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m));
-        Ok(Lattice {
-            terrain,
-            robot,
+        Ok(Arc::new(Lattice {
+            terrain: terrain.clone(),
+            robot: robot.clone(),
             settings,
             clearance: Clearance::new(terrain),
             motions,
@@ -112,7 +114,7 @@ impl<'a> Lattice<'a> {
             limits: Limits::of(robot),
             chains,
             stand,
-        })
+        }))
     }
 
     /// Number of states.
@@ -163,7 +165,7 @@ impl<'a> Lattice<'a> {
     /// # Errors
     /// The first reason found: obstacle, unknown ground, map edge, pitch, roll.
     pub fn stand(&self, state: State) -> Result<(), Blocked> {
-        if let Some(touched) = first_blocked(self.terrain, state.cell, &self.stand[state.heading.index()]) {
+        if let Some(touched) = first_blocked(&self.terrain, state.cell, &self.stand[state.heading.index()]) {
             return Err(match touched {
                 None => Blocked::Edge,
                 Some(cell) if self.terrain.elevation_m(cell).is_none() => Blocked::Unknown { cell },
@@ -183,7 +185,7 @@ impl<'a> Lattice<'a> {
 
     /// Pitch and roll of the robot standing in a pose, from the slope map [rad].
     pub fn tilt_rad(&self, state: State) -> (f64, f64) {
-        let (east, north) = slope::gradient_at(self.terrain, state.cell);
+        let (east, north) = slope::gradient_at(&self.terrain, state.cell);
         let (sin, cos) = state.heading.angle_rad().sin_cos();
         ((east * cos + north * sin).atan(), (north * cos - east * sin).atan())
     }
@@ -221,7 +223,7 @@ impl<'a> Lattice<'a> {
     /// The state a motion leads to, if it lies on the map.
     pub fn successor(&self, state: State, motion: usize) -> Option<State> {
         let m = &self.motions[state.heading.index()][motion];
-        let cell = crate::footprint::shifted(self.terrain, state.cell, (m.columns, m.rows))?;
+        let cell = crate::footprint::shifted(&self.terrain, state.cell, (m.columns, m.rows))?;
         Some(State { cell, heading: m.to })
     }
 

@@ -53,7 +53,7 @@ pub struct Route {
 impl Route {
     /// Drives a chain of motions from a state.
     pub(crate) fn drive(
-        lattice: &Lattice<'_>,
+        lattice: &Lattice,
         objective: Objective,
         start: State,
         motions: &[usize],
@@ -125,7 +125,7 @@ impl Route {
     }
 }
 
-fn first_pose(lattice: &Lattice<'_>, start: State) -> Pose {
+fn first_pose(lattice: &Lattice, start: State) -> Pose {
     let [x_m, y_m] = lattice.terrain.grid.center_m(start.cell);
     let (pitch_rad, roll_rad) = lattice.tilt_rad(start);
     Pose {

@@ -12,7 +12,7 @@ use crate::{
     lattice::Lattice,
     layout::TILE,
     patience::Patience,
-    table::{Displacement, Tile, Weights, lower},
+    table::{Codes, Displacement, TileBuilder, Weights, lower},
 };
 
 /// Everything about the lattice that the evaluation of a tile needs, prepared once for all tiles.
@@ -72,10 +72,11 @@ pub(crate) struct Window {
 }
 
 type Lanes = [f32; TILE];
-pub(crate) type Codes = [u16; TILE];
+/// Codes of one motion from a row of cells.
+pub(crate) type RowCodes = [u16; TILE];
 
 impl TileKernel {
-    pub(crate) fn new(lattice: &Lattice<'_>, weights: Weights, units: f64) -> Self {
+    pub(crate) fn new(lattice: &Lattice, weights: Weights, units: f64) -> Self {
         let mut chains = Vec::new();
         for (heading, motions) in lattice.chains.iter().enumerate() {
             for (motion, variants) in motions.iter().enumerate() {
@@ -104,18 +105,24 @@ impl TileKernel {
         }
     }
 
+    /// How far from a cell, in cells, lies the ground that its motions depend on; slopes look one further.
+    pub(crate) fn reach(&self) -> usize {
+        let swept = self.chains.iter().map(|chain| usize::from(chain.reach)).max().unwrap_or(0);
+        swept.max(self.halo) + 1
+    }
+
     /// Costs of all motions from all states of a tile; `None` when patience ends first.
     pub(crate) fn evaluate(
         &self,
-        lattice: &Lattice<'_>,
+        lattice: &Lattice,
         (tile_row, tile_column): (usize, usize),
         displacements: &[Displacement],
         patience: &Patience,
-    ) -> Option<Tile> {
+    ) -> Option<(Codes, Codes)> {
         let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
         let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
-        let mut tile = Tile::forbidden(self.stride, displacements.len());
+        let mut tile = TileBuilder::new(self.stride, displacements);
         let window = Window::new(lattice, origin, self.halo);
         let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
         let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
@@ -126,13 +133,13 @@ impl TileKernel {
             evaluate_row(self, &window, row, &mut offered);
             self.forbid_blocked(lattice, Cell { row: origin.row + row, ..origin }, columns, &mut offered);
             take_cheapest(self, &offered, &mut slots);
-            tile.store_row(row, &slots, displacements);
+            tile.store_row(row, &slots);
         }
-        Some(tile)
+        Some(tile.finish())
     }
 
     /// Forbids motions that would touch blocked ground or start beyond the map.
-    fn forbid_blocked(&self, lattice: &Lattice<'_>, west: Cell, columns: usize, offered: &mut [Codes]) {
+    fn forbid_blocked(&self, lattice: &Lattice, west: Cell, columns: usize, offered: &mut [RowCodes]) {
         let first = lattice.terrain.grid.index(west);
         let clearance = |x: usize| lattice.clearance.at(first + x);
         let least = (0..columns).map(clearance).min().unwrap_or(0);
@@ -144,7 +151,7 @@ impl TileKernel {
             for (x, code) in codes.iter_mut().enumerate().take(columns) {
                 let cell = Cell { column: west.column + x, ..west };
                 let near = *code != FORBIDDEN && clearance(x) <= chain.reach;
-                if near && first_blocked(lattice.terrain, cell, &chain.sweep).is_some() {
+                if near && first_blocked(&lattice.terrain, cell, &chain.sweep).is_some() {
                     *code = FORBIDDEN;
                 }
             }
@@ -158,7 +165,7 @@ const ROWS_BETWEEN_LOOKS: usize = 4;
 /// All chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
 /// is contracted, so the result is the same on every machine.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
-fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut [Codes]) {
+fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut [RowCodes]) {
     for (chain, codes) in kernel.chains.iter().zip(offered) {
         let mut costs = [0.0; TILE];
         chain.evaluate(kernel, window, row, &mut costs);
@@ -170,7 +177,7 @@ fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut 
 
 /// The cheapest variant of each motion.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
-fn take_cheapest(kernel: &TileKernel, offered: &[Codes], slots: &mut [Codes]) {
+fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCodes]) {
     slots.fill([FORBIDDEN; TILE]);
     for (chain, codes) in kernel.chains.iter().zip(offered) {
         lower(&mut slots[chain.heading * kernel.stride + chain.motion], codes);
@@ -338,8 +345,8 @@ impl Chain {
 }
 
 impl Window {
-    fn new(lattice: &Lattice<'_>, origin: Cell, halo: usize) -> Self {
-        let terrain = lattice.terrain;
+    fn new(lattice: &Lattice, origin: Cell, halo: usize) -> Self {
+        let terrain = &lattice.terrain;
         // A row of lanes may start anywhere in the halo and is as long as the tile.
         let width = TILE + 2 * halo;
         let cells = width * width;
@@ -387,6 +394,6 @@ impl Window {
     }
 }
 
-fn surface_of(lattice: &Lattice<'_>, terrain: &Terrain, cell: Cell) -> u8 {
+fn surface_of(lattice: &Lattice, terrain: &Terrain, cell: Cell) -> u8 {
     if terrain.surfaces().is_none() { 0 } else { lattice.surface_index(cell) as u8 }
 }
