@@ -12,8 +12,19 @@ pub(crate) fn plan(answer: &PlanAnswer) -> String {
         answer.descent_m,
         answer.search.expanded,
         answer.search.duration_ms,
-        if answer.search.optimal { "proven best of the lattice" } else { "not proven best" },
+        quality(answer),
     )
+}
+
+/// What is proven of a path.
+fn quality(answer: &PlanAnswer) -> String {
+    let search = &answer.search;
+    let late = if search.timed_out { ", time ran out" } else { "" };
+    match search.bound {
+        _ if search.optimal => "proven best of the lattice".to_owned(),
+        Some(bound) => format!("proven within {:.1} % of the best{late}", 100.0 * (bound - 1.0)),
+        None => format!("at most {} above the best{late}", energy(search.excess_at_most)),
+    }
 }
 
 /// Three paths as a table, and what the energy-minimal one saves.

@@ -35,6 +35,13 @@ impl Patience {
         Patience { looks: Some(Arc::new(AtomicU64::new(count))), ..Patience::default() }
     }
 
+    /// The same patience, over at a moment at the latest.
+    #[must_use]
+    pub fn no_later_than(&self, moment: Option<Instant>) -> Self {
+        let deadline = [moment, self.deadline].into_iter().flatten().min();
+        Patience { deadline, ..self.clone() }
+    }
+
     /// Whether it is over.
     pub fn is_over(&self) -> bool {
         if let Some(looks) = &self.looks
