@@ -8,27 +8,35 @@
 //! Deterministic for any number of threads. No I/O, no async.
 
 mod astar;
+mod connection;
 mod cost;
+mod course;
 mod edge;
 mod error;
 mod footprint;
+mod free;
 mod heading;
 mod heuristic;
 mod lattice;
 mod layout;
 mod patience;
 mod plan;
+mod polish;
 mod prefetch;
 mod primitive;
 mod queue;
+mod rates;
+mod refine;
 mod route;
+mod shortcut;
 mod snap;
+mod step;
 mod table;
 mod tile;
 mod uncertainty;
 
 pub use astar::{Outcome, Search, search};
-pub use edge::{Edge, Step};
+pub use edge::Edge;
 pub use error::{Blocked, Error, Place};
 pub use footprint::{Clearance, Footprint};
 pub use heading::{HEADINGS, Heading};
@@ -37,5 +45,7 @@ pub use lattice::{Lattice, Settings, State};
 pub use patience::Patience;
 pub use plan::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start, compare, plan};
 pub use primitive::{Kind, Motion, Piece, motions};
+pub use refine::{Refined, refine};
 pub use route::{Pose, Route};
+pub use step::Step;
 pub use table::{CostTable, Objective};
