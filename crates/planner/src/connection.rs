@@ -57,6 +57,28 @@ const ROUNDING_RAD: f64 = 1e-9;
 /// Ends that lie closer are the same place [m].
 const ROUNDING_M: f64 = 1e-9;
 
+/// Two poses as all connections of one direction between them need them.
+pub(crate) struct Ends {
+    /// From the first to the last [m].
+    apart_m: [f64; 2],
+    /// Directions of travel [rad].
+    travel_rad: [f64; 2],
+    /// Unit vectors to the left of travel.
+    left: [[f64; 2]; 2],
+}
+
+impl Ends {
+    pub(crate) fn new(from: &Waypoint, to: &Waypoint, reverse: bool) -> Self {
+        let facing_rad = if reverse { PI } else { 0.0 };
+        let travel_rad = [from.heading_rad + facing_rad, to.heading_rad + facing_rad];
+        let left = travel_rad.map(|travel_rad| {
+            let (sin, cos) = travel_rad.sin_cos();
+            [-sin, cos]
+        });
+        Ends { apart_m: [to.x_m - from.x_m, to.y_m - from.y_m], travel_rad, left }
+    }
+}
+
 impl Side {
     fn sign(self) -> f64 {
         match self {
@@ -73,16 +95,29 @@ impl Side {
 }
 
 impl Connection {
+    /// The same with radii changed by powers of two; turns on the spot stay so, arcs get no tighter than `tightest_m`.
+    pub(crate) fn bent(&self, doublings: [f64; 2], tightest_m: f64) -> Self {
+        let radius_m = |i: usize| match self.radii_m[i] {
+            0.0 => 0.0,
+            radius_m => (radius_m * doublings[i].exp2()).max(tightest_m),
+        };
+        Connection { radii_m: [radius_m(0), radius_m(1)], ..*self }
+    }
+
     /// Turns and straight between two poses; `None` where no straight touches both circles.
     pub(crate) fn shape(&self, from: &Waypoint, to: &Waypoint) -> Option<Shape> {
-        let facing_rad = if self.reverse { PI } else { 0.0 };
-        let (start_rad, end_rad) = (from.heading_rad + facing_rad, to.heading_rad + facing_rad);
+        self.shape_between(&Ends::new(from, to, self.reverse))
+    }
+
+    /// The same with the ends prepared; they must be those of the connection's direction.
+    pub(crate) fn shape_between(&self, ends: &Ends) -> Option<Shape> {
+        let [start_rad, end_rad] = ends.travel_rad;
         let [first_m, last_m] =
             [0, 1].map(|i| if self.radii_m[i] == 0.0 { 0.0 } else { self.sides[i].sign() * self.radii_m[i] });
-        // From centre to centre; the left normal of a direction (cos, sin) is (−sin, cos).
-        let ((sin_0, cos_0), (sin_1, cos_1)) = (start_rad.sin_cos(), end_rad.sin_cos());
-        let dx = to.x_m - last_m * sin_1 - (from.x_m - first_m * sin_0);
-        let dy = to.y_m + last_m * cos_1 - (from.y_m + first_m * cos_0);
+        // From centre to centre.
+        let [[nx_0, ny_0], [nx_1, ny_1]] = ends.left;
+        let dx = ends.apart_m[0] + last_m * nx_1 - first_m * nx_0;
+        let dy = ends.apart_m[1] + last_m * ny_1 - first_m * ny_0;
         let offset_m = last_m - first_m;
         let squared = dx * dx + dy * dy - offset_m * offset_m;
         if squared < -ROUNDING_M {

@@ -5,7 +5,7 @@ use crate::{
     course::{Course, Link, Way},
     free::FreeGround,
     patience::Patience,
-    rates::{LevelRates, Radii},
+    rates::{BENDS, LevelRates, Radii},
     shortcut::best_link,
 };
 
@@ -15,8 +15,8 @@ const FIRST_MOVE_CELLS: f64 = 0.5;
 const FIRST_TURN_RAD: f64 = 0.23;
 /// First change of a radius, as a power of two: half a doubling.
 const FIRST_DOUBLING: f64 = 0.5;
-/// Moves are halved so often: the last is by a thirty-second of a cell.
-const HALVINGS: usize = 5;
+/// Moves are halved so often: the last is by a sixteenth of a cell.
+const HALVINGS: usize = 4;
 /// Rounds over the whole course at each size of move.
 const ROUNDS: usize = 3;
 /// Smallest share of a cost worth a change; less is rounding.
@@ -27,8 +27,10 @@ pub(crate) fn polish(ground: &FreeGround<'_>, rates: &LevelRates, course: &mut C
     let mut polish = Polish { ground, rates, course };
     for halving in 0..HALVINGS {
         let size = 0.5f64.powi(halving as i32);
+        let mut worth_trying = vec![true; polish.course.links.len()];
         for _ in 0..ROUNDS {
-            if !polish.round(size, patience) {
+            worth_trying = polish.round(size, &worth_trying, patience);
+            if !worth_trying.contains(&true) {
                 break;
             }
         }
@@ -46,56 +48,52 @@ struct Polish<'a, 'l> {
 }
 
 impl Polish<'_, '_> {
-    /// Tries to change every link and waypoint once; whether anything got better.
-    fn round(&mut self, size: f64, patience: &Patience) -> bool {
-        let mut better = false;
-        for i in 0..self.course.links.len() {
+    /// Tries to change the links that are worth it, and the waypoints between them, once; returns those that changed.
+    fn round(&mut self, size: f64, worth_trying: &[bool], patience: &Patience) -> Vec<bool> {
+        let mut changed = vec![false; worth_trying.len()];
+        for i in 0..worth_trying.len() {
             if patience.is_over() {
-                return false;
+                break;
             }
-            better |= self.bend(i, size);
-            if i > 0 {
-                better |= self.shift(i, size);
+            if worth_trying[i] && self.bend(i, size) {
+                changed[i] = true;
+            }
+            if i > 0 && (worth_trying[i - 1] || worth_trying[i]) && self.shift(i, size) {
+                (changed[i - 1], changed[i]) = (true, true);
             }
         }
-        better
+        changed
     }
 
     /// Tries other radii of a link.
     fn bend(&mut self, i: usize, size: f64) -> bool {
         let (from, to) = (self.course.waypoints[i], self.course.waypoints[i + 1]);
-        let factor = (FIRST_DOUBLING * size).exp2();
+        let doublings = FIRST_DOUBLING * size;
         let mut better = false;
-        for [first, last] in [
-            [factor, factor],
-            [1.0 / factor, 1.0 / factor],
-            [factor, 1.0],
-            [1.0 / factor, 1.0],
-            [1.0, factor],
-            [1.0, 1.0 / factor],
-        ] {
-            let Way::Free(connection) = self.course.links[i].way else { return better };
-            let [first_m, last_m] = connection.radii_m;
-            let radii_m = [self.allowed_m(first_m * first), self.allowed_m(last_m * last)];
-            if radii_m == connection.radii_m {
-                continue;
-            }
-            let bent = self.rates.reworded(&Connection { radii_m, ..connection }, &from, &to);
-            let before = self.course.links[i].cost;
-            let Some(cost) = self.ground.cost(&bent, &from, &to).filter(|cost| pays(*cost, before)) else {
-                continue;
-            };
-            if self.ground.is_clear(&bent, &from, &to) {
-                self.course.links[i] = Link { way: Way::Free(bent), cost };
-                better = true;
-            }
+        for opposite in BENDS.chunks_exact(2) {
+            // Where one way pays, the opposite does not.
+            better |=
+                opposite.iter().any(|bend| self.try_radii(i, [&from, &to], bend.map(|b| b * doublings)));
         }
         better
     }
 
-    /// Turns on the spot stay so, arcs stay no tighter than R'.
-    fn allowed_m(&self, radius_m: f64) -> f64 {
-        if radius_m == 0.0 { 0.0 } else { radius_m.max(self.rates.tightest_m()) }
+    /// Changes a link's radii if that pays.
+    fn try_radii(&mut self, i: usize, [from, to]: [&Waypoint; 2], doublings: [f64; 2]) -> bool {
+        let Way::Free(connection) = self.course.links[i].way else { return false };
+        let bent = connection.bent(doublings, self.rates.tightest_m());
+        if bent == connection {
+            return false;
+        }
+        let bent = self.rates.reworded(&bent, from, to);
+        let most = self.course.links[i].cost;
+        match self.ground.cost(&bent, from, to).filter(|cost| pays(*cost, most)) {
+            Some(cost) if self.ground.is_clear(&bent, from, to) => {
+                self.course.links[i] = Link { way: Way::Free(bent), cost };
+                true
+            }
+            _ => false,
+        }
     }
 
     /// Tries to move and turn a waypoint.
@@ -103,22 +101,20 @@ impl Polish<'_, '_> {
         let move_m = FIRST_MOVE_CELLS * size * self.ground.lattice.terrain.grid.cell_size_m;
         let turn_rad = FIRST_TURN_RAD * size;
         let mut better = false;
-        for [along_m, across_m, turn_rad] in [
-            [0.0, move_m, 0.0],
-            [0.0, -move_m, 0.0],
-            [0.0, 0.0, turn_rad],
-            [0.0, 0.0, -turn_rad],
-            [move_m, 0.0, 0.0],
-            [-move_m, 0.0, 0.0],
-        ] {
-            let here = self.course.waypoints[i];
-            let (sin, cos) = here.heading_rad.sin_cos();
-            let there = Waypoint {
-                x_m: here.x_m + along_m * cos - across_m * sin,
-                y_m: here.y_m + along_m * sin + across_m * cos,
-                heading_rad: here.heading_rad + turn_rad,
-            };
-            better |= self.try_waypoint(i, there);
+        for [along_m, across_m, turn_rad] in [[0.0, move_m, 0.0], [0.0, 0.0, turn_rad], [move_m, 0.0, 0.0]] {
+            for sign in [1.0, -1.0] {
+                let here = self.course.waypoints[i];
+                let (sin, cos) = here.heading_rad.sin_cos();
+                let there = Waypoint {
+                    x_m: here.x_m + sign * (along_m * cos - across_m * sin),
+                    y_m: here.y_m + sign * (along_m * sin + across_m * cos),
+                    heading_rad: here.heading_rad + sign * turn_rad,
+                };
+                if self.try_waypoint(i, there) {
+                    better = true;
+                    break;
+                }
+            }
         }
         better
     }

@@ -3,19 +3,30 @@
 use model::Acceleration;
 
 use crate::{
-    connection::{Connection, Side, WORDS, Waypoint},
+    connection::{Connection, Ends, Side, WORDS, Waypoint},
     free::FreeGround,
     primitive::Piece,
 };
 
 /// Radii double from R' (half the slip track) on; so many doublings reach half a kilometre for a Husky.
 const DOUBLINGS: usize = 11;
+/// Radii of the table within a doubling.
+const PER_DOUBLING: usize = 4;
 /// Arcs wider than so many times the distance between two poses hardly differ from the straight.
 const WIDEST_PER_DISTANCE: f64 = 16.0;
 
+/// Radii are settled when moves by this share of a doubling no longer pay: half a per cent.
+const SETTLED_DOUBLINGS: f64 = 1.0 / 128.0;
+/// The cost has valleys along which two arcs just touch; so many of the first radii, each with its best last one, are
+/// settled.
+const SETTLED_SEEDS: usize = 8;
+/// Ways to change two radii, as signs of the powers of two.
+pub(crate) const BENDS: [[f64; 2]; 8] =
+    [[1.0, 1.0], [-1.0, -1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+
 /// Costs on level ground of the robot's default surface, in the objective's own unit.
 pub(crate) struct LevelRates {
-    /// 0 for turns on the spot, then R' and its doublings [m].
+    /// 0 for turns on the spot, then from R' on [m].
     radii_m: Vec<f64>,
     /// By direction (forward, reverse).
     directions: Vec<Direction>,
@@ -23,26 +34,23 @@ pub(crate) struct LevelRates {
 
 struct Direction {
     straight_per_m: f64,
-    /// By side and radius: per radian on the spot, else per metre.
-    arcs: [Vec<f64>; 2],
+    /// By side and radius, per radian.
+    per_rad: [Vec<f64>; 2],
 }
 
 impl LevelRates {
     pub(crate) fn new(ground: &FreeGround<'_>) -> Self {
         let tightest_m = ground.lattice.robot.half_slip_track_m();
-        let doubled = (0..=DOUBLINGS).map(|k| tightest_m * (1u64 << k) as f64);
+        let within = |k: usize| (k as f64 / PER_DOUBLING as f64).exp2();
+        let doubled = (0..=DOUBLINGS * PER_DOUBLING).map(|k| tightest_m * within(k));
         let radii_m: Vec<f64> = std::iter::once(0.0).chain(doubled).collect();
         let directions = [false, true]
             .into_iter()
             .filter(|reverse| !reverse || ground.lattice.settings.reverse)
             .map(|reverse| Direction {
                 straight_per_m: rate(ground, 1.0, 0.0, reverse),
-                arcs: [1.0, -1.0].map(|sign| {
-                    radii_m
-                        .iter()
-                        .map(|&r| rate(ground, r, sign, reverse) / if r > 0.0 { r } else { 1.0 })
-                        .collect()
-                }),
+                per_rad: [1.0, -1.0]
+                    .map(|sign| radii_m.iter().map(|&r| rate(ground, r, sign, reverse)).collect()),
             })
             .collect();
         LevelRates { radii_m, directions }
@@ -55,7 +63,11 @@ impl LevelRates {
 
     /// Cost of a connection on level ground; infinite where there is none.
     pub(crate) fn cost(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> f64 {
-        let Some(shape) = connection.shape(from, to) else { return f64::INFINITY };
+        self.cost_between(connection, &Ends::new(from, to, connection.reverse))
+    }
+
+    fn cost_between(&self, connection: &Connection, ends: &Ends) -> f64 {
+        let Some(shape) = connection.shape_between(ends) else { return f64::INFINITY };
         let direction = &self.directions[usize::from(connection.reverse)];
         let arc = |i: usize| {
             let (radius_m, turn_rad) = (connection.radii_m[i], shape.turns_rad[i]);
@@ -92,48 +104,84 @@ impl LevelRates {
     ) -> Option<(f64, Connection)> {
         let distance_m = (to.x_m - from.x_m).hypot(to.y_m - from.y_m);
         let useful_m = self.tightest_m().max(WIDEST_PER_DISTANCE * distance_m);
-        let useful = || self.radii_m.iter().copied().filter(move |r| *r <= useful_m);
-        let mut best: Option<(f64, Connection)> = None;
-        let mut consider = |radii_m: [f64; 2]| {
-            let connection = Connection { radii_m, sides, reverse };
-            let cost = self.cost(&connection, from, to);
-            if cost < best.map_or(f64::INFINITY, |b| b.0) {
-                best = Some((cost, connection));
-            }
-            best.map_or(radii_m, |b| b.1.radii_m)
+        let useful = self.radii_m.iter().take_while(|r| **r <= useful_m).count();
+        let ends = Ends::new(from, to, reverse);
+        let direction = &self.directions[usize::from(reverse)];
+        let connection =
+            |radii: [usize; 2]| Connection { radii_m: radii.map(|i| self.radii_m[i]), sides, reverse };
+        let cost = |radii: [usize; 2]| {
+            let Some(shape) = connection(radii).shape_between(&ends) else { return f64::INFINITY };
+            let arc = |i: usize| {
+                let turn_rad = shape.turns_rad[i];
+                turn_rad.abs() * direction.per_rad[usize::from(turn_rad < 0.0)][radii[i]]
+            };
+            arc(0) + direction.straight_per_m * shape.straight_m + arc(1)
         };
-        if radii == Radii::EveryPair {
-            useful().for_each(|first| useful().for_each(|last| radii_m = consider([first, last])));
-            return best;
+        let cheapest = |candidates: &mut dyn Iterator<Item = [usize; 2]>| {
+            candidates.map(|radii| (cost(radii), radii)).min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let (least, chosen) = match radii {
+            Radii::EveryPair => {
+                let mut seeds: Vec<(f64, [usize; 2])> = (0..useful)
+                    .filter_map(|first| cheapest(&mut (0..useful).map(|last| [first, last])))
+                    .filter(|(cost, _)| cost.is_finite())
+                    .collect();
+                seeds.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let settled = seeds.into_iter().take(SETTLED_SEEDS);
+                return settled
+                    .map(|(cost, radii)| self.settled((cost, connection(radii)), &ends))
+                    .min_by(|a, b| a.0.total_cmp(&b.0));
+            }
+            Radii::InTurn => {
+                // 0, R' and its doublings.
+                let doubled = || std::iter::once(0).chain((1..useful).step_by(PER_DOUBLING));
+                let (_, [_, last]) = cheapest(&mut doubled().map(|both| [both, both]))?;
+                let (_, [first, _]) = cheapest(&mut doubled().map(|first| [first, last]))?;
+                cheapest(&mut doubled().map(|last| [first, last]))?
+            }
+        };
+        least.is_finite().then(|| (least, connection(chosen)))
+    }
+
+    /// The best radii near those of a connection of known cost, by moves of either or both that get smaller.
+    fn settled(&self, (mut least, mut best): (f64, Connection), ends: &Ends) -> (f64, Connection) {
+        let mut size = 1.0 / PER_DOUBLING as f64;
+        while size > SETTLED_DOUBLINGS {
+            let moved = BENDS.map(|bend| best.bent(bend.map(|way| way * size), self.tightest_m()));
+            let cheapest = moved
+                .map(|connection| (self.cost_between(&connection, ends), connection))
+                .into_iter()
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            match cheapest.filter(|(cost, _)| *cost < least) {
+                Some(better) => (least, best) = better,
+                None => size /= 2.0,
+            }
         }
-        let mut radii_m = [0.0; 2];
-        useful().for_each(|both| radii_m = consider([both, both]));
-        let last_m = radii_m[1];
-        useful().for_each(|first_m| radii_m = consider([first_m, last_m]));
-        let first_m = radii_m[0];
-        useful().for_each(|last_m| radii_m = consider([first_m, last_m]));
-        best
+        (least, best)
     }
 
     /// Per radian, between the radii of the table in proportion to the doublings.
     fn per_rad(&self, direction: &Direction, side: Side, radius_m: f64) -> f64 {
-        let arcs = &direction.arcs[usize::from(side == Side::Right)];
+        let per_rad = &direction.per_rad[usize::from(side == Side::Right)];
         if radius_m == 0.0 {
-            return arcs[0];
+            return per_rad[0];
         }
-        let doublings = (radius_m / self.tightest_m()).log2().clamp(0.0, DOUBLINGS as f64);
-        let below = (doublings as usize).min(DOUBLINGS - 1);
-        let above = doublings - below as f64;
-        radius_m * (arcs[1 + below] * (1.0 - above) + arcs[2 + below] * above)
+        let steps = (DOUBLINGS * PER_DOUBLING) as f64;
+        let place = ((radius_m / self.tightest_m()).log2() * PER_DOUBLING as f64).clamp(0.0, steps);
+        let below = (place as usize).min(DOUBLINGS * PER_DOUBLING - 1);
+        let above = place - below as f64;
+        // By the metre the cost changes least from one radius to the next.
+        let per_m = |place: usize| per_rad[1 + place] / self.radii_m[1 + place];
+        radius_m * (per_m(below) * (1.0 - above) + per_m(below + 1) * above)
     }
 }
 
 /// How many radii to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Radii {
-    /// Equal ones, then the first and the last for themselves.
+    /// Equal ones, then the first and the last for themselves, by doublings.
     InTurn,
-    /// All of the first with all of the last.
+    /// All of the first with all of the last, four to a doubling.
     EveryPair,
 }
 

@@ -1,8 +1,15 @@
 //! From the lattice's best path to a smooth one near it.
 
 use crate::{
-    course::Course, free::FreeGround, lattice::Lattice, patience::Patience, polish::polish,
-    rates::LevelRates, route::Route, shortcut::shortcut, table::Objective,
+    course::Course,
+    free::FreeGround,
+    lattice::Lattice,
+    patience::Patience,
+    polish::polish,
+    rates::{LevelRates, Radii},
+    route::Route,
+    shortcut::{best_link, shortcut},
+    table::Objective,
 };
 
 /// A route freed from the lattice.
@@ -26,10 +33,24 @@ pub fn refine(lattice: &Lattice<'_>, objective: Objective, route: &Route, patien
     let ground = FreeGround::new(lattice, objective);
     let rates = LevelRates::new(&ground);
     let given = Course::of(&ground, route);
-    let mut course = shortcut(&ground, &rates, &given, patience);
-    polish(&ground, &rates, &mut course, patience);
-    let better = course
-        .drive(&ground, route)
-        .filter(|refined| ground.weighed(&refined.total) < ground.weighed(&route.total));
+    let direct = if patience.is_over() { None } else { direct(&ground, &rates, &given) };
+    let mut courses: Vec<Course> =
+        direct.into_iter().chain([shortcut(&ground, &rates, &given, patience)]).collect();
+    for course in &mut courses {
+        polish(&ground, &rates, course, patience);
+    }
+    let better = courses
+        .iter()
+        .filter_map(|course| course.drive(&ground, route))
+        .filter(|refined| ground.weighed(&refined.total) < ground.weighed(&route.total))
+        .min_by(|a, b| ground.weighed(&a.total).total_cmp(&ground.weighed(&b.total)));
     Refined { route: better.unwrap_or_else(|| route.clone()), finished: !patience.is_over() }
+}
+
+/// The best single curve from end to end, where it costs no more than the route.
+fn direct(ground: &FreeGround<'_>, rates: &LevelRates, given: &Course) -> Option<Course> {
+    let (from, to) = (given.waypoints.first()?, given.waypoints.last()?);
+    let most = given.links.iter().map(|link| link.cost).sum();
+    let link = best_link(ground, rates, [from, to], Radii::EveryPair, most)?;
+    Some(Course { waypoints: vec![*from, *to], links: vec![link] })
 }

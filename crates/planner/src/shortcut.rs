@@ -61,11 +61,10 @@ pub(crate) fn shortcut(
         }
         let last = poses - 1;
         let spans = SPANS.into_iter().filter(|span| i % (span / STARTS_PER_SPAN).max(1) == 0);
-        for j in spans.map(|span| i + span).filter(|j| *j <= last).chain((i == 0).then_some(last)) {
-            let radii = if (i, j) == (0, last) { Radii::EveryPair } else { Radii::InTurn };
+        for j in spans.map(|span| i + span).filter(|j| *j <= last) {
             let most = relax(j, Link { way: Way::Given(0..0), cost: f64::INFINITY });
             if let Some(link) =
-                best_link(ground, rates, [&given.waypoints[i], &given.waypoints[j]], radii, most)
+                best_link(ground, rates, [&given.waypoints[i], &given.waypoints[j]], Radii::InTurn, most)
             {
                 relax(j, link);
             }

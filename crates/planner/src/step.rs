@@ -212,17 +212,30 @@ pub(crate) fn prepare_steps(
     let by_length = (piece.length_m / (longest_cells * cell_size_m) - 1e-9).ceil();
     let count = by_length.max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
     let facing_rad = if reverse { std::f64::consts::PI } else { 0.0 };
+    let straight = (piece.turn_rad == 0.0).then(|| piece.heading_rad.sin_cos());
+    let along = move |fraction: f64| match straight {
+        None => {
+            let [x, y, heading] = piece.pose_at(fraction);
+            let (sin, cos) = heading.sin_cos();
+            ([x, y], heading, (cos, sin))
+        }
+        Some((sin, cos)) => {
+            let along_m = piece.length_m * fraction;
+            let place_m = [piece.start_m[0] + along_m * cos, piece.start_m[1] + along_m * sin];
+            (place_m, piece.heading_rad, (cos, sin))
+        }
+    };
     (0..count).map(move |i| {
-        let [x, y, heading] = piece.pose_at((i + 1) as f64 / count as f64);
-        let [mx, my, travel_rad] = piece.pose_at((i as f64 + 0.5) / count as f64);
+        let (end_m, heading, _) = along((i + 1) as f64 / count as f64);
+        let ([mx, my], _, travel) = along((i as f64 + 0.5) / count as f64);
         PreparedStep {
             horizontal_m: piece.length_m / count as f64,
             turn_rad: piece.turn_rad / count as f64,
-            end_m: [x, y],
+            end_m,
             end_heading_rad: heading + facing_rad,
-            travel: (travel_rad.cos(), travel_rad.sin()),
+            travel,
             middle: ((mx / cell_size_m).round() as i32, (my / cell_size_m).round() as i32),
-            end: Sample::at([x, y], cell_size_m),
+            end: Sample::at(end_m, cell_size_m),
         }
     })
 }
