@@ -101,13 +101,14 @@ impl Polish<'_, '_> {
         let move_m = FIRST_MOVE_CELLS * size * self.ground.lattice.terrain.grid.cell_size_m;
         let turn_rad = FIRST_TURN_RAD * size;
         let mut better = false;
-        for [along_m, across_m, turn_rad] in [[0.0, move_m, 0.0], [0.0, 0.0, turn_rad], [move_m, 0.0, 0.0]] {
+        // Along the path there is little to gain: the links' own curves settle where turns begin.
+        for [across_m, turn_rad] in [[move_m, 0.0], [0.0, turn_rad]] {
             for sign in [1.0, -1.0] {
                 let here = self.course.waypoints[i];
                 let (sin, cos) = here.heading_rad.sin_cos();
                 let there = Waypoint {
-                    x_m: here.x_m + sign * (along_m * cos - across_m * sin),
-                    y_m: here.y_m + sign * (along_m * sin + across_m * cos),
+                    x_m: here.x_m - sign * across_m * sin,
+                    y_m: here.y_m + sign * across_m * cos,
                     heading_rad: here.heading_rad + sign * turn_rad,
                 };
                 if self.try_waypoint(i, there) {
