@@ -93,6 +93,9 @@ pub(crate) struct Question {
     /// The path may cost so many times the least: looser bounds are answered sooner
     #[arg(long, default_value_t = 1.0)]
     bound: f64,
+    /// Leave the path on the lattice
+    #[arg(long)]
+    no_refinement: bool,
     /// Time for each search [s]; the best path so far is the answer when it is over [default: 600]
     #[arg(long)]
     timeout_s: Option<f64>,
@@ -134,6 +137,7 @@ impl Question {
             bound: self.bound,
             timeout_s: self.timeout_s,
             hold_goal: false,
+            refine: !self.no_refinement,
         };
         Ok((terrain, request))
     }

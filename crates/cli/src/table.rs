@@ -7,13 +7,25 @@ const HEAD: [&str; 7] = ["", "energy", "95 % interval", "distance", "time", "cli
 /// One path, a line a figure.
 pub(crate) fn plan(answer: &PlanAnswer) -> String {
     let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
+    let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
-        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}",
+        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}{refined}",
         answer.descent_m,
         answer.search.expanded,
         answer.search.duration_ms,
         quality(answer),
     )
+}
+
+/// The path off the lattice, if there is one.
+fn refined(answer: &PlanAnswer) -> Option<String> {
+    let (path, energy_j) = (answer.refined.as_ref()?, answer.refined_energy_j?);
+    Some(format!(
+        "refined    {} over {:.1} m in {}, off the lattice",
+        energy(energy_j),
+        path.distance_m,
+        time(path.duration_s)
+    ))
 }
 
 /// What is proven of a path.

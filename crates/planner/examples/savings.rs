@@ -64,6 +64,7 @@ fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) ->
             settings,
             snap_radius_m: None,
             bound: 1.0,
+            refine: false,
             patience: Patience::default(),
         };
     }

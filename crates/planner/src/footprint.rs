@@ -27,7 +27,22 @@ impl Footprint {
     }
 
     /// Offsets (columns, rows) of the cells that a pose touches; the pose is relative to the centre of cell (0, 0).
-    pub fn cells_at(&self, [x_m, y_m, heading_rad]: [f64; 3], cell_size_m: f64) -> Vec<(i32, i32)> {
+    pub fn cells_at(&self, pose: [f64; 3], cell_size_m: f64) -> Vec<(i32, i32)> {
+        let mut cells = Vec::new();
+        self.any_cell(pose, cell_size_m, |cell| {
+            cells.push(cell);
+            false
+        });
+        cells
+    }
+
+    /// Whether any of the cells that a pose touches, by their offsets as in [`Footprint::cells_at`], is of a kind.
+    pub fn any_cell(
+        &self,
+        [x_m, y_m, heading_rad]: [f64; 3],
+        cell_size_m: f64,
+        mut is: impl FnMut((i32, i32)) -> bool,
+    ) -> bool {
         let (sin, cos) = heading_rad.sin_cos();
         let (half_l, half_w) = (self.length_m / 2.0, self.width_m / 2.0);
         // A square overlaps a rotated rectangle unless one of the four edge directions separates them.
@@ -39,7 +54,6 @@ impl Footprint {
             let high = ((center_m + reach_m) / cell_size_m + 0.5).ceil() as i32;
             low..=high
         };
-        let mut cells = Vec::new();
         for row in range(y_m, box_reach[1]) {
             for column in range(x_m, box_reach[0]) {
                 let dx = f64::from(column) * cell_size_m - x_m;
@@ -48,12 +62,12 @@ impl Footprint {
                     && dy.abs() < box_reach[1] + half_c
                     && (dx * cos + dy * sin).abs() < half_l + square_reach
                     && (dy * cos - dx * sin).abs() < half_w + square_reach;
-                if overlaps {
-                    cells.push((column, row));
+                if overlaps && is((column, row)) {
+                    return true;
                 }
             }
         }
-        cells
+        false
     }
 }
 

@@ -6,12 +6,13 @@ use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY
 use terrain::{Cell, Surfaces, Terrain, slope};
 
 use crate::{
-    edge::{Chain, Edge, Limits},
+    edge::{Chain, Edge},
     error::{Blocked, Error},
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
     layout::Layout,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
+    step::Limits,
     table::{Objective, Weights},
 };
 
@@ -66,6 +67,8 @@ pub struct Lattice {
     pub(crate) layout: Layout,
     pub(crate) limits: Limits,
     pub(crate) chains: [Vec<Vec<Chain>>; HEADINGS],
+    /// Friction of every surface class, the robot's default last.
+    pub(crate) surfaces: Vec<model::robot::Surface>,
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
 
@@ -84,12 +87,7 @@ impl Lattice {
         let motions = motions(robot, cell_size_m, settings.reverse);
         let footprint = Footprint::of(robot);
         let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre> {
-            let motion = body_motion(robot, &settings, piece, reverse);
-            let at = |surface| {
-                let temperature_c = Sides::both(settings.motor_temperature_c);
-                Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
-            };
-            surfaces.iter().map(|surface| at(surface)).collect()
+            surfaces.iter().map(|surface| manoeuvre(robot, &settings, piece, reverse, surface)).collect()
         };
         let chains = std::array::from_fn(|h| {
             motions[h]
@@ -113,6 +111,7 @@ impl Lattice {
             layout,
             limits: Limits::of(robot),
             chains,
+            surfaces: surfaces.into_iter().cloned().collect(),
             stand,
         }))
     }
@@ -205,6 +204,11 @@ impl Lattice {
         &self.chains[heading.index()][motion][variant]
     }
 
+    /// A piece as driven on one surface.
+    pub(crate) fn manoeuvre(&self, piece: &Piece, reverse: bool, surface: usize) -> Manoeuvre {
+        manoeuvre(&self.robot, &self.settings, piece, reverse, &self.surfaces[surface])
+    }
+
     /// Totals of a step east on level ground.
     pub(crate) fn level_step(&self) -> Edge {
         self.chain(Heading::new(0), 0, 0).on_level_ground()
@@ -275,6 +279,18 @@ fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
     let for_sweeps_m = footprint.length_m.max(footprint.width_m) / MOST_CELLS_ALONG;
     let least_m = for_arcs_m.max(for_sweeps_m);
     if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, least_m }) }
+}
+
+fn manoeuvre(
+    robot: &Robot,
+    settings: &Settings,
+    piece: &Piece,
+    reverse: bool,
+    surface: &model::robot::Surface,
+) -> Manoeuvre {
+    let temperature_c = Sides::both(settings.motor_temperature_c);
+    let motion = body_motion(robot, settings, piece, reverse);
+    Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
 }
 
 /// Body speeds on a piece: the asked speed, lowered where the outer wheel would exceed its limit.

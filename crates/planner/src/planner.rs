@@ -19,6 +19,7 @@ use crate::{
     labels::Workspace,
     lattice::{Lattice, Settings},
     query::{Comparison, Plan, Query, SearchReport, Snap},
+    refine::refine,
     route::Route,
     table::{CostTable, Objective},
     uncertainty::energy_interval_j,
@@ -155,8 +156,10 @@ impl Planner {
             settings.motor_temperature_c,
         );
         let goal_snap = goal_snap(&route, ends, query);
+        let refined = query.refine.then(|| refine(lattice, objective, &route, &query.patience).route);
         Ok(Plan {
             route,
+            refined,
             energy_interval_j,
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
             goal_snap,

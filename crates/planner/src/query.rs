@@ -41,6 +41,8 @@ pub struct Query {
     pub snap_radius_m: Option<f64>,
     /// The path may cost so many times the least, 1 to [`Query::LOOSEST_BOUND`]; 1 asks for the least itself.
     pub bound: f64,
+    /// Whether to refine the path off the lattice too.
+    pub refine: bool,
     /// When to give up: the best path so far is the answer then, with the bound proven of it.
     pub patience: Patience,
 }
@@ -85,8 +87,10 @@ impl SearchReport {
 /// A least-cost path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Totals, poses and steps.
+    /// Totals, poses and steps of the lattice's path.
     pub route: Route,
+    /// The same way with shortcuts and freely placed arcs, never worse than `route`, where it was asked for.
+    pub refined: Option<Route>,
     /// Central 95 % interval of the energy, from the robot's parameter uncertainty [J].
     pub energy_interval_j: [f64; 2],
     /// How far the start was moved.

@@ -18,8 +18,8 @@ use crate::{
     heading::HEADINGS,
     lattice::{Lattice, State},
     layout::{Layout, TILE, TILE_CELLS},
+    least::least_cost_per_m,
     patience::Patience,
-    rate::least_cost_per_m,
     tile::{RowCodes, TileKernel},
 };
 

@@ -26,6 +26,7 @@ fn across(terrain: &Terrain, patience: Patience, bound: f64) -> Query {
         settings: Settings::of(&robot),
         snap_radius_m: None,
         bound,
+        refine: false,
         patience,
     }
 }

@@ -28,6 +28,7 @@ fn across(terrain: &Terrain, robot: &model::Robot) -> Query {
         settings: Settings::of(robot),
         snap_radius_m: None,
         bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }
@@ -255,6 +256,7 @@ fn obstacles_are_kept_clear_of_and_reversing_helps_where_there_is_no_room_to_tur
         settings: Settings::of(&robot),
         snap_radius_m: None,
         bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     };
     let error = plan(&terrain, &robot, &query, Objective::Energy).unwrap_err();
@@ -282,6 +284,7 @@ fn on_the_real_map_the_energy_minimal_path_is_cheaper_on_nine_of_ten_pairs_and_n
             settings: Settings::of(&robot),
             snap_radius_m: None,
             bound: 1.0,
+            refine: false,
             patience: Patience::default(),
         };
         let both = compare(&terrain, &robot, &query).unwrap();

@@ -21,6 +21,7 @@ fn query(start: (f64, f64), goal: (f64, f64)) -> Query {
         settings: Settings::of(&builtin::husky_a200()),
         snap_radius_m: None,
         bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }

@@ -64,6 +64,7 @@ pub(crate) fn some_query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot
         settings: Settings { reverse: random.random_bool(0.3), ..Settings::of(robot) },
         snap_radius_m: None,
         bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }

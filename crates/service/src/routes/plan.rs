@@ -60,6 +60,9 @@ pub struct PlanRequest {
     #[serde(default = "one")]
     #[schema(minimum = 1.0, maximum = 10.0)]
     pub bound: f64,
+    /// Whether to refine the path off the lattice too. Default: true.
+    #[serde(default = "yes")]
+    pub refine: bool,
     /// Time for the search; when it is over the best path so far is the answer, with what is proven of it. Default: the
     /// service's limit [s].
     #[schema(exclusive_minimum = 0.0)]
@@ -132,10 +135,28 @@ pub struct PlanAnswer {
     pub recovered_j: f64,
     /// The path, pose by pose.
     pub poses: Vec<PoseAnswer>,
+    /// Energy of the refined path; absent where none was asked for [J].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined_energy_j: Option<f64>,
+    /// The same way between the same ends with shortcuts and freely placed arcs, driven by the same model within the same
+    /// limits, and never worse; absent where none was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined: Option<RefinedAnswer>,
     /// How far start and goal were moved to the lattice.
     pub snapped: Snapped,
     /// What the search did.
     pub search: SearchAnswer,
+}
+
+/// A path that leaves the lattice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefinedAnswer {
+    /// Time [s].
+    pub duration_s: f64,
+    /// Length along the ground [m].
+    pub distance_m: f64,
+    /// The path, pose by pose.
+    pub poses: Vec<PoseAnswer>,
 }
 
 /// A pose along the path, with what the path has cost up to it. Power, pitch, roll and radius are those of the
@@ -189,6 +210,10 @@ pub struct SearchAnswer {
     pub excess_at_most: f64,
     /// Whether time ran out before the bound asked for was proven.
     pub timed_out: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn one() -> f64 {
@@ -383,6 +408,7 @@ impl PlanRequest {
             settings: planner.lattice().settings,
             snap_radius_m: self.snap_radius_m,
             bound: self.bound,
+            refine: self.refine,
             patience: patience.clone(),
         }
     }
@@ -400,6 +426,12 @@ impl From<&Plan> for PlanAnswer {
             descent_m: total.descent_m,
             recovered_j: total.recovered_j,
             poses: plan.route.poses.iter().map(PoseAnswer::from).collect(),
+            refined_energy_j: plan.refined.as_ref().map(|route| route.total.energy_j),
+            refined: plan.refined.as_ref().map(|route| RefinedAnswer {
+                duration_s: route.total.duration_s,
+                distance_m: route.total.length_m,
+                poses: route.poses.iter().map(PoseAnswer::from).collect(),
+            }),
             snapped: Snapped { start: (&plan.start_snap).into(), goal: (&plan.goal_snap).into() },
             search: SearchAnswer {
                 expanded: plan.search.expanded,

@@ -3,8 +3,9 @@
 use model::{Manoeuvre, PowerModel};
 
 use crate::{
-    edge::{Chain, PreparedStep},
+    edge::Chain,
     lattice::Lattice,
+    step::PreparedStep,
     table::Weights,
 };
 
