@@ -90,6 +90,15 @@ pub(crate) struct Question {
     /// Let the robot back up
     #[arg(long)]
     reverse: bool,
+    /// The path may cost so many times the least: looser bounds are answered sooner
+    #[arg(long, default_value_t = 1.0)]
+    bound: f64,
+    /// Leave the path on the lattice
+    #[arg(long)]
+    no_refinement: bool,
+    /// Time for each search [s]; the best path so far is the answer when it is over [default: 600]
+    #[arg(long)]
+    timeout_s: Option<f64>,
     /// Print the answer as the JSON document that the HTTP API returns
     #[arg(long)]
     pub(crate) json: bool,
@@ -125,6 +134,10 @@ impl Question {
             power_model: self.power_model,
             reverse: self.reverse,
             snap_radius_m: self.snap_radius_m,
+            bound: self.bound,
+            timeout_s: self.timeout_s,
+            hold_goal: false,
+            refine: !self.no_refinement,
         };
         Ok((terrain, request))
     }

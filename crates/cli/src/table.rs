@@ -7,13 +7,36 @@ const HEAD: [&str; 7] = ["", "energy", "95 % interval", "distance", "time", "cli
 /// One path, a line a figure.
 pub(crate) fn plan(answer: &PlanAnswer) -> String {
     let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
+    let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
-        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}",
+        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}{refined}",
         answer.descent_m,
         answer.search.expanded,
         answer.search.duration_ms,
-        if answer.search.optimal { "proven best of the lattice" } else { "not proven best" },
+        quality(answer),
     )
+}
+
+/// The path off the lattice, if there is one.
+fn refined(answer: &PlanAnswer) -> Option<String> {
+    let (path, energy_j) = (answer.refined.as_ref()?, answer.refined_energy_j?);
+    Some(format!(
+        "refined    {} over {:.1} m in {}, off the lattice",
+        energy(energy_j),
+        path.distance_m,
+        time(path.duration_s)
+    ))
+}
+
+/// What is proven of a path.
+fn quality(answer: &PlanAnswer) -> String {
+    let search = &answer.search;
+    let late = if search.timed_out { ", time ran out" } else { "" };
+    match search.bound {
+        _ if search.optimal => "proven best of the lattice".to_owned(),
+        Some(bound) => format!("proven within {:.1} % of the best{late}", 100.0 * (bound - 1.0)),
+        None => format!("at most {} above the best{late}", energy(search.excess_at_most)),
+    }
 }
 
 /// Three paths as a table, and what the energy-minimal one saves.

@@ -63,6 +63,8 @@ fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) ->
             goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
             settings,
             snap_radius_m: None,
+            bound: 1.0,
+            refine: false,
             patience: Patience::default(),
         };
     }

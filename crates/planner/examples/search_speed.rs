@@ -44,12 +44,30 @@ fn measure(tile: &terrain::Terrain, side: usize) -> Result<(), Box<dyn Error + S
     let goals: Vec<(State, f64)> =
         standing(goal).filter(|s| lattice.stand(*s).is_ok()).map(|s| (s, 0.0)).collect();
     let goal_cells = [(goal, 0.0)];
-    let everywhere = FieldEnds { goals: &goal_cells, starts: &[] };
-    let (field, field_time) = timed(|| GoalField::new(&lattice, &table, everywhere, &patience));
+    let everywhere = FieldEnds { goals: &goal_cells, start: None };
+    let (field, field_time) = timed(|| GoalField::new(&table, everywhere, &patience));
     let field = field.ok_or("the field was not built")?;
-    let question = Search { starts: &starts, goals: &goals, patience: &patience };
-    let (outcome, search_time) = timed(|| search(&lattice, &table, &field, &question));
-    let Outcome::Found { expanded, .. } = outcome else { return Err("no path".into()) };
+    let towards = FieldEnds { goals: &goal_cells, start: starts.first().map(|s| s.cell) };
+    let (t, tt) = timed(|| GoalField::new(&table, towards, &patience));
+    let t = t.ok_or("x")?;
+    println!("towards: {tt:?}");
+    let mut workspace = planner::Workspace::of(&lattice);
+    for (f, name) in [(&field, "whole"), (&t, "towards")] {
+    for bound in [1.2, 1.05, 1.0, 1.2, 1.05, 1.0] {
+        let question = Search { starts: &starts, goals: &goals, besides: 0.0, bound, patience: &patience };
+        let (outcome, st) = timed(|| search(&table, f, &question, &mut workspace));
+        let Outcome::Found(found) = outcome else { return Err("no path".into()) };
+        println!("{name} bound {bound}: {st:?} {} expanded, proven {:?}", found.expanded, found.bound);
+    }
+    }
+    let question = Search { starts: &starts, goals: &goals, besides: 0.0, bound: 1.0, patience: &patience };
+    let (outcome, search_time) = timed(|| search(&table, &field, &question, &mut workspace));
+    let Outcome::Found(found) = outcome else { return Err("no path".into()) };
+    let expanded = found.expanded;
+    let (exact, et) = timed(|| planner::ExactField::new(&table, &goals, &patience));
+    let exact = exact.ok_or("late")?;
+    let (w, wt) = timed(|| exact.walk(&table, &starts));
+    println!("exact {:.1} ns/state, walk {wt:?} {}", nanoseconds_each(et, (side*side*16) as u64), w.map_or(0, |w| w.1.len()));
     let edges = side * side * HEADINGS * lattice.motions_per_state();
     println!(
         "{side:>6} {:>14.1} {:>15.1} {expanded:>11} {:>17.1} {:>10.1}",

@@ -1,4 +1,4 @@
-//! A* over the lattice.
+//! A* over the lattice, with a proof of how good its answer is.
 
 use std::collections::HashMap;
 
@@ -6,12 +6,12 @@ use crate::{
     cost::{FORBIDDEN, decode},
     heading::{HEADINGS, Heading},
     heuristic::{BUCKET_SHIFT, GoalField, UNREACHED},
+    labels::{Labels, Workspace},
     lattice::{Lattice, State},
     layout::{Layout, Shift},
     patience::Patience,
     prefetch::prefetch,
-    queue::BucketQueue,
-    table::{CostTable, TILE_STATES},
+    table::CostTable,
 };
 
 /// What to search for.
@@ -20,6 +20,11 @@ pub struct Search<'s> {
     pub starts: &'s [State],
     /// Where it may end, with the cost that is still to be added there, in the objective's unit.
     pub goals: &'s [(State, f64)],
+    /// What every path costs besides, in the objective's unit: for energy the height potential of the lowest goal above
+    /// the start, often negative. Bounds are on the sum.
+    pub besides: f64,
+    /// An answer may cost so many times the least; 1 asks for the least itself.
+    pub bound: f64,
     /// When to give up.
     pub patience: &'s Patience,
 }
@@ -27,57 +32,106 @@ pub struct Search<'s> {
 /// How a search ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The best path: its start and the motion taken at each state on the way.
-    Found {
-        /// The start that was best.
-        start: State,
-        /// Motions in order.
-        motions: Vec<usize>,
-        /// States expanded.
-        expanded: u64,
-    },
+    /// A path.
+    Found(Found),
     /// No motion leads from a start to a goal.
     Unreachable,
-    /// The deadline passed first.
+    /// Patience ended before there was any path.
     Timeout {
         /// States expanded.
         expanded: u64,
     },
 }
 
-/// Expansions between two looks at the clock.
-const CLOCK_EVERY: u64 = 4096;
+/// A path and what is proven of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Where it starts.
+    pub start: State,
+    /// Motions in order.
+    pub motions: Vec<usize>,
+    /// States expanded.
+    pub expanded: u64,
+    /// By how much it may cost more than the least, in the objective's unit; 0 where it is the least.
+    pub excess: f64,
+    /// Proven: its cost is at most so many times the least; 1 where it is the least, `None` where the least may be
+    /// nothing or a gain, which no factor bounds.
+    pub bound: Option<f64>,
+    /// Whether patience ended before the bound asked for was proven.
+    pub late: bool,
+}
+
+/// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost.
+const WEIGHTS: [f64; 3] = [1.2, 1.05, 1.0];
+/// Expansions between two looks at the clock, less than a millisecond.
+const CLOCK_EVERY: u64 = 2048;
 /// How many states before its turn a state is asked of memory. Asking for its successors too gained nothing measurable.
 const CODES_AHEAD: usize = 3;
 
-/// Least cost found so far of every state, in tiles that exist once they are touched.
-struct Reached {
-    tiles: Vec<Option<Box<[u32]>>>,
-}
-
-impl Reached {
-    fn new(layout: &Layout) -> Self {
-        Reached { tiles: vec![None; layout.tiles()] }
+/// Finds a path from any start to any goal whose cost is within the bound asked for.
+///
+/// Passes with smaller and smaller weights follow each other until the bound is proven; each but the first looks only at
+/// what can still beat the best path so far.
+pub fn search(table: &CostTable, field: &GoalField, query: &Search<'_>, workspace: &mut Workspace) -> Outcome {
+    let lattice = table.lattice();
+    let units = |amount: f64| (amount * table.units()) as u32;
+    let goals: HashMap<u32, u32> =
+        query.goals.iter().map(|(state, after)| (lattice.layout.pack(*state), units(*after))).collect();
+    let mut passes = Passes {
+        table,
+        field,
+        query,
+        moves: moves(lattice),
+        highest_after: goals.values().copied().max().unwrap_or(0),
+        goals,
+        expanded: 0,
+        least: 0,
+        best: None,
+    };
+    passes.least =
+        query.starts.iter().map(|s| field.units_at(lattice.layout.pack(*s))).min().unwrap_or(UNREACHED);
+    if passes.least == UNREACHED {
+        return Outcome::Unreachable;
     }
-
-    #[inline(always)]
-    fn at(&mut self, state: u32) -> &mut u32 {
-        let tile = self.tiles[Layout::tile(state)]
-            .get_or_insert_with(|| vec![UNREACHED; TILE_STATES].into_boxed_slice());
-        &mut tile[Layout::within(state)]
-    }
-
-    /// Hints that a state will be asked for; the packing of one beyond the map may name no tile.
-    #[inline(always)]
-    fn prefetch(&self, state: u32) {
-        if let Some(Some(tile)) = self.tiles.get(Layout::tile(state)) {
-            prefetch(tile, Layout::within(state));
+    let loosest = query.bound.max(WEIGHTS[0]);
+    let weights = [loosest].into_iter().chain(WEIGHTS[1..].iter().copied());
+    for weight in weights {
+        let ended = passes.run(weight, workspace);
+        if ended == Ended::Late || passes.is_proven() {
+            return passes.outcome(ended == Ended::Late);
         }
     }
+    passes.outcome(false)
+}
 
-    fn get(&self, state: u32) -> u32 {
-        self.tiles[Layout::tile(state)].as_ref().map_or(UNREACHED, |tile| tile[Layout::within(state)])
-    }
+/// The passes of one search.
+struct Passes<'p> {
+    table: &'p CostTable,
+    field: &'p GoalField,
+    query: &'p Search<'p>,
+    moves: Vec<Move>,
+    goals: HashMap<u32, u32>,
+    highest_after: u32,
+    expanded: u64,
+    /// No path costs less than this.
+    least: u32,
+    best: Option<Best>,
+}
+
+/// The best path so far.
+struct Best {
+    total: u32,
+    start: State,
+    motions: Vec<usize>,
+}
+
+/// Why a pass ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ended {
+    /// With a path, or without one better than the best so far.
+    Done,
+    /// Because patience did.
+    Late,
 }
 
 /// A motion as the search takes it.
@@ -87,80 +141,153 @@ struct Move {
     heading: u32,
 }
 
-/// Finds the least-cost path from any start to any goal.
-pub fn search(
-    lattice: &Lattice<'_>,
-    table: &CostTable<'_>,
-    field: &GoalField,
-    query: &Search<'_>,
-) -> Outcome {
-    let layout = &lattice.layout;
-    let estimate = |state: u32| field.units_at(state);
-    let moves = moves(lattice);
-    let stride = table.stride();
-    let mut reached = Reached::new(layout);
-    let mut queue = BucketQueue::new(BUCKET_SHIFT);
-    let units = |after: f64| (after * table.units()) as u32;
-    let goals: HashMap<u32, u32> =
-        query.goals.iter().map(|(state, after)| (layout.pack(*state), units(*after))).collect();
-    let highest_after = goals.values().copied().max().unwrap_or(0);
-    for &start in query.starts {
-        let packed = layout.pack(start);
-        let ahead = estimate(packed);
-        if ahead != UNREACHED {
-            *reached.at(packed) = 0;
-            queue.push(ahead, (0, packed));
+impl Passes<'_> {
+    /// Searches in the order of cost plus weighted estimate; a state that is reached at less cost is expanded again.
+    fn run(&mut self, weight: f64, workspace: &mut Workspace) -> Ended {
+        workspace.clear();
+        let weighted = Weighted::new(weight);
+        let Workspace { labels, queue } = &mut *workspace;
+        let layout = &self.table.lattice().layout;
+        for &start in self.query.starts {
+            let packed = layout.pack(start);
+            let ahead = self.field.units_at(packed);
+            if ahead != UNREACHED && labels.lower(packed, 0) {
+                queue.push(weighted.key(0, ahead), (0, packed));
+            }
         }
+        let limit = self.best.as_ref().map_or(UNREACHED, |best| best.total);
+        let (found, ended) = self.expand(&weighted, limit, workspace);
+        // A state that is on the best path and was not expanded at its cost is still in the queue.
+        let open = workspace.queue.items().filter(|(cost, state)| *cost == workspace.labels.cost(*state));
+        let open = open.map(|(cost, state)| cost.saturating_add(self.field.units_at(state)));
+        let total = found.map_or(limit, |(total, _)| total.min(limit));
+        self.least = self.least.max(open.min().unwrap_or(UNREACHED).min(total));
+        if let Some((total, goal)) = found.filter(|(total, _)| *total < limit) {
+            let (start, motions) = walk_back(self.table, &workspace.labels, goal);
+            self.best = Some(Best { total, start, motions });
+        }
+        ended
     }
-    let mut best: Option<(u32, u32)> = None;
-    let mut expanded = 0u64;
-    while let Some((cost, state)) = queue.pop() {
-        if best.is_some_and(|(total, _)| queue.least_key() >= total) {
-            break;
-        }
-        if cost > *reached.at(state) {
-            continue;
-        }
-        if expanded.is_multiple_of(CLOCK_EVERY) && query.patience.is_over() {
-            return Outcome::Timeout { expanded };
-        }
-        expanded += 1;
-        // Only where the field is as low as at a goal is it worth looking the state up.
-        if estimate(state) <= highest_after
-            && let Some(&after) = goals.get(&state)
-            && best.is_none_or(|(total, _)| cost + after < total)
-        {
-            best = Some((cost + after, state));
-        }
-        if let Some((_, soon)) = queue.peek(CODES_AHEAD) {
-            prefetch(table.tile(Layout::tile(soon)), Layout::within(soon) * stride);
-            reached.prefetch(soon);
-        }
-        let codes = &table.tile(Layout::tile(state))[Layout::within(state) * stride..][..stride];
-        let moves = &moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];
-        for (code, step) in codes.iter().zip(moves) {
-            if *code == FORBIDDEN {
+
+    /// The loop of a pass: the best goal reached below the limit, and why it ended.
+    fn expand(
+        &mut self,
+        weighted: &Weighted,
+        limit: u32,
+        Workspace { labels, queue }: &mut Workspace,
+    ) -> (Option<(u32, u32)>, Ended) {
+        let (table, field, patience) = (self.table, self.field, self.query.patience);
+        let layout = &table.lattice().layout;
+        let stride = table.stride();
+        let mut best: Option<(u32, u32)> = None;
+        let mut least_total = limit;
+        while let Some((cost, state)) = queue.pop() {
+            if queue.least_key() >= weighted.key(0, least_total) {
+                // Put back what proves the bound.
+                queue.push(queue.least_key(), (cost, state));
+                break;
+            }
+            if cost > labels.cost(state) {
                 continue;
             }
-            let next = layout.shift(state, step.shift) | step.heading;
-            let total = cost.saturating_add(decode(*code));
-            let known = reached.at(next);
-            if total < *known {
-                *known = total;
-                let ahead = estimate(next);
-                if ahead != UNREACHED {
-                    queue.push(total.saturating_add(ahead), (total, next));
+            if self.expanded.is_multiple_of(CLOCK_EVERY) && patience.is_over() {
+                queue.push(queue.least_key(), (cost, state));
+                return (best, Ended::Late);
+            }
+            self.expanded += 1;
+            // Only where the field is as low as at a goal is it worth looking the state up.
+            if field.units_at(state) <= self.highest_after
+                && let Some(&after) = self.goals.get(&state)
+                && cost + after < least_total
+            {
+                least_total = cost + after;
+                best = Some((least_total, state));
+                if !weighted.is_exact() {
+                    queue.push(queue.least_key(), (cost, state));
+                    break;
+                }
+            }
+            if let Some((_, soon)) = queue.peek(CODES_AHEAD) {
+                if let Some(codes) = table.codes_at_hand(Layout::tile(soon)) {
+                    prefetch(codes, Layout::within(soon) * stride);
+                }
+                labels.prefetch(soon);
+            }
+            let Some(codes) = table.codes(Layout::tile(state), patience) else {
+                queue.push(queue.least_key(), (cost, state));
+                return (best, Ended::Late);
+            };
+            let codes = &codes[Layout::within(state) * stride..][..stride];
+            let moves = &self.moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];
+            for (code, step) in codes.iter().zip(moves) {
+                if *code == FORBIDDEN {
+                    continue;
+                }
+                let next = layout.shift(state, step.shift) | step.heading;
+                let total = cost.saturating_add(decode(*code));
+                if labels.lower(next, total) {
+                    let ahead = field.units_at(next);
+                    // What cannot beat the best path need not be looked at; nor can what does not lead to the goal.
+                    if total.saturating_add(ahead) < least_total {
+                        queue.push(weighted.key(total, ahead), (total, next));
+                    }
                 }
             }
         }
+        (best, Ended::Done)
     }
-    let Some((_, goal)) = best else { return Outcome::Unreachable };
-    let (start, motions) = walk_back(lattice, table, &reached, goal);
-    Outcome::Found { start, motions, expanded }
+
+    /// Whether the best path's cost is proven to be within the bound asked for.
+    fn is_proven(&self) -> bool {
+        let Some(best) = &self.best else { return false };
+        best.total <= self.least || self.proven_bound(best).is_some_and(|bound| bound <= self.query.bound)
+    }
+
+    /// The best path's cost over the least possible, where that is above nothing.
+    fn proven_bound(&self, best: &Best) -> Option<f64> {
+        let whole = |units: u32| f64::from(units) / self.table.units() + self.query.besides;
+        let least = whole(self.least);
+        (least > 0.0).then(|| whole(best.total) / least)
+    }
+
+    fn outcome(self, late: bool) -> Outcome {
+        let Some(best) = &self.best else {
+            return if late { Outcome::Timeout { expanded: self.expanded } } else { Outcome::Unreachable };
+        };
+        let is_least = best.total <= self.least;
+        let bound = if is_least { Some(1.0) } else { self.proven_bound(best) };
+        let excess = f64::from(best.total.saturating_sub(self.least)) / self.table.units();
+        let late = late && bound.is_none_or(|bound| bound > self.query.bound);
+        let (expanded, start, motions) = (self.expanded, best.start, best.motions.clone());
+        Outcome::Found(Found { start, motions, expanded, excess, bound, late })
+    }
+}
+
+/// A weight of the estimate, in whole 1/1024.
+struct Weighted(u64);
+
+impl Weighted {
+    const ONE: u64 = 1024;
+
+    fn new(weight: f64) -> Self {
+        // Rounded down: the smaller weight proves the larger.
+        Weighted((weight * Self::ONE as f64) as u64)
+    }
+
+    fn is_exact(&self) -> bool {
+        self.0 == Self::ONE
+    }
+
+    /// Place in the order of expansion.
+    #[inline(always)]
+    fn key(&self, cost: u32, ahead: u32) -> u32 {
+        let key = u64::from(cost) + (u64::from(ahead) * self.0) / Self::ONE;
+        u32::try_from(key).unwrap_or(u32::MAX)
+    }
 }
 
 /// All motions by heading, `stride` slots each.
-fn moves(lattice: &Lattice<'_>) -> Vec<Move> {
+fn moves(lattice: &Lattice) -> Vec<Move> {
     let stride = lattice.motions_per_state().next_multiple_of(4);
     let mut moves = vec![Move::default(); HEADINGS * stride];
     for (heading, motions) in lattice.motions.iter().enumerate() {
@@ -173,24 +300,22 @@ fn moves(lattice: &Lattice<'_>) -> Vec<Move> {
 }
 
 /// The start and the motions that led to a state: at each state the predecessor with the least cost through it.
-fn walk_back(
-    lattice: &Lattice<'_>,
-    table: &CostTable<'_>,
-    reached: &Reached,
-    goal: u32,
-) -> (State, Vec<usize>) {
+fn walk_back(table: &CostTable, labels: &Labels, goal: u32) -> (State, Vec<usize>) {
+    let lattice = table.lattice();
     let layout = &lattice.layout;
     let mut motions = Vec::new();
     let mut state = layout.unpack(goal);
-    let mut cost = reached.get(goal);
+    let mut cost = labels.cost(goal);
     while cost > 0 {
         let before = predecessors(lattice, state)
             .filter_map(|(before, motion)| {
                 let packed = layout.pack(before);
-                let known = reached.get(packed);
-                let code = table.tile(Layout::tile(packed))[Layout::within(packed) * table.stride() + motion];
-                (known != UNREACHED && code != FORBIDDEN)
-                    .then(|| (known.saturating_add(decode(code)), known, before, motion))
+                let known = labels.cost(packed);
+                if known == UNREACHED {
+                    return None;
+                }
+                let code = table.code(packed, motion);
+                (code != FORBIDDEN).then(|| (known.saturating_add(decode(code)), known, before, motion))
             })
             .min_by_key(|(total, ..)| *total);
         // The cost of each state came from one of its predecessors, whose own can only have fallen since.
@@ -205,13 +330,21 @@ fn walk_back(
 }
 
 /// States from which a motion leads to a state.
-fn predecessors<'a>(lattice: &'a Lattice<'_>, end: State) -> impl Iterator<Item = (State, usize)> + 'a {
+fn predecessors(lattice: &Lattice, end: State) -> impl Iterator<Item = (State, usize)> + '_ {
     Heading::all().flat_map(move |from| {
         lattice.motions[from.index()].iter().enumerate().filter(move |(_, m)| m.to == end.heading).filter_map(
             move |(index, m)| {
-                let cell = crate::footprint::shifted(lattice.terrain, end.cell, (-m.columns, -m.rows))?;
+                let cell = crate::footprint::shifted(&lattice.terrain, end.cell, (-m.columns, -m.rows))?;
                 Some((State { cell, heading: from }, index))
             },
         )
     })
+}
+
+/// A workspace for searches over a lattice.
+impl Workspace {
+    /// An empty one.
+    pub fn of(lattice: &Lattice) -> Self {
+        Workspace::new(&lattice.layout, BUCKET_SHIFT)
+    }
 }

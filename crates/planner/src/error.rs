@@ -141,7 +141,7 @@ pub enum Error {
     },
     /// The search was told to stop before it had an answer.
     #[error(
-        "the search stopped at its deadline after {expanded} expansions; allow more time or plan a shorter way"
+        "the search stopped at its deadline after {expanded} expansions, before there was any path; allow more time or plan a shorter way"
     )]
     Timeout {
         /// States expanded.
@@ -166,6 +166,16 @@ pub enum Error {
         min: f64,
         /// Largest accepted.
         max: f64,
+    },
+    /// A goal that snapping may move farther than the tolerance accepts.
+    #[error(
+        "goal.tolerance_m is {tolerance_m}, but snap_radius_m {snap_radius_m} lets the goal move farther: raise the tolerance, or leave out snap_radius_m"
+    )]
+    ConflictingTolerance {
+        /// Distance from the goal that will do [m].
+        tolerance_m: f64,
+        /// How far ends may be moved [m].
+        snap_radius_m: f64,
     },
     /// A map whose states cannot be told apart in 32 bits.
     #[error(

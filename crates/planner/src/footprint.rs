@@ -1,5 +1,7 @@
 //! The ground under the robot: which cells a pose covers, and how far the next blocked cell is.
 
+use std::sync::OnceLock;
+
 use model::Robot;
 use terrain::{Cell, Terrain};
 
@@ -25,7 +27,22 @@ impl Footprint {
     }
 
     /// Offsets (columns, rows) of the cells that a pose touches; the pose is relative to the centre of cell (0, 0).
-    pub fn cells_at(&self, [x_m, y_m, heading_rad]: [f64; 3], cell_size_m: f64) -> Vec<(i32, i32)> {
+    pub fn cells_at(&self, pose: [f64; 3], cell_size_m: f64) -> Vec<(i32, i32)> {
+        let mut cells = Vec::new();
+        self.any_cell(pose, cell_size_m, |cell| {
+            cells.push(cell);
+            false
+        });
+        cells
+    }
+
+    /// Whether any of the cells that a pose touches, by their offsets as in [`Footprint::cells_at`], is of a kind.
+    pub fn any_cell(
+        &self,
+        [x_m, y_m, heading_rad]: [f64; 3],
+        cell_size_m: f64,
+        mut is: impl FnMut((i32, i32)) -> bool,
+    ) -> bool {
         let (sin, cos) = heading_rad.sin_cos();
         let (half_l, half_w) = (self.length_m / 2.0, self.width_m / 2.0);
         // A square overlaps a rotated rectangle unless one of the four edge directions separates them.
@@ -37,7 +54,6 @@ impl Footprint {
             let high = ((center_m + reach_m) / cell_size_m + 0.5).ceil() as i32;
             low..=high
         };
-        let mut cells = Vec::new();
         for row in range(y_m, box_reach[1]) {
             for column in range(x_m, box_reach[0]) {
                 let dx = f64::from(column) * cell_size_m - x_m;
@@ -46,60 +62,73 @@ impl Footprint {
                     && dy.abs() < box_reach[1] + half_c
                     && (dx * cos + dy * sin).abs() < half_l + square_reach
                     && (dy * cos - dx * sin).abs() < half_w + square_reach;
-                if overlaps {
-                    cells.push((column, row));
+                if overlaps && is((column, row)) {
+                    return true;
                 }
             }
         }
-        cells
+        false
     }
 }
 
-/// Distance from every cell to the nearest blocked one or the world outside, in king's moves, up to 255.
-#[derive(Clone, Debug)]
-pub struct Clearance(Vec<u8>);
+/// Distance from cells to the nearest blocked one or the world outside, in king's moves, measured tile by tile as it is
+/// asked for; [`Clearance::FARTHEST`] stands for any distance from there on.
+#[derive(Debug)]
+pub struct Clearance {
+    terrain: Terrain,
+    tile_columns: usize,
+    tiles: Vec<OnceLock<Box<[u8]>>>,
+}
 
 impl Clearance {
-    /// Measures the clearance of every cell: 0 on blocked ground.
+    /// The greatest distance told apart: motions that sweep cells farther than this are rare and looked at cell by cell.
+    pub const FARTHEST: u8 = 31;
+    const TILE: usize = 64;
+
+    /// Clearance on a piece of ground.
     pub fn new(terrain: &Terrain) -> Self {
-        let grid = &terrain.grid;
-        let (rows, columns) = (grid.rows, grid.columns);
-        let mut distance: Vec<u8> =
-            (0..grid.cells()).map(|i| if terrain.is_blocked(grid.cell(i)) { 0 } else { u8::MAX }).collect();
-        // Two sweeps are exact for king's moves; what lies outside counts as blocked.
-        let at = |distance: &[u8], row: isize, column: isize| {
-            if row < 0 || column < 0 || row >= rows as isize || column >= columns as isize {
-                0
-            } else {
-                distance[row as usize * columns + column as usize]
-            }
-        };
-        let forward = [(-1, -1), (-1, 0), (-1, 1), (0, -1)];
-        let mut sweep = |row: usize, column: usize, sign: isize| {
-            let mut best = distance[row * columns + column];
-            for (dr, dc) in forward {
-                let near = at(&distance, row as isize + sign * dr, column as isize + sign * dc);
-                best = best.min(near.saturating_add(1));
-            }
-            distance[row * columns + column] = best;
-        };
-        for row in 0..rows {
-            for column in 0..columns {
-                sweep(row, column, 1);
-            }
-        }
-        for row in (0..rows).rev() {
-            for column in (0..columns).rev() {
-                sweep(row, column, -1);
-            }
-        }
-        Clearance(distance)
+        let tile_columns = terrain.grid.columns.div_ceil(Self::TILE);
+        let tiles = tile_columns * terrain.grid.rows.div_ceil(Self::TILE);
+        Clearance { terrain: terrain.clone(), tile_columns, tiles: (0..tiles).map(|_| OnceLock::new()).collect() }
     }
 
-    /// Clearance of the cell at a row-major position.
+    /// Clearance of the cell at a row-major position: 0 on blocked ground.
     #[inline]
     pub fn at(&self, index: usize) -> u8 {
-        self.0[index]
+        let Cell { row, column } = self.terrain.grid.cell(index);
+        let tile = row / Self::TILE * self.tile_columns + column / Self::TILE;
+        let measured = self.tiles[tile].get_or_init(|| self.measure(tile));
+        measured[row % Self::TILE * Self::TILE + column % Self::TILE]
+    }
+
+    /// Two sweeps over a tile and as much around it as matters, which are exact for king's moves.
+    fn measure(&self, tile: usize) -> Box<[u8]> {
+        let halo = usize::from(Self::FARTHEST);
+        let side = Self::TILE + 2 * halo;
+        let origin = (tile / self.tile_columns * Self::TILE, tile % self.tile_columns * Self::TILE);
+        let blocked = |y: usize, x: usize| {
+            let row = (origin.0 + y).checked_sub(halo).filter(|row| *row < self.terrain.grid.rows);
+            let column = (origin.1 + x).checked_sub(halo).filter(|column| *column < self.terrain.grid.columns);
+            row.zip(column).is_none_or(|(row, column)| self.terrain.is_blocked(Cell { row, column }))
+        };
+        let mut distance: Vec<u8> = (0..side * side)
+            .map(|i| if blocked(i / side, i % side) { 0 } else { Self::FARTHEST })
+            .collect();
+        let neighbours = [(-1, -1), (-1, 0), (-1, 1), (0, -1)];
+        let mut sweep = |i: usize, sign: isize| {
+            let mut best = distance[i];
+            for (dr, dc) in neighbours {
+                let (y, x) = ((i / side) as isize + sign * dr, (i % side) as isize + sign * dc);
+                if (0..side as isize).contains(&y) && (0..side as isize).contains(&x) {
+                    best = best.min(distance[y as usize * side + x as usize] + 1);
+                }
+            }
+            distance[i] = best;
+        };
+        (0..side * side).for_each(|i| sweep(i, 1));
+        (0..side * side).rev().for_each(|i| sweep(i, -1));
+        let rows = distance.chunks_exact(side).skip(halo).take(Self::TILE);
+        rows.flat_map(|row| &row[halo..halo + Self::TILE]).copied().collect()
     }
 }
 
@@ -149,9 +178,9 @@ mod tests {
 
     #[test]
     fn clearance_equals_a_brute_force_search() {
-        let grid = Grid { rows: 23, columns: 31, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        let grid = Grid { rows: 70, columns: 131, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
         let flat = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
-        let terrain = synthetic::scatter_obstacles(flat, 3, 0.02);
+        let terrain = synthetic::scatter_obstacles(flat, 3, 0.0005);
         let clearance = Clearance::new(&terrain);
         for index in 0..grid.cells() {
             let cell = grid.cell(index);
@@ -162,7 +191,8 @@ mod tests {
                     })
                 })
             };
-            let brute = (0..255).find(|reach| !free(*reach)).unwrap();
+            let farthest = i32::from(Clearance::FARTHEST);
+            let brute = (0..farthest).find(|reach| !free(*reach)).unwrap_or(farthest);
             assert_eq!(i32::from(clearance.at(index)), brute, "{cell:?}");
         }
     }

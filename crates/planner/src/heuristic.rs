@@ -5,11 +5,11 @@ use terrain::Cell;
 use crate::{
     cost::{FORBIDDEN, decode},
     heading::Heading,
-    lattice::{Lattice, State},
-    layout::{Layout, Shift},
+    lattice::State,
+    layout::{Layout, Shift, TILE, TILE_CELLS},
     patience::Patience,
     queue::BucketQueue,
-    table::CostTable,
+    table::{CostTable, place_of_least},
 };
 
 /// A lower bound of the cost to the goal, cell by cell.
@@ -18,11 +18,10 @@ use crate::{
 /// these steps, each as cheap as its cheapest heading and shape. It never exceeds the true cost and falls along every
 /// motion by no more than the motion costs, so A* expands hardly a state twice.
 pub struct GoalField {
-    /// Ones' complement of the cost in the table's units, by cell of the layout; 0, as fresh memory is, where no chain of
-    /// motions leads to the goal. Memory that the field does not reach is never touched.
+    /// Ones' complement of the bound in the table's units, by cell of the layout; 0, as fresh memory is, where the field
+    /// did not come or no chain of motions leads to the goal. Memory that the field does not reach is never touched.
     complement: Vec<u32>,
-    /// Cells that were not settled cost at least this; the largest number when all were.
-    floor: u32,
+    beyond: Beyond,
     units: f64,
     layout: Layout,
 }
@@ -32,8 +31,39 @@ pub struct GoalField {
 pub struct FieldEnds<'a> {
     /// Goal cells with the cost that still follows there, in the table's own unit.
     pub goals: &'a [(Cell, f64)],
-    /// Cells from which a search will start: the field ends soon after it has reached them. Empty: it covers all.
-    pub starts: &'a [Cell],
+    /// The cell from which a search will start: the field grows towards it and ends soon after. `None`: it covers all.
+    pub start: Option<Cell>,
+}
+
+/// What is known of cells that a field does not hold.
+#[derive(Clone, Copy, Debug)]
+enum Beyond {
+    /// No motions lead from there to the goal.
+    Unreachable,
+    /// Any way from the start to the goal by such a cell costs `floor` at least, of which reaching it takes at least its
+    /// distance times the least cost per metre.
+    Towards { floor: u32, home: Home },
+}
+
+/// A start and the least cost of getting away from it.
+#[derive(Clone, Copy, Debug)]
+struct Home {
+    row: f32,
+    column: f32,
+    /// Units per cell of distance.
+    rate: f32,
+}
+
+impl Home {
+    /// Nowhere in particular: everything is reached for nothing.
+    const ANYWHERE: Home = Home { row: 0.0, column: 0.0, rate: 0.0 };
+
+    /// Least cost from the start to a cell.
+    #[inline(always)]
+    fn away(&self, row: usize, column: usize) -> u32 {
+        let (rows, columns) = (row as f32 - self.row, column as f32 - self.column);
+        ((rows * rows + columns * columns).sqrt() * self.rate) as u32
+    }
 }
 
 pub(crate) const UNREACHED: u32 = u32::MAX;
@@ -41,52 +71,99 @@ pub(crate) const UNREACHED: u32 = u32::MAX;
 /// Cells between two looks at the clock.
 const CLOCK_EVERY: u32 = 256;
 
-/// The field goes on beyond the starts by a share of 1/`MARGIN` of their cost, which is about what turning adds to it.
+/// A field goes on beyond the start by a share of 1/`MARGIN` of its cost, which is about what turning adds to it.
 const MARGIN: u32 = 32;
 
 /// Buckets of 2048 units, a thirtieth of a step on level ground.
 pub(crate) const BUCKET_SHIFT: u32 = 11;
 
 impl GoalField {
-    /// Backward Dijkstra from the goal cells; `None` when patience ends first.
+    /// Backward search from the goal cells, towards the start if there is one; `None` when patience ends first.
     ///
-    /// Beyond where it ends, the cost at which it ended stands for all: the bound stays a bound, and no motion drops it by
+    /// Cells are settled in the order of their cost to the goal and the least that getting there from the start can cost.
+    /// Once the start is settled and the order has passed its cost by a margin, at `floor`, every other cell costs `floor`
+    /// less its distance from the start at least. The smaller of both bounds is a bound again, and no motion drops it by
     /// more than it costs.
     pub fn new(
-        lattice: &Lattice<'_>,
-        table: &CostTable<'_>,
+        table: &CostTable,
         ends: FieldEnds<'_>,
         patience: &Patience,
     ) -> Option<Self> {
-        let layout = lattice.layout;
+        let layout = table.lattice().layout;
+        let mut field = GoalField {
+            complement: vec![0u32; layout.cells()],
+            beyond: Beyond::Unreachable,
+            units: table.units(),
+            layout,
+        };
+        let home = ends.start.map_or(Home::ANYWHERE, |start| Home {
+            row: start.row as f32,
+            column: start.column as f32,
+            rate: table.least_units_per_cell(),
+        });
+        let mut touched = vec![false; layout.tiles()];
+        if let Some(floor) = field.settle(table, &ends, &home, &mut touched, patience)? {
+            field.bound_rest(floor, home, &touched);
+        }
+        Some(field)
+    }
+
+    /// Lets the bound of unsettled cells stand in the tiles that were touched; elsewhere it is worked out when asked for.
+    fn bound_rest(&mut self, floor: u32, home: Home, touched: &[bool]) {
+        let layout = self.layout;
+        let tiles = self.complement.chunks_exact_mut(TILE_CELLS).zip(touched).enumerate();
+        for (tile, (cells, _)) in tiles.filter(|(_, (_, touched))| **touched) {
+            let (tile_row, tile_column) = layout.tile_place(tile);
+            for (row, cells) in cells.chunks_exact_mut(TILE).enumerate() {
+                for (column, cell) in cells.iter_mut().enumerate() {
+                    let away = home.away(tile_row * TILE + row, tile_column * TILE + column);
+                    *cell = (*cell).max(!(floor - away.min(floor)));
+                }
+            }
+        }
+        self.beyond = Beyond::Towards { floor, home };
+    }
+
+    /// Settles cells; `Some(None)` when all were, `Some(floor)` when it ended before.
+    fn settle(
+        &mut self,
+        table: &CostTable,
+        ends: &FieldEnds<'_>,
+        home: &Home,
+        touched: &mut [bool],
+        patience: &Patience,
+    ) -> Option<Option<u32>> {
+        let layout = self.layout;
         let backward: Vec<Shift> =
             table.displacements().iter().map(|d| layout.prepare(-d.columns, -d.rows)).collect();
-        let mut complement = vec![0u32; layout.cells()];
         let mut queue = BucketQueue::new(BUCKET_SHIFT);
         let position = |cell: Cell| Layout::cell(layout.pack(State { cell, heading: Heading::new(0) }));
-        let starts: Vec<usize> = ends.starts.iter().map(|&cell| position(cell)).collect();
+        let start = ends.start.map(position);
+        let key = |cost: u32, state: u32| {
+            let (row, column) = layout.place(state);
+            cost.saturating_add(home.away(row, column))
+        };
         for &(cell, after) in ends.goals {
             let at = position(cell);
             let after = (after * table.units()) as u32;
-            if !after > complement[at] {
-                complement[at] = !after;
-                queue.push(after, (after, at as u32));
+            if !after > self.complement[at] {
+                self.complement[at] = !after;
+                touched[Layout::tile(Layout::state_of_cell(at as u32))] = true;
+                queue.push(key(after, Layout::state_of_cell(at as u32)), (after, at as u32));
             }
         }
         let mut settled = 0u32;
-        let mut floor = UNREACHED;
         while let Some((reached, cell)) = queue.pop() {
-            if !reached < complement[cell as usize] {
+            if !reached < self.complement[cell as usize] {
                 continue;
             }
             if settled.is_multiple_of(CLOCK_EVERY) {
                 if patience.is_over() {
                     return None;
                 }
-                let farthest = starts.iter().map(|&at| !complement[at]).max().unwrap_or(UNREACHED);
+                let farthest = start.map_or(UNREACHED, |at| !self.complement[at]);
                 if queue.least_key() > farthest.saturating_add(farthest / MARGIN) {
-                    floor = queue.least_key();
-                    break;
+                    return Some(Some(queue.least_key()));
                 }
             }
             settled += 1;
@@ -94,22 +171,29 @@ impl GoalField {
             for (i, shift) in backward.iter().enumerate() {
                 // Beyond the map the packing wraps round; from there no motion of this displacement stays on it.
                 let before = layout.shift(state, *shift);
-                let Some(known) = complement.get_mut(Layout::cell(before)) else { continue };
+                let Some(known) = self.complement.get_mut(Layout::cell(before)) else { continue };
                 if *known >= !reached {
                     continue;
                 }
-                let code = table.least(before, i);
+                let least = table.least(Layout::tile(before), patience)?;
+                let code = least.get(place_of_least(before, i)).copied().unwrap_or(FORBIDDEN);
                 if code == FORBIDDEN {
                     continue;
                 }
                 let total = reached.saturating_add(decode(code));
                 if !total > *known {
+                    touched[Layout::tile(before)] = true;
                     *known = !total;
-                    queue.push(total, (total, Layout::cell(before) as u32));
+                    queue.push(key(total, before), (total, Layout::cell(before) as u32));
                 }
             }
         }
-        Some(GoalField { complement, floor, units: table.units(), layout })
+        Some(None)
+    }
+
+    /// Bytes held, memory that was never touched included.
+    pub fn bytes(&self) -> usize {
+        self.complement.len() * size_of::<u32>()
     }
 
     /// Lower bound of the cost from a cell to the goal, in the objective's unit; infinite where no chain of motions leads
@@ -124,6 +208,20 @@ impl GoalField {
     /// The same in the table's units, for a packed state.
     #[inline(always)]
     pub(crate) fn units_at(&self, state: u32) -> u32 {
-        (!self.complement[Layout::cell(state)]).min(self.floor)
+        match self.complement[Layout::cell(state)] {
+            0 => self.beyond_at(state),
+            complement => !complement,
+        }
+    }
+
+    #[cold]
+    fn beyond_at(&self, state: u32) -> u32 {
+        match self.beyond {
+            Beyond::Unreachable => UNREACHED,
+            Beyond::Towards { floor, home } => {
+                let (row, column) = self.layout.place(state);
+                floor - home.away(row, column).min(floor)
+            }
+        }
     }
 }

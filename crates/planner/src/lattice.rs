@@ -1,15 +1,18 @@
 //! The graph of poses: a robot on a terrain at a speed.
 
+use std::sync::Arc;
+
 use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
 use terrain::{Cell, Surfaces, Terrain, slope};
 
 use crate::{
-    edge::{Chain, Edge, Limits},
+    edge::{Chain, Edge},
     error::{Blocked, Error},
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
     layout::Layout,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
+    step::Limits,
     table::{Objective, Weights},
 };
 
@@ -50,11 +53,11 @@ pub struct State {
 }
 
 /// A robot on a terrain: its motions, their costs, and where it may stand.
-pub struct Lattice<'a> {
+pub struct Lattice {
     /// The ground.
-    pub terrain: &'a Terrain,
+    pub terrain: Terrain,
     /// The robot.
-    pub robot: &'a Robot,
+    pub robot: Robot,
     /// How it is driven.
     pub settings: Settings,
     /// Distance to blocked ground.
@@ -64,15 +67,17 @@ pub struct Lattice<'a> {
     pub(crate) layout: Layout,
     pub(crate) limits: Limits,
     pub(crate) chains: [Vec<Vec<Chain>>; HEADINGS],
+    /// Friction of every surface class, the robot's default last.
+    pub(crate) surfaces: Vec<model::robot::Surface>,
     stand: [Vec<(i32, i32)>; HEADINGS],
 }
 
-impl<'a> Lattice<'a> {
+impl Lattice {
     /// Prepares motions, manoeuvres, slopes and clearances.
     ///
     /// # Errors
     /// A speed out of range, a surface that the robot does not know, or cells too fine for its turning radius.
-    pub fn new(terrain: &'a Terrain, robot: &'a Robot, settings: Settings) -> Result<Self, Error> {
+    pub fn new(terrain: &Terrain, robot: &Robot, settings: Settings) -> Result<Arc<Self>, Error> {
         check_speed(robot, settings.speed_mps)?;
         let surfaces = surface_classes(terrain, robot)?;
         let cell_size_m = terrain.grid.cell_size_m;
@@ -82,12 +87,7 @@ impl<'a> Lattice<'a> {
         let motions = motions(robot, cell_size_m, settings.reverse);
         let footprint = Footprint::of(robot);
         let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre> {
-            let motion = body_motion(robot, &settings, piece, reverse);
-            let at = |surface| {
-                let temperature_c = Sides::both(settings.motor_temperature_c);
-                Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
-            };
-            surfaces.iter().map(|surface| at(surface)).collect()
+            surfaces.iter().map(|surface| manoeuvre(robot, &settings, piece, reverse, surface)).collect()
         };
         let chains = std::array::from_fn(|h| {
             motions[h]
@@ -102,17 +102,18 @@ impl<'a> Lattice<'a> {
         });
         let stand =
             std::array::from_fn(|h| footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m));
-        Ok(Lattice {
-            terrain,
-            robot,
+        Ok(Arc::new(Lattice {
+            terrain: terrain.clone(),
+            robot: robot.clone(),
             settings,
             clearance: Clearance::new(terrain),
             motions,
             layout,
             limits: Limits::of(robot),
             chains,
+            surfaces: surfaces.into_iter().cloned().collect(),
             stand,
-        })
+        }))
     }
 
     /// Number of states.
@@ -163,7 +164,7 @@ impl<'a> Lattice<'a> {
     /// # Errors
     /// The first reason found: obstacle, unknown ground, map edge, pitch, roll.
     pub fn stand(&self, state: State) -> Result<(), Blocked> {
-        if let Some(touched) = first_blocked(self.terrain, state.cell, &self.stand[state.heading.index()]) {
+        if let Some(touched) = first_blocked(&self.terrain, state.cell, &self.stand[state.heading.index()]) {
             return Err(match touched {
                 None => Blocked::Edge,
                 Some(cell) if self.terrain.elevation_m(cell).is_none() => Blocked::Unknown { cell },
@@ -183,7 +184,7 @@ impl<'a> Lattice<'a> {
 
     /// Pitch and roll of the robot standing in a pose, from the slope map [rad].
     pub fn tilt_rad(&self, state: State) -> (f64, f64) {
-        let (east, north) = slope::gradient_at(self.terrain, state.cell);
+        let (east, north) = slope::gradient_at(&self.terrain, state.cell);
         let (sin, cos) = state.heading.angle_rad().sin_cos();
         ((east * cos + north * sin).atan(), (north * cos - east * sin).atan())
     }
@@ -201,6 +202,11 @@ impl<'a> Lattice<'a> {
     /// One way to drive a motion, step by step.
     pub(crate) fn chain(&self, heading: Heading, motion: usize, variant: usize) -> &Chain {
         &self.chains[heading.index()][motion][variant]
+    }
+
+    /// A piece as driven on one surface.
+    pub(crate) fn manoeuvre(&self, piece: &Piece, reverse: bool, surface: usize) -> Manoeuvre {
+        manoeuvre(&self.robot, &self.settings, piece, reverse, &self.surfaces[surface])
     }
 
     /// Totals of a step east on level ground.
@@ -221,7 +227,7 @@ impl<'a> Lattice<'a> {
     /// The state a motion leads to, if it lies on the map.
     pub fn successor(&self, state: State, motion: usize) -> Option<State> {
         let m = &self.motions[state.heading.index()][motion];
-        let cell = crate::footprint::shifted(self.terrain, state.cell, (m.columns, m.rows))?;
+        let cell = crate::footprint::shifted(&self.terrain, state.cell, (m.columns, m.rows))?;
         Some(State { cell, heading: m.to })
     }
 
@@ -273,6 +279,18 @@ fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
     let for_sweeps_m = footprint.length_m.max(footprint.width_m) / MOST_CELLS_ALONG;
     let least_m = for_arcs_m.max(for_sweeps_m);
     if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, least_m }) }
+}
+
+fn manoeuvre(
+    robot: &Robot,
+    settings: &Settings,
+    piece: &Piece,
+    reverse: bool,
+    surface: &model::robot::Surface,
+) -> Manoeuvre {
+    let temperature_c = Sides::both(settings.motor_temperature_c);
+    let motion = body_motion(robot, settings, piece, reverse);
+    Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
 }
 
 /// Body speeds on a piece: the asked speed, lowered where the outer wheel would exceed its limit.

@@ -114,15 +114,16 @@ impl Layout {
 
     /// Unpacks a state.
     pub(crate) fn unpack(&self, state: u32) -> State {
+        let (row, column) = self.place(state);
+        State { cell: Cell { row, column }, heading: Heading::new(state as usize & (HEADINGS - 1)) }
+    }
+
+    /// Row and column of a packed state's cell.
+    #[inline(always)]
+    pub(crate) fn place(&self, state: u32) -> (usize, usize) {
         let (tile_row, tile_column) = self.tile_place(Self::tile(state));
         let within = Self::within(state) >> HEADING_BITS;
-        State {
-            cell: Cell {
-                row: tile_row * TILE + (within >> TILE_BITS),
-                column: tile_column * TILE + (within & (TILE - 1)),
-            },
-            heading: Heading::new(state as usize & (HEADINGS - 1)),
-        }
+        (tile_row * TILE + (within >> TILE_BITS), tile_column * TILE + (within & (TILE - 1)))
     }
 
     /// Prepares a move.

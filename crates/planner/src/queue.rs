@@ -1,4 +1,4 @@
-//! A priority queue of integer keys that only grow: a ring of buckets.
+//! A priority queue of integer keys that rarely fall: a ring of buckets.
 
 /// Keys are grouped into buckets of 2^`shift`; within a bucket the last in is the first out.
 ///
@@ -8,20 +8,24 @@ pub(crate) struct BucketQueue {
     shift: u32,
     /// Number of the bucket that is being emptied.
     current: u32,
+    /// Number of the highest bucket that was ever filled.
+    highest: u32,
     len: usize,
 }
 
 impl BucketQueue {
     pub(crate) fn new(shift: u32) -> Self {
-        BucketQueue { ring: vec![Vec::new(); 1024], shift, current: 0, len: 0 }
+        BucketQueue { ring: vec![Vec::new(); 1024], shift, current: 0, highest: 0, len: 0 }
     }
 
-    /// Adds an item under a key; keys below the current bucket are put into it.
+    /// Adds an item under a key; one below the current bucket takes the queue back to it.
     #[inline(always)]
     pub(crate) fn push(&mut self, key: u32, item: (u32, u32)) {
-        let bucket = (key >> self.shift).max(self.current);
-        if (bucket - self.current) as usize >= self.ring.len() {
-            self.grow((bucket - self.current) as usize + 1);
+        let bucket = key >> self.shift;
+        if self.len == 0 {
+            (self.current, self.highest) = (bucket, bucket);
+        } else if bucket < self.current || bucket > self.highest {
+            self.widen(bucket);
         }
         let slot = bucket as usize & (self.ring.len() - 1);
         self.ring[slot].push(item);
@@ -54,6 +58,37 @@ impl BucketQueue {
     /// Every key still in the queue is at least this.
     pub(crate) fn least_key(&self) -> u32 {
         self.current << self.shift
+    }
+
+    /// Items in no particular order.
+    pub(crate) fn items(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let filled = if self.len == 0 { 0 } else { self.highest - self.current + 1 };
+        let buckets = (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
+        buckets.flat_map(|slot| self.ring[slot].iter().copied())
+    }
+
+    /// Forgets all items and starts anew; memory is kept.
+    pub(crate) fn clear(&mut self) {
+        if self.len > 0 {
+            self.ring.iter_mut().for_each(Vec::clear);
+        }
+        (self.current, self.highest, self.len) = (0, 0, 0);
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.ring.iter().map(|bucket| bucket.capacity() * size_of::<(u32, u32)>()).sum()
+    }
+
+    /// Takes a bucket beyond those from the current to the highest into the ring.
+    #[inline(never)]
+    fn widen(&mut self, bucket: u32) {
+        let (lowest, highest) = (self.current.min(bucket), self.highest.max(bucket));
+        let needed = (highest - lowest) as usize + 1;
+        if needed > self.ring.len() {
+            self.grow(needed);
+        }
+        (self.current, self.highest) = (lowest, highest);
     }
 
     #[cold]

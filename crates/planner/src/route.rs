@@ -3,8 +3,9 @@
 use model::{Acceleration, Manoeuvre, PowerModel, Robot, Sides};
 
 use crate::{
-    edge::{Edge, Step},
+    edge::Edge,
     lattice::{Lattice, State},
+    step::Step,
     table::{Objective, cheapest},
 };
 
@@ -53,7 +54,7 @@ pub struct Route {
 impl Route {
     /// Drives a chain of motions from a state.
     pub(crate) fn drive(
-        lattice: &Lattice<'_>,
+        lattice: &Lattice,
         objective: Objective,
         start: State,
         motions: &[usize],
@@ -74,7 +75,7 @@ impl Route {
             let chain = lattice.chain(state.heading, motion, variant);
             let _ = chain.drive(lattice, state.cell, |step| {
                 edge.add(step);
-                route.push(origin_m, step);
+                route.push([origin_m[0] + step.end_m[0], origin_m[1] + step.end_m[1]], step);
             });
             route.edges.push(edge);
             state = end;
@@ -82,13 +83,14 @@ impl Route {
         route
     }
 
-    fn push(&mut self, origin_m: [f64; 2], step: &Step) {
+    /// Adds a step that ends at a place of the map.
+    pub(crate) fn push(&mut self, [x_m, y_m]: [f64; 2], step: &Step) {
         self.total.add(step);
         let Some(&last) = self.poses.last() else { return };
         let radius_m = step.motion.turning_radius_m();
         self.poses.push(Pose {
-            x_m: origin_m[0] + step.end_m[0],
-            y_m: origin_m[1] + step.end_m[1],
+            x_m,
+            y_m,
             z_m: last.z_m + step.rise_m,
             heading_rad: crate::heading::turn_rad(0.0, step.heading_rad),
             t_s: self.total.duration_s,
@@ -125,7 +127,7 @@ impl Route {
     }
 }
 
-fn first_pose(lattice: &Lattice<'_>, start: State) -> Pose {
+fn first_pose(lattice: &Lattice, start: State) -> Pose {
     let [x_m, y_m] = lattice.terrain.grid.center_m(start.cell);
     let (pitch_rad, roll_rad) = lattice.tilt_rad(start);
     Pose {

@@ -30,7 +30,7 @@ pub(crate) struct Snapped {
 }
 
 /// The cell that holds the place if the robot can stand there, else the nearest within the snap radius.
-pub(crate) fn snap(lattice: &Lattice<'_>, asked: &Asked) -> Result<Snapped, Error> {
+pub(crate) fn snap(lattice: &Lattice, asked: &Asked) -> Result<Snapped, Error> {
     let grid = &lattice.terrain.grid;
     let Asked { place, x_m, y_m, .. } = *asked;
     let home = grid.cell_at(x_m, y_m).ok_or(Error::OutsideMap {
@@ -69,7 +69,7 @@ pub(crate) fn snap(lattice: &Lattice<'_>, asked: &Asked) -> Result<Snapped, Erro
 }
 
 /// Cells within a distance of a cell, by king's moves, on the map.
-pub(crate) fn cells_within(lattice: &Lattice<'_>, home: Cell, radius_m: f64) -> Vec<Cell> {
+pub(crate) fn cells_within(lattice: &Lattice, home: Cell, radius_m: f64) -> Vec<Cell> {
     let grid = &lattice.terrain.grid;
     let reach = (radius_m / grid.cell_size_m).ceil() as usize + 1;
     let rows = home.row.saturating_sub(reach)..=(home.row + reach).min(grid.rows - 1);

@@ -1,17 +1,26 @@
 //! Cost of every motion from every state, for one objective, evaluated tile by tile as it is asked for.
 
-use std::{collections::BTreeMap, sync::OnceLock};
+use std::{
+    collections::BTreeMap,
+    ops::Range,
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
 
 use rayon::prelude::*;
+use terrain::CellRange;
 
 use crate::{
     cost::{FORBIDDEN, LARGEST_ROUNDING, UNITS_OF_REFERENCE, decode},
     edge::Edge,
     heading::HEADINGS,
     lattice::{Lattice, State},
-    layout::Layout,
+    layout::{Layout, TILE, TILE_CELLS},
+    least::least_cost_per_m,
     patience::Patience,
-    tile::TileKernel,
+    tile::{RowCodes, TileKernel},
 };
 
 /// What a path is to have least of.
@@ -67,44 +76,112 @@ impl Weights {
 
 /// Costs of all motions, with gravity taken out of energy so that none is negative.
 ///
-/// Stored in 16 bits a motion, rounded up by at most [`CostTable::LARGEST_ROUNDING`].
-pub struct CostTable<'l> {
-    lattice: &'l Lattice<'l>,
+/// Stored in 16 bits a motion, rounded up by at most [`CostTable::LARGEST_ROUNDING`], in tiles that are evaluated when they
+/// are first asked for.
+pub struct CostTable {
+    lattice: Arc<Lattice>,
+    objective: Objective,
     kernel: TileKernel,
     units: f64,
-    tiles: Vec<OnceLock<Tile>>,
+    /// Codes of all motions of each tile's states, by cell, heading and motion.
+    codes: Vec<OnceLock<Codes>>,
+    /// Least codes of each tile's cells, by displacement and cell, over headings and motions.
+    least: Vec<OnceLock<Codes>>,
+    /// Tiles whose codes are held.
+    held: AtomicUsize,
+    /// Held while a tile is evaluated, so that two threads that need it do not both do the work.
+    turns: [Mutex<()>; TURNS],
     displacements: Vec<Displacement>,
+    least_units_per_cell: f32,
 }
 
-impl<'l> CostTable<'l> {
+/// Tiles that can be evaluated at the same time; more than any machine has cores.
+const TURNS: usize = 256;
+
+impl CostTable {
     /// Largest relative rounding of a cost.
     pub const LARGEST_ROUNDING: f64 = LARGEST_ROUNDING;
 
     /// A table that evaluates a tile when it is first asked for one of its costs.
-    pub fn lazy(lattice: &'l Lattice<'l>, objective: Objective) -> Self {
+    pub fn lazy(lattice: &Arc<Lattice>, objective: Objective) -> Self {
         let weights = lattice.weights(objective);
-        let units = UNITS_OF_REFERENCE / reference_cost(lattice, &weights);
+        let units = units_per_cost(lattice, &weights);
+        let cell_size_m = lattice.terrain.grid.cell_size_m;
         CostTable {
-            lattice,
+            lattice: Arc::clone(lattice),
+            objective,
             kernel: TileKernel::new(lattice, weights, units),
             units,
-            tiles: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+            codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+            least: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+            held: AtomicUsize::new(0),
+            turns: [const { Mutex::new(()) }; TURNS],
             displacements: Displacement::of(lattice),
+            least_units_per_cell: (least_cost_per_m(lattice, &weights) * units * cell_size_m) as f32,
         }
     }
 
     /// A table with every tile evaluated, in parallel; `None` when patience ends first.
-    pub fn new(lattice: &'l Lattice<'l>, objective: Objective, patience: &Patience) -> Option<Self> {
+    pub fn new(lattice: &Arc<Lattice>, objective: Objective, patience: &Patience) -> Option<Self> {
         let table = Self::lazy(lattice, objective);
         let Layout { tile_rows, tile_columns, .. } = lattice.layout;
         let evaluated = (0..tile_rows * tile_columns).into_par_iter().try_for_each(|i| {
-            if patience.is_over() {
-                return None;
-            }
-            table.evaluated(lattice.layout.tile_at(i / tile_columns, i % tile_columns));
-            Some(())
+            let tile = lattice.layout.tile_at(i / tile_columns, i % tile_columns);
+            table.evaluate(tile, true, patience)
         });
         evaluated.map(|()| table)
+    }
+
+    /// The table of a lattice over ground that differs in some cells only: tiles that these do not touch are shared.
+    ///
+    /// The lattice must be that of the same robot and settings over a map of the same size.
+    pub(crate) fn patched(&self, lattice: &Arc<Lattice>, changed: &CellRange) -> Self {
+        let table = Self::lazy(lattice, self.objective);
+        let names = |lattice: &Lattice| lattice.terrain.surfaces().map(|s| s.names.clone());
+        if names(lattice) != names(&self.lattice) {
+            // The surfaces' numbers have changed, so every tile has.
+            return table;
+        }
+        let reach = self.kernel.reach();
+        let near = |at: usize, changed: &Range<usize>| {
+            at * TILE < changed.end + reach && changed.start < (at + 1) * TILE + reach
+        };
+        for tile in 0..self.codes.len() {
+            let (row, column) = lattice.layout.tile_place(tile);
+            if near(row, &changed.rows) && near(column, &changed.columns) {
+                continue;
+            }
+            if let Some(least) = self.least[tile].get() {
+                let _ = table.least[tile].set(Arc::clone(least));
+            }
+            if let Some(codes) = self.codes[tile].get() {
+                let _ = table.codes[tile].set(Arc::clone(codes));
+                table.held.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+        table
+    }
+
+    /// The lattice whose motions it prices.
+    pub fn lattice(&self) -> &Arc<Lattice> {
+        &self.lattice
+    }
+
+    /// What the costs are of.
+    pub fn objective(&self) -> Objective {
+        self.objective
+    }
+
+    /// Number of tiles whose costs are held.
+    pub fn tiles_held(&self) -> usize {
+        self.held.load(Ordering::Relaxed)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let least = self.least.iter().filter_map(OnceLock::get).map(|codes| codes.len()).sum::<usize>();
+        let codes = self.codes.iter().filter_map(OnceLock::get).map(|codes| codes.len()).sum::<usize>();
+        (least + codes) * size_of::<u16>()
     }
 
     /// Units per joule, metre or second.
@@ -112,53 +189,83 @@ impl<'l> CostTable<'l> {
         self.units
     }
 
+    /// Least cost of a motion per cell of distance between its ends, in units.
+    pub(crate) fn least_units_per_cell(&self) -> f32 {
+        self.least_units_per_cell
+    }
+
     /// Slots per state; those beyond the motions are forbidden.
     pub(crate) fn stride(&self) -> usize {
         self.kernel.stride
     }
 
-    /// A tile, evaluated when it is first asked for.
+    /// The codes of all motions of a tile's states, evaluated when they are first asked for; `None` when patience ends first.
     #[inline(always)]
-    fn whole_tile(&self, tile: usize) -> &Tile {
-        match self.tiles[tile].get() {
-            Some(evaluated) => evaluated,
-            None => self.evaluate_around(tile),
+    pub(crate) fn codes(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
+        match self.codes[tile].get() {
+            Some(codes) => Some(codes),
+            None => {
+                self.evaluate_around(tile, true, patience)?;
+                self.codes[tile].get().map(|codes| &codes[..])
+            }
         }
+    }
+
+    /// The least code by displacement and cell of a tile, evaluated when first asked for; `None` when patience ends first.
+    #[inline(always)]
+    pub(crate) fn least(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
+        match self.least[tile].get() {
+            Some(least) => Some(least),
+            None => {
+                let keep_codes = self.held.load(Ordering::Relaxed) < HELD_FOR_FIELDS;
+                self.evaluate_around(tile, keep_codes, patience)?;
+                self.least[tile].get().map(|least| &least[..])
+            }
+        }
+    }
+
+    /// A tile's codes if they are held.
+    #[inline(always)]
+    pub(crate) fn codes_at_hand(&self, tile: usize) -> Option<&[u16]> {
+        self.codes.get(tile)?.get().map(|codes| &codes[..])
     }
 
     /// Evaluates a tile together with its neighbours, in parallel: a search that needs one will soon need those.
     #[cold]
-    fn evaluate_around(&self, tile: usize) -> &Tile {
+    fn evaluate_around(&self, tile: usize, keep_codes: bool, patience: &Patience) -> Option<()> {
         let layout = &self.lattice.layout;
         let (row, column) = layout.tile_place(tile);
         let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
         let around: Vec<usize> = near(row, layout.tile_rows)
             .flat_map(|r| near(column, layout.tile_columns).map(move |c| layout.tile_at(r, c)))
-            .filter(|t| self.tiles[*t].get().is_none())
+            .filter(|t| self.least[*t].get().is_none())
             .collect();
-        around.into_par_iter().for_each(|t| {
-            self.evaluated(t);
-        });
-        self.evaluated(tile)
+        around.into_par_iter().try_for_each(|t| self.evaluate(t, keep_codes, patience))?;
+        self.evaluate(tile, keep_codes, patience)
     }
 
-    /// One tile; those beyond the grid hold nothing.
-    fn evaluated(&self, tile: usize) -> &Tile {
-        self.tiles[tile].get_or_init(|| {
-            if !self.lattice.layout.holds(tile) {
-                return Tile::default();
-            }
-            let (row, column) = self.lattice.layout.tile_place(tile);
-            let codes = self.kernel.evaluate(self.lattice, row, column);
-            let least = Displacement::least(&self.displacements, &codes, HEADINGS * self.stride());
-            Tile { codes, least }
-        })
-    }
-
-    /// The codes of all motions of a tile's states.
-    #[inline(always)]
-    pub(crate) fn tile(&self, tile: usize) -> &[u16] {
-        &self.whole_tile(tile).codes
+    /// One tile; those beyond the grid hold nothing. `None` when patience ends first: nothing half-done is kept.
+    fn evaluate(&self, tile: usize, keep_codes: bool, patience: &Patience) -> Option<()> {
+        let is_held =
+            || self.least[tile].get().is_some() && (!keep_codes || self.codes[tile].get().is_some());
+        if is_held() {
+            return Some(());
+        }
+        let _turn = self.turns[tile % TURNS].lock().unwrap_or_else(PoisonError::into_inner);
+        if is_held() {
+            return Some(());
+        }
+        let (codes, least) = if self.lattice.layout.holds(tile) {
+            let place = self.lattice.layout.tile_place(tile);
+            self.kernel.evaluate(&self.lattice, place, &self.displacements, patience)?
+        } else {
+            (Codes::default(), Codes::default())
+        };
+        if keep_codes && self.codes[tile].set(codes).is_ok() {
+            self.held.fetch_add(1, Ordering::Relaxed);
+        }
+        let _ = self.least[tile].set(least);
+        Some(())
     }
 
     /// Steps between cells that motions make.
@@ -166,29 +273,81 @@ impl<'l> CostTable<'l> {
         &self.displacements
     }
 
-    /// The least code of the motions by a displacement from any heading of a packed state's cell; forbidden beyond the map.
-    #[inline(always)]
-    pub(crate) fn least(&self, state: u32, displacement: usize) -> u16 {
-        let cell = Layout::within(state) / HEADINGS;
-        let place = cell * self.displacements.len() + displacement;
-        self.whole_tile(Layout::tile(state)).least.get(place).copied().unwrap_or(FORBIDDEN)
+    /// Code of a motion from a packed state, whatever it takes to know it.
+    pub(crate) fn code(&self, state: u32, motion: usize) -> u16 {
+        let codes = self.codes(Layout::tile(state), &Patience::default());
+        let place = Layout::within(state) * self.stride() + motion;
+        codes.and_then(|codes| codes.get(place).copied()).unwrap_or(FORBIDDEN)
     }
 
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
     pub fn cost(&self, state: State, motion: usize) -> f64 {
-        let packed = self.lattice.layout.pack(state);
-        let code = self.tile(Layout::tile(packed))[Layout::within(packed) * self.stride() + motion];
+        let code = self.code(self.lattice.layout.pack(state), motion);
         if code == FORBIDDEN { f64::INFINITY } else { f64::from(decode(code)) / self.units }
     }
 }
 
-/// The costs of one tile.
-#[derive(Default)]
-struct Tile {
-    /// By cell, heading and motion.
-    codes: Box<[u16]>,
-    /// By cell and displacement, the least over headings and motions.
-    least: Box<[u16]>,
+/// Place of a displacement from a packed state's cell among a tile's least codes.
+#[inline(always)]
+pub(crate) fn place_of_least(state: u32, displacement: usize) -> usize {
+    displacement * TILE_CELLS + Layout::within(state) / HEADINGS
+}
+
+/// Codes of a tile; clones share them.
+pub(crate) type Codes = Arc<[u16]>;
+
+/// Tiles whose codes a field, which needs only the least of them, keeps for the search that follows: a gigabyte. On larger
+/// ground the search evaluates again what it comes across, which is little of what a field covers.
+const HELD_FOR_FIELDS: usize = 1024;
+
+/// A tile in the making.
+pub(crate) struct TileBuilder<'d> {
+    displacements: &'d [Displacement],
+    codes: Vec<u16>,
+    least: Vec<u16>,
+}
+
+impl<'d> TileBuilder<'d> {
+    /// A tile without any motion.
+    pub(crate) fn new(stride: usize, displacements: &'d [Displacement]) -> Self {
+        TileBuilder {
+            displacements,
+            codes: vec![FORBIDDEN; TILE_STATES * stride],
+            least: vec![FORBIDDEN; TILE_CELLS * displacements.len()],
+        }
+    }
+
+    /// Stores the codes of a row of cells, given slot by slot.
+    pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
+        let codes = &mut self.codes[row * TILE * slots.len()..][..TILE * slots.len()];
+        // Eight slots at a time, so that neighbouring codes are written together.
+        for (at, eight) in slots.chunks(8).enumerate() {
+            for (x, cell) in codes.chunks_exact_mut(slots.len()).enumerate() {
+                for (code, slot) in cell[8 * at..].iter_mut().zip(eight) {
+                    *code = slot[x];
+                }
+            }
+        }
+        for (d, displacement) in self.displacements.iter().enumerate() {
+            let least = &mut self.least[d * TILE_CELLS + row * TILE..][..TILE];
+            for &slot in &displacement.slots {
+                lower(least, &slots[slot]);
+            }
+        }
+    }
+
+    /// Codes by cell, heading and motion, and the least by displacement and cell.
+    pub(crate) fn finish(self) -> (Codes, Codes) {
+        (self.codes.into(), self.least.into())
+    }
+}
+
+/// Lowers codes to others where those are lower.
+#[inline(always)]
+pub(crate) fn lower(codes: &mut [u16], others: &[u16]) {
+    for (code, other) in codes.iter_mut().zip(others) {
+        *code = (*code).min(*other);
+    }
 }
 
 /// A step between cells and the motions that make it, as slots among the codes of a cell.
@@ -200,7 +359,7 @@ pub(crate) struct Displacement {
 
 impl Displacement {
     /// All steps of a lattice's motions; turning on the spot is none.
-    fn of(lattice: &Lattice<'_>) -> Vec<Self> {
+    pub(crate) fn of(lattice: &Lattice) -> Vec<Self> {
         let stride = lattice.motions_per_state().next_multiple_of(4);
         let mut steps = BTreeMap::<(i32, i32), Vec<usize>>::new();
         for (heading, motions) in lattice.motions.iter().enumerate() {
@@ -212,28 +371,25 @@ impl Displacement {
         }
         steps.into_iter().map(|((columns, rows), slots)| Displacement { columns, rows, slots }).collect()
     }
-
-    /// The least code of each displacement from each cell.
-    fn least(displacements: &[Self], codes: &[u16], codes_per_cell: usize) -> Box<[u16]> {
-        let least_of =
-            |cell: &[u16], d: &Self| d.slots.iter().map(|&slot| cell[slot]).min().unwrap_or(FORBIDDEN);
-        codes
-            .chunks_exact(codes_per_cell)
-            .flat_map(|cell| displacements.iter().map(move |d| least_of(cell, d)))
-            .collect()
-    }
 }
 
-/// Cost of one step east on level ground, which sets the scale.
-fn reference_cost(lattice: &Lattice<'_>, weights: &Weights) -> f64 {
+/// Units per joule, metre or second: one step east on level ground sets the scale.
+fn units_per_cost(lattice: &Lattice, weights: &Weights) -> f64 {
     let cost = weights.cost(&lattice.level_step(), 0.0);
     // A robot without any friction still needs a scale: that of lifting it by a thousandth of a cell.
-    cost.max(1e-3 * lattice.lift_j_per_m() * lattice.terrain.grid.cell_size_m * weights.per_j)
+    let cost = cost.max(1e-3 * lattice.lift_j_per_m() * lattice.terrain.grid.cell_size_m * weights.per_j);
+    let grid = &lattice.terrain.grid;
+    let across = (grid.rows + grid.columns) as f64;
+    UNITS_OF_REFERENCE / cost / (across / LONGEST_ACROSS).max(1.0)
 }
+
+/// Rows and columns of a map from which on units grow coarser. Costs stay below 2^31 units, 32 768 steps on level ground
+/// where units are finest, so a path may then cost four times as much as level steps along two sides of the map.
+const LONGEST_ACROSS: f64 = 8192.0;
 
 /// The cheapest way to drive a motion from a state: its variant and cost.
 pub(crate) fn cheapest(
-    lattice: &Lattice<'_>,
+    lattice: &Lattice,
     weights: &Weights,
     state: State,
     motion: usize,
@@ -248,4 +404,4 @@ pub(crate) fn cheapest(
 }
 
 /// States of a tile.
-pub(crate) const TILE_STATES: usize = crate::layout::TILE_CELLS * HEADINGS;
+pub(crate) const TILE_STATES: usize = TILE_CELLS * HEADINGS;

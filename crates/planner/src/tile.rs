@@ -1,6 +1,6 @@
 //! Costs of all motions from the cells of one tile, a row of cells side by side.
 
-use model::{PowerKernel, Real};
+use model::PowerKernel;
 use multiversion::multiversion;
 use terrain::{Cell, Terrain, slope};
 
@@ -10,8 +10,9 @@ use crate::{
     footprint::first_blocked,
     heading::HEADINGS,
     lattice::Lattice,
-    layout::{TILE, TILE_CELLS},
-    table::Weights,
+    layout::TILE,
+    patience::Patience,
+    table::{Codes, Displacement, TileBuilder, Weights, lower},
 };
 
 /// Everything about the lattice that the evaluation of a tile needs, prepared once for all tiles.
@@ -71,9 +72,11 @@ pub(crate) struct Window {
 }
 
 type Lanes = [f32; TILE];
+/// Codes of one motion from a row of cells.
+pub(crate) type RowCodes = [u16; TILE];
 
 impl TileKernel {
-    pub(crate) fn new(lattice: &Lattice<'_>, weights: Weights, units: f64) -> Self {
+    pub(crate) fn new(lattice: &Lattice, weights: Weights, units: f64) -> Self {
         let mut chains = Vec::new();
         for (heading, motions) in lattice.chains.iter().enumerate() {
             for (motion, variants) in motions.iter().enumerate() {
@@ -102,51 +105,82 @@ impl TileKernel {
         }
     }
 
-    /// Costs of all motions from all states of a tile: by cell, heading, motion.
-    pub(crate) fn evaluate(&self, lattice: &Lattice<'_>, tile_row: usize, tile_column: usize) -> Box<[u16]> {
-        let mut codes = vec![FORBIDDEN; TILE_CELLS * HEADINGS * self.stride].into_boxed_slice();
-        let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
-        let window = Window::new(lattice, origin, self.halo);
-        let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
-        for row in 0..rows {
-            let row_codes =
-                &mut codes[row * TILE * HEADINGS * self.stride..][..TILE * HEADINGS * self.stride];
-            let mut costs = vec![[f32::INFINITY; TILE]; self.chains.len()];
-            evaluate_row(self, &window, row, &mut costs);
-            self.store(lattice, Cell { row: origin.row + row, ..origin }, &costs, row_codes);
-        }
-        codes
+    /// How far from a cell, in cells, lies the ground that its motions depend on; slopes look one further.
+    pub(crate) fn reach(&self) -> usize {
+        let swept = self.chains.iter().map(|chain| usize::from(chain.reach)).max().unwrap_or(0);
+        swept.max(self.halo) + 1
     }
 
-    /// Takes the cheapest variant of each motion where nothing is in the way, and encodes it.
-    fn store(&self, lattice: &Lattice<'_>, west: Cell, costs: &[Lanes], codes: &mut [u16]) {
-        let columns = TILE.min(lattice.terrain.grid.columns - west.column);
+    /// Costs of all motions from all states of a tile; `None` when patience ends first.
+    pub(crate) fn evaluate(
+        &self,
+        lattice: &Lattice,
+        (tile_row, tile_column): (usize, usize),
+        displacements: &[Displacement],
+        patience: &Patience,
+    ) -> Option<(Codes, Codes)> {
+        let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
+        let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
+        let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
+        let mut tile = TileBuilder::new(self.stride, displacements);
+        let window = Window::new(lattice, origin, self.halo);
+        let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
+        let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
+        for row in 0..rows {
+            if row.is_multiple_of(ROWS_BETWEEN_LOOKS) && patience.is_over() {
+                return None;
+            }
+            evaluate_row(self, &window, row, &mut offered);
+            self.forbid_blocked(lattice, Cell { row: origin.row + row, ..origin }, columns, &mut offered);
+            take_cheapest(self, &offered, &mut slots);
+            tile.store_row(row, &slots);
+        }
+        Some(tile.finish())
+    }
+
+    /// Forbids motions that would touch blocked ground or start beyond the map.
+    fn forbid_blocked(&self, lattice: &Lattice, west: Cell, columns: usize, offered: &mut [RowCodes]) {
         let first = lattice.terrain.grid.index(west);
-        for (chain, costs) in self.chains.iter().zip(costs) {
-            let slot = chain.heading * self.stride + chain.motion;
-            for (x, cost) in costs.iter().enumerate().take(columns) {
-                let code = &mut codes[x * HEADINGS * self.stride + slot];
-                let offered = encode(cost * self.units);
-                if offered >= *code {
-                    continue;
-                }
-                let near = lattice.clearance.at(first + x) <= chain.reach;
+        let clearance = |x: usize| lattice.clearance.at(first + x);
+        let least = (0..columns).map(clearance).min().unwrap_or(0);
+        for (chain, codes) in self.chains.iter().zip(offered) {
+            codes[columns..].fill(FORBIDDEN);
+            if least > chain.reach {
+                continue;
+            }
+            for (x, code) in codes.iter_mut().enumerate().take(columns) {
                 let cell = Cell { column: west.column + x, ..west };
-                if near && first_blocked(lattice.terrain, cell, &chain.sweep).is_some() {
-                    continue;
+                let near = *code != FORBIDDEN && clearance(x) <= chain.reach;
+                if near && first_blocked(&lattice.terrain, cell, &chain.sweep).is_some() {
+                    *code = FORBIDDEN;
                 }
-                *code = offered;
             }
         }
     }
 }
 
+/// Rows between two looks at the clock: 4 of them take a third of a millisecond.
+const ROWS_BETWEEN_LOOKS: usize = 4;
+
 /// All chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
 /// is contracted, so the result is the same on every machine.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
-fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, costs: &mut [Lanes]) {
-    for (chain, costs) in kernel.chains.iter().zip(costs) {
-        chain.evaluate(kernel, window, row, costs);
+fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut [RowCodes]) {
+    for (chain, codes) in kernel.chains.iter().zip(offered) {
+        let mut costs = [0.0; TILE];
+        chain.evaluate(kernel, window, row, &mut costs);
+        for (code, cost) in codes.iter_mut().zip(&costs) {
+            *code = encode(cost * kernel.units);
+        }
+    }
+}
+
+/// The cheapest variant of each motion.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCodes]) {
+    slots.fill([FORBIDDEN; TILE]);
+    for (chain, codes) in kernel.chains.iter().zip(offered) {
+        lower(&mut slots[chain.heading * kernel.stride + chain.motion], codes);
     }
 }
 
@@ -196,49 +230,95 @@ impl RowStep {
         }
         let east = window.lanes(&window.east, row, self.middle);
         let north = window.lanes(&window.north, row, self.middle);
+        let ground = self.ground(&rise_m, east, north);
         if let [only] = window.present[..] {
-            let power = &self.kernels[usize::from(only)];
+            let step = self.costs(kernel, &self.kernels[usize::from(only)], &ground, &rise_m);
             for x in 0..TILE {
-                costs[x] += self.cost(kernel, power, rise_m[x], east[x], north[x]);
+                costs[x] += step[x];
             }
             return;
         }
         let surface = window.lanes(&window.surface, row, self.middle);
         for &class in &window.present {
-            let power = &self.kernels[usize::from(class)];
+            let step = self.costs(kernel, &self.kernels[usize::from(class)], &ground, &rise_m);
             for x in 0..TILE {
-                let cost = self.cost(kernel, power, rise_m[x], east[x], north[x]);
-                costs[x] += if surface[x] == class { cost } else { 0.0 };
+                costs[x] += if surface[x] == class { step[x] } else { 0.0 };
             }
         }
     }
 
-    /// The cost of the step, infinite where limits forbid it; see `PreparedStep::drive` for the same in double.
+    /// Grades along and across the heading, and their cosines; see `PreparedStep::drive` for the same in double.
     #[inline(always)]
-    fn cost(&self, kernel: &TileKernel, power: &PowerKernel<f32>, rise_m: f32, east: f32, north: f32) -> f32 {
+    fn ground(&self, rise_m: &Lanes, east: &Lanes, north: &Lanes) -> Ground {
         let (cos, sin) = self.travel;
-        let turning = self.horizontal_m == 0.0;
-        let grade = if turning { east * cos + north * sin } else { rise_m * self.per_horizontal_m };
-        let side_grade = north * cos - east * sin;
-        let cos_pitch = 1.0 / (1.0 + grade * grade).sqrt();
-        let cos_roll = 1.0 / (1.0 + side_grade * side_grade).sqrt();
-        let (normal, along) = (cos_pitch * cos_roll, self.facing * grade * cos_pitch);
-        let length_m = self.horizontal_m * (1.0 + grade * grade).sqrt();
-        let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
-        let force_n = power.forces_n(normal, along);
-        let bus_w = power.bus_w(power.side_w(force_n), along);
-        let lifted_m = if turning { f32::ZERO } else { rise_m };
-        let friction_j = bus_w * duration_s - kernel.lift_j_per_m * lifted_m;
-        let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
-        let cost = kernel.per_j * friction_j + kernel.per_m * length_m + kernel.per_s * duration_s;
-        let limits = &kernel.limits;
-        // Written so that a NaN of unknown ground fails too.
-        let allowed = (grade.abs() <= limits.pitch_grade)
-            & (side_grade.abs() <= limits.roll_grade)
-            & (force_n.left.abs() <= limits.side_force_n)
-            & (force_n.right.abs() <= limits.side_force_n);
-        if allowed { cost } else { f32::INFINITY }
+        let mut ground = Ground { grade: [0.0; TILE], side_grade: [0.0; TILE], cos_pitch: [0.0; TILE], cos_roll: [0.0; TILE] };
+        for x in 0..TILE {
+            ground.side_grade[x] = north[x] * cos - east[x] * sin;
+        }
+        if self.horizontal_m == 0.0 {
+            for x in 0..TILE {
+                ground.grade[x] = east[x] * cos + north[x] * sin;
+            }
+        } else {
+            for x in 0..TILE {
+                ground.grade[x] = rise_m[x] * self.per_horizontal_m;
+            }
+        }
+        for x in 0..TILE {
+            ground.cos_pitch[x] = inverse_sqrt(1.0 + ground.grade[x] * ground.grade[x]);
+            ground.cos_roll[x] = inverse_sqrt(1.0 + ground.side_grade[x] * ground.side_grade[x]);
+        }
+        ground
     }
+
+    /// The cost of the step on one surface, infinite where limits forbid it.
+    #[inline(always)]
+    fn costs(&self, kernel: &TileKernel, power: &PowerKernel<f32>, ground: &Ground, rise_m: &Lanes) -> Lanes {
+        // Copies that the compiler can keep in registers.
+        let (power, limits) = (*power, kernel.limits);
+        let (per_j, per_m, per_s) = (kernel.per_j, kernel.per_m, kernel.per_s);
+        let lift_j_per_m = if self.horizontal_m == 0.0 { 0.0 } else { kernel.lift_j_per_m };
+        let mut costs = [0.0; TILE];
+        for x in 0..TILE {
+            let (grade, cos_pitch) = (ground.grade[x], ground.cos_pitch[x]);
+            let (normal, along) = (cos_pitch * ground.cos_roll[x], self.facing * grade * cos_pitch);
+            let length_m = self.horizontal_m * (1.0 + grade * grade) * cos_pitch;
+            let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
+            let force_n = power.forces_n(normal, along);
+            let bus_w = power.bus_w(power.side_w(force_n), along);
+            let friction_j = bus_w * duration_s - lift_j_per_m * rise_m[x];
+            let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
+            let cost = per_j * friction_j + per_m * length_m + per_s * duration_s;
+            // Written so that a NaN of unknown ground fails too.
+            let allowed = (grade.abs() <= limits.pitch_grade)
+                & (ground.side_grade[x].abs() <= limits.roll_grade)
+                & (force_n.left.abs() <= limits.side_force_n)
+                & (force_n.right.abs() <= limits.side_force_n);
+            costs[x] = if allowed { cost } else { f32::INFINITY };
+        }
+        costs
+    }
+}
+
+/// The ground under a step for one row of start cells.
+struct Ground {
+    grade: Lanes,
+    side_grade: Lanes,
+    cos_pitch: Lanes,
+    cos_roll: Lanes,
+}
+
+/// 1/√x to single precision for positive x, by Newton's method: several times the speed of a square root and a division,
+/// which registers share.
+#[inline(always)]
+fn inverse_sqrt(x: f32) -> f32 {
+    // Halving and negating the exponent is a first guess within 3.5 %; each step squares the error.
+    const GUESS: u32 = 0x5f37_59df;
+    let half = 0.5 * x;
+    let mut y = f32::from_bits(GUESS.wrapping_sub(x.to_bits() >> 1));
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y * (1.5 - half * y * y)
 }
 
 impl Chain {
@@ -265,8 +345,8 @@ impl Chain {
 }
 
 impl Window {
-    fn new(lattice: &Lattice<'_>, origin: Cell, halo: usize) -> Self {
-        let terrain = lattice.terrain;
+    fn new(lattice: &Lattice, origin: Cell, halo: usize) -> Self {
+        let terrain = &lattice.terrain;
         // A row of lanes may start anywhere in the halo and is as long as the tile.
         let width = TILE + 2 * halo;
         let cells = width * width;
@@ -314,6 +394,6 @@ impl Window {
     }
 }
 
-fn surface_of(lattice: &Lattice<'_>, terrain: &Terrain, cell: Cell) -> u8 {
+fn surface_of(lattice: &Lattice, terrain: &Terrain, cell: Cell) -> u8 {
     if terrain.surfaces().is_none() { 0 } else { lattice.surface_index(cell) as u8 }
 }

@@ -17,7 +17,7 @@ mod ground;
 
 /// The lattice poses that a query's ends stand for, found without the planner's own snapping: only queries whose
 /// ends need none are compared.
-fn plain_ends(lattice: &Lattice<'_>, query: &planner::Query) -> Option<(Vec<usize>, Vec<usize>)> {
+fn plain_ends(lattice: &Lattice, query: &planner::Query) -> Option<(Vec<usize>, Vec<usize>)> {
     let grid = &lattice.terrain.grid;
     let standing = |x: f64, y: f64, heading: Option<f64>| -> Vec<usize> {
         let cell = grid.cell_at(x, y).unwrap();
@@ -142,9 +142,9 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
         let goals = [(terrain.grid.cell(goal), 0.0)];
         // Half of the fields end early, soon after one cell.
         let near = |goal: usize| goal.saturating_sub(5);
-        let start = [terrain.grid.cell(near(goal))];
-        let ends = FieldEnds { goals: &goals, starts: if case % 2 == 0 { &[] } else { &start } };
-        let field = GoalField::new(&lattice, &table, ends, &Patience::default()).unwrap();
+        let start = terrain.grid.cell(near(goal));
+        let ends = FieldEnds { goals: &goals, start: if case % 2 == 0 { None } else { Some(start) } };
+        let field = GoalField::new(&table, ends, &Patience::default()).unwrap();
         let mut graph = ground::table_graph(&lattice, &table);
         graph.reverse();
         let mut truth = vec![f64::INFINITY; lattice.states()];
@@ -154,7 +154,7 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
                 truth[node.index()] = truth[node.index()].min(cost);
             }
         }
-        let whole = GoalField::new(&lattice, &table, FieldEnds { starts: &[], ..ends }, &Patience::default())
+        let whole = GoalField::new(&table, FieldEnds { start: None, ..ends }, &Patience::default())
             .unwrap();
         let cells = || (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i));
         ended_early += usize::from(cells().any(|cell| field.at(cell) < whole.at(cell)));

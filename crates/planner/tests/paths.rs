@@ -27,6 +27,8 @@ fn across(terrain: &Terrain, robot: &model::Robot) -> Query {
         goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
         settings: Settings::of(robot),
         snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }
@@ -253,6 +255,8 @@ fn obstacles_are_kept_clear_of_and_reversing_helps_where_there_is_no_room_to_tur
         goal: Goal { x_m: 8.0, y_m: 2.5, heading_rad: Some(std::f64::consts::PI), tolerance_m: 0.0 },
         settings: Settings::of(&robot),
         snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     };
     let error = plan(&terrain, &robot, &query, Objective::Energy).unwrap_err();
@@ -279,6 +283,8 @@ fn on_the_real_map_the_energy_minimal_path_is_cheaper_on_nine_of_ten_pairs_and_n
             goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
             settings: Settings::of(&robot),
             snap_radius_m: None,
+            bound: 1.0,
+            refine: false,
             patience: Patience::default(),
         };
         let both = compare(&terrain, &robot, &query).unwrap();

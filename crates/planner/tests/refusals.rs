@@ -20,6 +20,8 @@ fn query(start: (f64, f64), goal: (f64, f64)) -> Query {
         goal: Goal { x_m: goal.0, y_m: goal.1, heading_rad: None, tolerance_m: 0.0 },
         settings: Settings::of(&builtin::husky_a200()),
         snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }

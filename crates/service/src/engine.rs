@@ -13,18 +13,19 @@ use tokio::sync::Semaphore;
 
 use crate::{
     limits::Limits,
+    planners::Planners,
     problem::{Problem, ProblemType},
     store::MapStore,
 };
 
 /// The state behind the router; cheap to clone.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Engine(Arc<Shared>);
 
-#[derive(Debug)]
 struct Shared {
     limits: Limits,
     maps: MapStore,
+    planners: Planners,
     turns: Arc<Semaphore>,
 }
 
@@ -41,7 +42,7 @@ impl Engine {
     /// An engine without maps.
     pub fn new(limits: Limits) -> Self {
         let turns = Arc::new(Semaphore::new(limits.parallel_plans.max(1)));
-        Engine(Arc::new(Shared { limits, maps: MapStore::default(), turns }))
+        Engine(Arc::new(Shared { limits, maps: MapStore::default(), planners: Planners::default(), turns }))
     }
 
     /// What one request may ask for.
@@ -51,6 +52,10 @@ impl Engine {
 
     pub(crate) fn maps(&self) -> &MapStore {
         &self.0.maps
+    }
+
+    pub(crate) fn planners(&self) -> &Planners {
+        &self.0.planners
     }
 
     /// Runs a computation on a thread of its own, in turn; its patience ends when the request does.
@@ -63,7 +68,7 @@ impl Engine {
         let turn = Arc::clone(&self.0.turns).acquire_owned().await.map_err(stopped)?;
         let cancelled = Arc::new(AtomicBool::new(false));
         let asked = Asked(Arc::clone(&cancelled));
-        let patience = Patience { deadline: Some(deadline), cancelled: Some(cancelled) };
+        let patience = Patience::until_or(deadline, cancelled);
         let running = tokio::task::spawn_blocking(move || {
             // The turn ends with the work, not with the request: who leaves early makes no room before it is there.
             let _turn = turn;

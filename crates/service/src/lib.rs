@@ -8,6 +8,7 @@ mod body;
 mod engine;
 mod geojson;
 mod limits;
+mod planners;
 mod problem;
 mod router;
 pub mod routes;

@@ -13,6 +13,8 @@ pub struct Limits {
     pub plan_states: usize,
     /// Most cells over all stored maps. Default 200 million.
     pub stored_cells: usize,
+    /// Most bytes that planners keep between requests: costs of motions and fields of goals. Default 2 GiB.
+    pub kept_bytes: usize,
     /// Computations that run at the same time; more wait. Default: one for each core.
     pub parallel_plans: usize,
     /// Longest pause while a body is sent [s]. Default 30 s.
@@ -28,6 +30,7 @@ impl Default for Limits {
             plan_time: Duration::from_secs(60),
             plan_states: 32_000_000,
             stored_cells: 200_000_000,
+            kept_bytes: 2 << 30,
             parallel_plans: std::thread::available_parallelism().map_or(1, usize::from),
             body_pause: Duration::from_secs(30),
             drain_time: Duration::from_secs(10),

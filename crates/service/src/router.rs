@@ -46,7 +46,7 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(plan::handler))
         .routes(routes!(compare::handler))
         .routes(routes!(maps::create, maps::list))
-        .routes(routes!(maps::read, maps::remove))
+        .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(robots::list))
         .routes(routes!(robots::read))
         .routes(routes!(health::healthz))

@@ -99,6 +99,21 @@ pub enum Error {
         /// Most classes accepted.
         limit: usize,
     },
+    /// A patch that changes nothing.
+    #[error("the patch has no cells: give rows of elevation_m, surface or obstacle")]
+    EmptyPatch,
+    /// A patch that reaches beyond the map.
+    #[error("{field} {first} and {count} more reach beyond the map, which has {limit}: move or crop the patch")]
+    PatchOutside {
+        /// `row` or `column`.
+        field: &'static str,
+        /// Where it begins.
+        first: u64,
+        /// How many it covers.
+        count: usize,
+        /// How many the map has.
+        limit: usize,
+    },
     /// An ESRI ASCII header line that is missing or wrong.
     #[error("line {line}: expected the header `{expected}`, found `{found}`")]
     AsciiHeader {
@@ -215,6 +230,8 @@ impl Error {
             Error::RowCount { layer, .. } => (*layer).into(),
             Error::RowLength { layer, row, .. } => format!("{layer}[{row}]"),
             Error::Elevation { row, column, .. } => format!("elevation_m[{row}][{column}]"),
+            Error::EmptyPatch => "elevation_m".into(),
+            Error::PatchOutside { field, .. } => (*field).into(),
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),

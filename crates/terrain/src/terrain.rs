@@ -1,19 +1,21 @@
 //! Elevation, surfaces and obstacles of one piece of ground.
 
+use std::sync::Arc;
+
 use crate::{Cell, Error, Grid};
 
-/// Ground on a grid. Unknown cells and obstacles are impassable.
+/// Ground on a grid. Unknown cells and obstacles are impassable. Clones share their cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
     /// Where the cells lie.
     pub grid: Grid,
     /// Elevation that `relative_m` counts from [m].
-    base_m: f64,
+    pub(crate) base_m: f64,
     /// Elevation above `base_m`, row-major, NaN where unknown [m]. Single precision over the relief only keeps
     /// it to a tenth of a millimetre up to 1.6 km of relief, whatever the height above the sea.
-    relative_m: Vec<f32>,
-    surfaces: Option<Surfaces>,
-    obstacle: Option<Vec<bool>>,
+    pub(crate) relative_m: Arc<Vec<f32>>,
+    pub(crate) surfaces: Option<Arc<Surfaces>>,
+    pub(crate) obstacle: Option<Arc<Vec<bool>>>,
 }
 
 /// What the ground is made of, cell by cell.
@@ -34,26 +36,24 @@ impl Surfaces {
     /// # Errors
     /// [`Error::TooManySurfaces`] beyond 255 names.
     pub fn from_names<'a>(cells: impl Iterator<Item = Option<&'a str>>) -> Result<Self, Error> {
-        let mut names: Vec<String> = Vec::new();
-        let mut class = Vec::new();
+        let mut surfaces = Surfaces { names: Vec::new(), class: Vec::new() };
         for name in cells {
-            let Some(name) = name else {
-                class.push(Self::UNNAMED);
-                continue;
-            };
-            let known = names.iter().position(|n| n == name).unwrap_or_else(|| {
-                names.push(name.to_owned());
-                names.len() - 1
-            });
-            let limit = usize::from(Self::UNNAMED);
-            class.push(
-                u8::try_from(known)
-                    .ok()
-                    .filter(|c| *c != Self::UNNAMED)
-                    .ok_or_else(|| Error::TooManySurfaces { name: name.to_owned(), limit })?,
-            );
+            let class = surfaces.class_of(name)?;
+            surfaces.class.push(class);
         }
-        Ok(Surfaces { names, class })
+        Ok(surfaces)
+    }
+
+    /// The class of a name, which is added if it is new.
+    pub(crate) fn class_of(&mut self, name: Option<&str>) -> Result<u8, Error> {
+        let Some(name) = name else { return Ok(Self::UNNAMED) };
+        let known = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        });
+        let limit = usize::from(Self::UNNAMED);
+        let class = u8::try_from(known).ok().filter(|class| *class != Self::UNNAMED);
+        class.ok_or_else(|| Error::TooManySurfaces { name: name.to_owned(), limit })
     }
 }
 
@@ -96,7 +96,7 @@ impl Terrain {
         if lowest_m.is_infinite() {
             return Err(Error::AllUnknown);
         }
-        let relative_m = elevation_m.iter().map(|z| (z - lowest_m) as f32).collect();
+        let relative_m = Arc::new(elevation_m.iter().map(|z| (z - lowest_m) as f32).collect());
         Ok(Terrain { grid, base_m: lowest_m, relative_m, surfaces: None, obstacle: None })
     }
 
@@ -124,14 +124,14 @@ impl Terrain {
     /// Never: a layer of another size is refused by the readers, and ignored cells keep the default surface.
     pub fn with_surfaces(mut self, surfaces: Surfaces) -> Self {
         debug_assert_eq!(surfaces.class.len(), self.grid.cells());
-        self.surfaces = Some(surfaces);
+        self.surfaces = Some(Arc::new(surfaces));
         self
     }
 
     /// Adds obstacles, row-major.
     pub fn with_obstacles(mut self, obstacle: Vec<bool>) -> Self {
         debug_assert_eq!(obstacle.len(), self.grid.cells());
-        self.obstacle = Some(obstacle);
+        self.obstacle = Some(Arc::new(obstacle));
         self
     }
 
@@ -159,12 +159,12 @@ impl Terrain {
 
     /// Obstacles, row-major, if the map has any.
     pub fn obstacles(&self) -> Option<&[bool]> {
-        self.obstacle.as_deref()
+        self.obstacle.as_ref().map(|o| o.as_slice())
     }
 
     /// Surface classes, if the map has any.
     pub fn surfaces(&self) -> Option<&Surfaces> {
-        self.surfaces.as_ref()
+        self.surfaces.as_deref()
     }
 
     /// Class of a cell's surface: an index into the names, or [`Surfaces::UNNAMED`].
@@ -206,7 +206,7 @@ impl Terrain {
         for number in [grid.cell_size_m, grid.origin_m[0], grid.origin_m[1], self.base_m] {
             hash.update(number.to_le_bytes());
         }
-        for z in &self.relative_m {
+        for z in self.relative_m.iter() {
             hash.update(z.to_bits().to_le_bytes());
         }
         if let Some(surfaces) = &self.surfaces {
@@ -218,7 +218,7 @@ impl Terrain {
         }
         if let Some(obstacle) = &self.obstacle {
             hash.update(b"obstacle");
-            for &o in obstacle {
+            for &o in obstacle.iter() {
                 hash.update([u8::from(o)]);
             }
         }

@@ -63,12 +63,14 @@ pub(crate) fn some_query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot
         },
         settings: Settings { reverse: random.random_bool(0.3), ..Settings::of(robot) },
         snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }
 
 /// Every state and drivable motion as an explicit graph; the weight is (cost less potential, energy) by the edge's own sums.
-pub(crate) fn explicit_graph(lattice: &Lattice<'_>, objective: Objective) -> DiGraph<(), (f64, f64)> {
+pub(crate) fn explicit_graph(lattice: &Lattice, objective: Objective) -> DiGraph<(), (f64, f64)> {
     let mut graph = states(lattice);
     for index in 0..lattice.states() {
         let state = lattice.state(index);
@@ -85,7 +87,7 @@ pub(crate) fn explicit_graph(lattice: &Lattice<'_>, objective: Objective) -> DiG
 }
 
 /// The same graph with the costs that a table holds.
-pub(crate) fn table_graph(lattice: &Lattice<'_>, table: &CostTable<'_>) -> DiGraph<(), f64> {
+pub(crate) fn table_graph(lattice: &Lattice, table: &CostTable) -> DiGraph<(), f64> {
     let mut graph = states(lattice);
     for index in 0..lattice.states() {
         let state = lattice.state(index);
@@ -99,7 +101,7 @@ pub(crate) fn table_graph(lattice: &Lattice<'_>, table: &CostTable<'_>) -> DiGra
     graph
 }
 
-fn states<E>(lattice: &Lattice<'_>) -> DiGraph<(), E> {
+fn states<E>(lattice: &Lattice) -> DiGraph<(), E> {
     let mut graph = DiGraph::with_capacity(lattice.states(), lattice.states() * lattice.motions_per_state());
     for _ in 0..lattice.states() {
         graph.add_node(());

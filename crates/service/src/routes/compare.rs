@@ -1,12 +1,11 @@
 //! `POST /v1/compare`: the energy-minimal, shortest and fastest paths side by side.
 
 use axum::{Json, extract::State};
-use planner::Patience;
+use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
-use terrain::Terrain;
 use utoipa::ToSchema;
 
-use super::plan::{PlanAnswer, PlanRequest, with_terrain};
+use super::plan::{PlanAnswer, PlanRequest, with_planner};
 use crate::{Engine, body::JsonBody, problem::Problem};
 
 /// Three paths between the same ends.
@@ -41,21 +40,16 @@ pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Json<CompareAnswer>, Problem> {
-    with_terrain(&engine, &mut request, answer).await.map(Json)
+    with_planner(&engine, &mut request, answer).await.map(Json)
 }
 
-/// Answers a request over a terrain; the request's own map is not looked at.
+/// Answers a request; its own map is not looked at.
 ///
 /// # Errors
 /// As [`super::plan::answer`].
-pub fn answer(
-    terrain: &Terrain,
-    request: &PlanRequest,
-    patience: &Patience,
-) -> Result<CompareAnswer, Problem> {
-    let robot = request.robot.robot()?;
-    let query = request.query(&robot, patience);
-    let found = planner::compare(terrain, &robot, &query).map_err(|e| Problem::no_plan(&e))?;
+pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> Result<CompareAnswer, Problem> {
+    let query = request.query(planner, patience);
+    let found = planner.compare(&query).map_err(|e| Problem::no_plan(&e))?;
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
         energy: (&found.energy).into(),

@@ -8,12 +8,12 @@ use axum::{
     http::StatusCode,
 };
 use serde::Serialize;
-use terrain::{MapFile, Terrain, io};
+use terrain::{MapFile, Patch, Terrain, io};
 use utoipa::ToSchema;
 
 use crate::{
     Engine,
-    body::{Id, content_type, from_json, read as read_body},
+    body::{Id, JsonBody, content_type, from_json, read as read_body},
     problem::{Problem, ProblemType},
     store::Stored,
 };
@@ -161,6 +161,45 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
     Ok(Json(MapFile::from(&*map)))
 }
 
+/// Change a rectangle of a map's cells. The changed map is stored beside the other, under its own id; what has been worked
+/// out for plans over the other is kept where the change does not touch it.
+#[utoipa::path(
+    patch, path = "/v1/maps/{id}", tag = "maps",
+    params(("id" = String, Path, description = "Content hash of the map")),
+    request_body = Patch,
+    responses(
+        (status = 201, description = "The changed map is stored", body = MapSummary),
+        (status = 200, description = "Such a map is already at hand", body = MapSummary),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 507, body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn change(
+    State(engine): State<Engine>,
+    Id(id): Id,
+    JsonBody(patch): JsonBody<Patch>,
+) -> Result<(StatusCode, Json<MapSummary>), Problem> {
+    let before = engine.maps().get(&id)?;
+    let (map, changed) = engine
+        .compute(move |_| {
+            let (terrain, changed) =
+                before.patched(&patch).map_err(|error| Problem::invalid_map(&error, ""))?;
+            let summary = MapSummary::of(terrain.content_id(), &terrain);
+            Ok((Stored { terrain: Arc::new(terrain), summary }, changed))
+        })
+        .await?;
+    let summary = map.summary.clone();
+    let terrain = Arc::clone(&map.terrain);
+    let new = engine.maps().insert(map, engine.limits().stored_cells)?;
+    if new {
+        engine.planners().patch(&id, &summary.id, &terrain, &changed);
+    }
+    Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
+}
+
 /// Forget a map.
 #[utoipa::path(
     delete, path = "/v1/maps/{id}", tag = "maps",
@@ -169,5 +208,6 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
 )]
 pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
     engine.maps().remove(&id)?;
+    engine.planners().forget(&id);
     Ok(StatusCode::NO_CONTENT)
 }

@@ -1,6 +1,9 @@
 //! `POST /v1/plan`: one path.
 
-use std::{sync::Arc, time::Duration};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use axum::{
     Json,
@@ -8,8 +11,8 @@ use axum::{
     http::{HeaderMap, header},
     response::{IntoResponse, Response},
 };
-use model::PowerModel;
-use planner::{Goal, Objective, Patience, Plan, Pose, Query, Settings, Snap, Start};
+use model::{PowerModel, Robot};
+use planner::{Goal, Objective, Patience, Plan, Planner, Pose, Query, Settings, Snap, Start};
 use serde::{Deserialize, Serialize};
 use terrain::{MapFile, Terrain};
 use utoipa::ToSchema;
@@ -53,6 +56,21 @@ pub struct PlanRequest {
     /// Whether the robot may back up. Default: false.
     #[serde(default)]
     pub reverse: bool,
+    /// The path may cost so many times the least, 1 to 10: looser bounds are answered sooner. Default: 1, the least itself.
+    #[serde(default = "one")]
+    #[schema(minimum = 1.0, maximum = 10.0)]
+    pub bound: f64,
+    /// Whether to refine the path off the lattice too. Default: true.
+    #[serde(default = "yes")]
+    pub refine: bool,
+    /// Time for the search; when it is over the best path so far is the answer, with what is proven of it. Default: the
+    /// service's limit [s].
+    #[schema(exclusive_minimum = 0.0)]
+    pub timeout_s: Option<f64>,
+    /// Whether to work out and keep the exact cost to this goal from every pose of a stored map, so that later plans to it
+    /// are immediate. Default: false.
+    #[serde(default)]
+    pub hold_goal: bool,
     /// How far a start or goal may be moved to ground where the robot can stand. Default: one cell [m].
     pub snap_radius_m: Option<f64>,
 }
@@ -117,10 +135,28 @@ pub struct PlanAnswer {
     pub recovered_j: f64,
     /// The path, pose by pose.
     pub poses: Vec<PoseAnswer>,
+    /// Energy of the refined path; absent where none was asked for [J].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined_energy_j: Option<f64>,
+    /// The same way between the same ends with shortcuts and freely placed arcs, driven by the same model within the same
+    /// limits, and never worse; absent where none was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined: Option<RefinedAnswer>,
     /// How far start and goal were moved to the lattice.
     pub snapped: Snapped,
     /// What the search did.
     pub search: SearchAnswer,
+}
+
+/// A path that leaves the lattice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefinedAnswer {
+    /// Time [s].
+    pub duration_s: f64,
+    /// Length along the ground [m].
+    pub distance_m: f64,
+    /// The path, pose by pose.
+    pub poses: Vec<PoseAnswer>,
 }
 
 /// A pose along the path, with what the path has cost up to it. Power, pitch, roll and radius are those of the
@@ -167,6 +203,21 @@ pub struct SearchAnswer {
     pub duration_ms: f64,
     /// Whether the path is proven to be the best of the lattice.
     pub optimal: bool,
+    /// Proven: the path has at most so many times the least of its objective that the lattice allows; 1 when it is the
+    /// least, null where the least may be a gain, which no factor bounds.
+    pub bound: Option<f64>,
+    /// By how much the path may exceed the least of its objective; in J, m or s.
+    pub excess_at_most: f64,
+    /// Whether time ran out before the bound asked for was proven.
+    pub timed_out: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// Plan one path.
@@ -190,7 +241,7 @@ pub(crate) async fn handler(
 ) -> Result<Response, Problem> {
     let accept = headers.get(header::ACCEPT).and_then(|v| v.to_str().ok()).unwrap_or("*/*");
     let as_geojson = preference(accept, "application/geo+json") > preference(accept, "application/json");
-    let found = with_terrain(&engine, &mut request, answer).await?;
+    let found = with_planner(&engine, &mut request, answer).await?;
     if as_geojson {
         let body = geojson::path(&found);
         return Ok(([(header::CONTENT_TYPE, "application/geo+json")], Json(body)).into_response());
@@ -220,23 +271,37 @@ fn preference(accept: &str, media_type: &str) -> f64 {
 }
 
 /// Finds the request's map and answers on a thread for computations.
-pub(crate) async fn with_terrain<T: Send + 'static>(
+pub(crate) async fn with_planner<T: Send + 'static>(
     engine: &Engine,
     request: &mut PlanRequest,
-    answer: fn(&Terrain, &PlanRequest, &Patience) -> Result<T, Problem>,
+    answer: fn(&Planner, &PlanRequest, &Patience) -> Result<T, Problem>,
 ) -> Result<T, Problem> {
     let stored = choose_map(engine, request)?;
     let (inline, request) = (request.map.take(), request.clone());
-    let most_cells = engine.limits().map_cells();
+    let own = engine.clone();
     engine
         .compute(move |patience| {
-            let terrain = match (stored, inline) {
-                (Some(stored), _) => stored,
-                (None, Some(file)) => Arc::new(terrain_from(file, "/map")?),
+            let most_cells = own.limits().map_cells();
+            let large = |terrain: &Terrain| {
+                refuse_too_large(terrain, most_cells).map_err(|problem| problem.at("/map"))
+            };
+            let found = match (stored, inline) {
+                (Some(stored), _) => {
+                    let map_id = request.map_id.as_deref().unwrap_or_default();
+                    large(&stored).and_then(|()| request.planner_of(&own, map_id, &stored)).and_then(|planner| {
+                        answer(&planner, &request, &request.patience(patience)?)
+                    })
+                }
+                (None, Some(file)) => {
+                    let terrain = terrain_from(file, "/map")?;
+                    large(&terrain).and_then(|()| request.planner(&terrain)).and_then(|planner| {
+                        answer(&planner, &request, &request.patience(patience)?)
+                    })
+                }
                 (None, None) => return Err(no_map()),
             };
-            refuse_too_large(&terrain, most_cells).map_err(|problem| problem.at("/map"))?;
-            answer(&terrain, &request, patience).map_err(|problem| {
+            own.planners().shrink(own.limits().kept_bytes);
+            found.map_err(|problem| {
                 let problem = match &request.map_id {
                     Some(_) => problem.moved("/map", "/map_id"),
                     None => problem,
@@ -271,26 +336,67 @@ fn no_map() -> Problem {
     Problem::new(ProblemType::InvalidRequest, detail).at("/map")
 }
 
-/// Answers a request over a terrain; the request's own map is not looked at.
+/// Answers a request; its own map is not looked at.
 ///
 /// # Errors
-/// An unusable robot, an unusable end, no path, or a passed deadline.
-pub fn answer(terrain: &Terrain, request: &PlanRequest, patience: &Patience) -> Result<PlanAnswer, Problem> {
-    let robot = request.robot.robot()?;
-    let query = request.query(&robot, patience);
+/// An unusable end, no path, or time that ran out before there was one.
+pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> Result<PlanAnswer, Problem> {
+    let query = request.query(planner, patience);
     let objective = match request.objective {
         ObjectiveName::Energy => Objective::Energy,
         ObjectiveName::Distance => Objective::Distance,
         ObjectiveName::Time => Objective::Time,
     };
-    let found = planner::plan(terrain, &robot, &query, objective).map_err(|e| Problem::no_plan(&e))?;
+    if request.hold_goal {
+        planner.hold_goal(&query, objective).map_err(|e| Problem::no_plan(&e))?;
+    }
+    let found = planner.plan(&query, objective).map_err(|e| Problem::no_plan(&e))?;
     Ok(PlanAnswer::from(&found))
 }
 
 impl PlanRequest {
-    /// The question as the planner takes it.
-    pub(crate) fn query(&self, robot: &model::Robot, patience: &Patience) -> Query {
+    /// A planner over a terrain for the request's robot.
+    ///
+    /// # Errors
+    /// An unusable robot, or one that does not suit the ground.
+    pub fn planner(&self, terrain: &Terrain) -> Result<Planner, Problem> {
+        let robot = self.robot.robot()?;
+        Planner::new(terrain, &robot, self.settings(&robot)).map_err(|e| Problem::no_plan(&e))
+    }
+
+    /// The service's planner over a stored map.
+    fn planner_of(&self, engine: &Engine, map_id: &str, terrain: &Terrain) -> Result<Arc<Planner>, Problem> {
+        let robot = self.robot.robot()?;
+        let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot));
+        planner.map_err(|e| Problem::no_plan(&e))
+    }
+
+    fn settings(&self, robot: &Robot) -> Settings {
         let usual = Settings::of(robot);
+        Settings {
+            speed_mps: self.speed_mps.unwrap_or(usual.speed_mps),
+            power_model: self.power_model,
+            reverse: self.reverse,
+            ..usual
+        }
+    }
+
+    /// What patience there is, shortened to the request's own.
+    ///
+    /// # Errors
+    /// A time that is not above 0.
+    pub fn patience(&self, patience: &Patience) -> Result<Patience, Problem> {
+        let Some(timeout_s) = self.timeout_s else { return Ok(patience.clone()) };
+        let allowed = Duration::try_from_secs_f64(timeout_s).ok().filter(|time| !time.is_zero());
+        let Some(allowed) = allowed else {
+            let detail = format!("timeout_s is {timeout_s}, but must be above 0: leave it out for the service's limit");
+            return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/timeout_s"));
+        };
+        Ok(patience.no_later_than(Instant::now().checked_add(allowed)))
+    }
+
+    /// The question as the planner takes it.
+    pub(crate) fn query(&self, planner: &Planner, patience: &Patience) -> Query {
         Query {
             start: Start { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: self.start.heading_rad },
             goal: Goal {
@@ -299,13 +405,10 @@ impl PlanRequest {
                 heading_rad: self.goal.heading_rad,
                 tolerance_m: self.goal.tolerance_m,
             },
-            settings: Settings {
-                speed_mps: self.speed_mps.unwrap_or(usual.speed_mps),
-                power_model: self.power_model,
-                reverse: self.reverse,
-                ..usual
-            },
+            settings: planner.lattice().settings,
             snap_radius_m: self.snap_radius_m,
+            bound: self.bound,
+            refine: self.refine,
             patience: patience.clone(),
         }
     }
@@ -323,11 +426,20 @@ impl From<&Plan> for PlanAnswer {
             descent_m: total.descent_m,
             recovered_j: total.recovered_j,
             poses: plan.route.poses.iter().map(PoseAnswer::from).collect(),
+            refined_energy_j: plan.refined.as_ref().map(|route| route.total.energy_j),
+            refined: plan.refined.as_ref().map(|route| RefinedAnswer {
+                duration_s: route.total.duration_s,
+                distance_m: route.total.length_m,
+                poses: route.poses.iter().map(PoseAnswer::from).collect(),
+            }),
             snapped: Snapped { start: (&plan.start_snap).into(), goal: (&plan.goal_snap).into() },
             search: SearchAnswer {
                 expanded: plan.search.expanded,
                 duration_ms: milliseconds(plan.search.duration),
-                optimal: true,
+                optimal: plan.search.is_optimal(),
+                bound: plan.search.bound,
+                excess_at_most: plan.search.excess,
+                timed_out: plan.search.timed_out,
             },
         }
     }

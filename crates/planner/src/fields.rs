@@ -1,0 +1,121 @@
+//! Fields of goals that were asked for lately.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use terrain::Cell;
+
+use crate::{
+    exact::ExactField,
+    heuristic::{FieldEnds, GoalField},
+    lattice::State,
+    patience::Patience,
+    table::{CostTable, Objective},
+};
+
+/// What a field is for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FieldKey {
+    objective: Objective,
+    goals: Vec<State>,
+}
+
+impl FieldKey {
+    pub(crate) fn new(objective: Objective, goals: &[State]) -> Self {
+        FieldKey { objective, goals: goals.to_vec() }
+    }
+}
+
+/// What is known of a goal.
+struct Entry {
+    key: FieldKey,
+    /// The start towards which the field grew, if it does not cover the map.
+    towards: Option<Cell>,
+    field: Option<Arc<GoalField>>,
+    exact: Option<Arc<ExactField>>,
+}
+
+/// The goals asked for last, the latest at the end.
+#[derive(Default)]
+pub(crate) struct FieldCache {
+    entries: Mutex<Vec<Entry>>,
+}
+
+/// Goals that are remembered.
+const ENTRIES: usize = 8;
+/// Up to so many cells a goal that is asked for from a second start gets a field over the whole map: the table that this
+/// takes is a gigabyte and a half.
+const MOST_CELLS_COVERED: usize = 1 << 22;
+
+impl FieldCache {
+    /// The field of a goal for a search from a start: the one at hand if it serves, or a new one; `None` when patience ends.
+    pub(crate) fn field(
+        &self,
+        key: FieldKey,
+        table: &CostTable,
+        goals: &[(Cell, f64)],
+        start: Cell,
+        patience: &Patience,
+    ) -> Option<Arc<GoalField>> {
+        let mut towards = Some(start);
+        if let Some(entry) = self.latest(&key) {
+            if let Some(field) = entry.field.as_ref().filter(|_| entry.towards.is_none_or(|cell| cell == start)) {
+                return Some(Arc::clone(field));
+            }
+            let asked_before = entry.field.is_some();
+            if asked_before && table.lattice().terrain.grid.cells() <= MOST_CELLS_COVERED {
+                towards = None;
+            }
+        }
+        // The lock is not held meanwhile: others may want other goals.
+        let field = Arc::new(GoalField::new(table, FieldEnds { goals, start: towards }, patience)?);
+        self.keep(key, |entry| (entry.field, entry.towards) = (Some(Arc::clone(&field)), towards));
+        Some(field)
+    }
+
+    /// The exact field of a goal that is held.
+    pub(crate) fn exact(&self, key: &FieldKey) -> Option<Arc<ExactField>> {
+        self.latest(key)?.exact.clone()
+    }
+
+    pub(crate) fn keep_exact(&self, key: FieldKey, exact: ExactField) {
+        self.keep(key, |entry| entry.exact = Some(Arc::new(exact)));
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        let bytes = |entry: &Entry| {
+            entry.field.as_ref().map_or(0, |f| f.bytes()) + entry.exact.as_ref().map_or(0, |e| e.bytes())
+        };
+        self.lock().iter().map(bytes).sum()
+    }
+
+    /// What is known of a goal, which becomes the latest.
+    fn latest(&self, key: &FieldKey) -> Option<Entry> {
+        let mut entries = self.lock();
+        let at = entries.iter().position(|entry| entry.key == *key)?;
+        let entry = entries.remove(at);
+        let known = Entry {
+            key: key.clone(),
+            towards: entry.towards,
+            field: entry.field.clone(),
+            exact: entry.exact.clone(),
+        };
+        entries.push(entry);
+        Some(known)
+    }
+
+    fn keep(&self, key: FieldKey, change: impl FnOnce(&mut Entry)) {
+        let mut entries = self.lock();
+        let known = entries.iter().position(|entry| entry.key == key).map(|at| entries.remove(at));
+        let mut entry = known.unwrap_or(Entry { key, towards: None, field: None, exact: None });
+        change(&mut entry);
+        entries.push(entry);
+        if entries.len() > ENTRIES {
+            entries.remove(0);
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Entry>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,258 @@
+//! Everything that questions about one map, robot and way of driving can share.
+
+use std::{
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+    time::Instant,
+};
+
+use model::Robot;
+use rayon::prelude::*;
+use terrain::{Cell, CellRange, Terrain};
+
+use crate::{
+    astar::{Found, Outcome, Search, search},
+    ends::Ends,
+    error::Error,
+    exact::ExactField,
+    fields::{FieldCache, FieldKey},
+    heuristic::GoalField,
+    labels::Workspace,
+    lattice::{Lattice, Settings},
+    query::{Comparison, Plan, Query, SearchReport, Snap},
+    refine::refine,
+    route::Route,
+    table::{CostTable, Objective},
+    uncertainty::energy_interval_j,
+};
+
+/// A planner for a robot on a piece of ground, which remembers what it has worked out: costs of motions, fields of goals
+/// that were asked for, and memory to search in. Questions may come from several threads at once.
+pub struct Planner {
+    lattice: Arc<Lattice>,
+    tables: [OnceLock<CostTable>; 3],
+    fields: FieldCache,
+    workspaces: Mutex<Vec<Workspace>>,
+}
+
+impl Planner {
+    /// Prepares motions; costs are worked out where and when they are needed.
+    ///
+    /// # Errors
+    /// As [`Lattice::new`].
+    pub fn new(terrain: &Terrain, robot: &Robot, settings: Settings) -> Result<Self, Error> {
+        Ok(Self::over(Lattice::new(terrain, robot, settings)?))
+    }
+
+    fn over(lattice: Arc<Lattice>) -> Self {
+        Planner {
+            lattice,
+            tables: [const { OnceLock::new() }; 3],
+            fields: FieldCache::default(),
+            workspaces: Mutex::default(),
+        }
+    }
+
+    /// A planner for the same robot on ground that differs in some cells; costs that these do not touch are kept.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know, or ground of another size.
+    pub fn patched(&self, terrain: &Terrain, changed: &CellRange) -> Result<Self, Error> {
+        let lattice = Lattice::new(terrain, &self.lattice.robot, self.lattice.settings)?;
+        if terrain.grid != self.lattice.terrain.grid {
+            return Ok(Self::over(lattice));
+        }
+        let planner = Self::over(Arc::clone(&lattice));
+        for (old, new) in self.tables.iter().zip(&planner.tables) {
+            if let Some(old) = old.get() {
+                let _ = new.set(old.patched(&lattice, changed));
+            }
+        }
+        Ok(planner)
+    }
+
+    /// The robot's motions over the ground.
+    pub fn lattice(&self) -> &Arc<Lattice> {
+        &self.lattice
+    }
+
+    /// Costs of all motions under an objective.
+    pub fn table(&self, objective: Objective) -> &CostTable {
+        self.tables[objective as usize].get_or_init(|| CostTable::lazy(&self.lattice, objective))
+    }
+
+    /// Bytes held for further questions, the ground apart.
+    pub fn bytes(&self) -> usize {
+        let tables = self.tables.iter().filter_map(OnceLock::get).map(CostTable::bytes).sum::<usize>();
+        let workspaces = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner);
+        tables + self.fields.bytes() + workspaces.iter().map(Workspace::bytes).sum::<usize>()
+    }
+
+    /// Finds a path that has least of an objective, or as little as the query's bound asks for.
+    ///
+    /// The query's settings must be the planner's.
+    ///
+    /// # Errors
+    /// Ends off the map or where the robot cannot stand, no path, or patience that ended before there was one.
+    pub fn plan(&self, query: &Query, objective: Objective) -> Result<Plan, Error> {
+        let began = Instant::now();
+        let ends = Ends::find(&self.lattice, query)?;
+        self.plan_between(&ends, query, objective, began)
+    }
+
+    /// Finds the energy-minimal, shortest and fastest paths.
+    ///
+    /// # Errors
+    /// As [`Planner::plan`].
+    pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
+        let began = Instant::now();
+        let ends = Ends::find(&self.lattice, query)?;
+        let one = |objective, began| self.plan_between(&ends, query, objective, began);
+        Ok(Comparison {
+            energy: one(Objective::Energy, began)?,
+            distance: one(Objective::Distance, Instant::now())?,
+            time: one(Objective::Time, Instant::now())?,
+        })
+    }
+
+    /// Answers many questions on all cores, in their order.
+    pub fn plan_many(&self, queries: &[Query], objective: Objective) -> Vec<Result<Plan, Error>> {
+        queries.par_iter().map(|query| self.plan(query, objective)).collect()
+    }
+
+    /// Works out the exact cost to the query's goal from every pose and keeps it, so that any plan to that goal is only a
+    /// walk. It takes four bytes for each pose, and time as for a search over the whole map.
+    ///
+    /// # Errors
+    /// As [`Planner::plan`]; the query's start is not looked at.
+    pub fn hold_goal(&self, query: &Query, objective: Objective) -> Result<(), Error> {
+        let ends = Ends::find(&self.lattice, query)?;
+        let table = self.table(objective);
+        let goals = ends.goals_with_potential(&self.lattice, objective);
+        let exact = ExactField::new(table, &goals, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
+        self.fields.keep_exact(FieldKey::new(objective, &ends.goals), exact);
+        Ok(())
+    }
+
+    fn plan_between(
+        &self,
+        ends: &Ends,
+        query: &Query,
+        objective: Objective,
+        began: Instant,
+    ) -> Result<Plan, Error> {
+        let found = match self.walk(ends, objective) {
+            Some(found) => found,
+            None => self.search(ends, query, objective)?,
+        };
+        let duration = began.elapsed();
+        let lattice = &self.lattice;
+        let route = Route::drive(lattice, objective, found.start, &found.motions);
+        let settings = &query.settings;
+        let energy_interval_j = energy_interval_j(
+            &route,
+            &lattice.robot,
+            settings.power_model,
+            &surface_names(lattice),
+            settings.motor_temperature_c,
+        );
+        let goal_snap = goal_snap(&route, ends, query);
+        let refined = query.refine.then(|| refine(lattice, objective, &route, &query.patience).route);
+        Ok(Plan {
+            route,
+            refined,
+            energy_interval_j,
+            start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
+            goal_snap,
+            search: SearchReport {
+                expanded: found.expanded,
+                duration,
+                bound: found.bound,
+                excess: found.excess,
+                timed_out: found.late,
+            },
+        })
+    }
+
+    /// The way to a goal that is held.
+    fn walk(&self, ends: &Ends, objective: Objective) -> Option<Found> {
+        let exact = self.fields.exact(&FieldKey::new(objective, &ends.goals))?;
+        let (start, motions) = exact.walk(self.table(objective), &ends.starts)?;
+        let end = motions.iter().try_fold(start, |state, &motion| self.lattice.successor(state, motion))?;
+        // Where motions cost nothing at all a walk may stop on the way.
+        ends.goals.contains(&end).then_some(Found {
+            start,
+            motions,
+            expanded: 0,
+            excess: 0.0,
+            bound: Some(1.0),
+            late: false,
+        })
+    }
+
+    fn search(&self, ends: &Ends, query: &Query, objective: Objective) -> Result<Found, Error> {
+        let table = self.table(objective);
+        let goals = ends.goals_with_potential(&self.lattice, objective);
+        let cells: Vec<(Cell, f64)> = goals.iter().map(|(state, after)| (state.cell, *after)).collect();
+        let key = FieldKey::new(objective, &ends.goals);
+        let late = Error::Timeout { expanded: 0 };
+        let field = self.fields.field(key, table, &cells, ends.start.cell, &query.patience).ok_or(late)?;
+        let question = Search {
+            starts: &ends.starts,
+            goals: &goals,
+            besides: ends.besides(&self.lattice, objective),
+            bound: query.bound,
+            patience: &query.patience,
+        };
+        let mut workspace = self.take_workspace();
+        let outcome = search(table, &field, &question, &mut workspace);
+        self.give_workspace(workspace);
+        match outcome {
+            Outcome::Found(found) => Ok(found),
+            Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
+            Outcome::Unreachable => Err(nearest_connected(&self.lattice, &field, ends)),
+        }
+    }
+
+    fn take_workspace(&self) -> Workspace {
+        let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        kept.unwrap_or_else(|| Workspace::of(&self.lattice))
+    }
+
+    fn give_workspace(&self, workspace: Workspace) {
+        self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).push(workspace);
+    }
+}
+
+/// Where the ground that leads to the goal comes nearest to the start.
+fn nearest_connected(lattice: &Lattice, field: &GoalField, ends: &Ends) -> Error {
+    let grid = &lattice.terrain.grid;
+    let [sx, sy] = grid.center_m(ends.start.cell);
+    let nearest = (0..grid.cells())
+        .map(|i| grid.cell(i))
+        .filter(|&cell| field.at(cell).is_finite())
+        .map(|cell| grid.center_m(cell))
+        .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let [gx, gy] = grid.center_m(ends.goal.cell);
+    let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
+    if gap_m == 0.0 {
+        return Error::NoRoomToTurn { x_m, y_m };
+    }
+    Error::NoPath { gap_m, x_m, y_m }
+}
+
+fn goal_snap(route: &Route, ends: &Ends, query: &Query) -> Snap {
+    let end =
+        route.poses.last().map_or((query.goal.x_m, query.goal.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
+    Snap {
+        distance_m: (end.0 - query.goal.x_m).hypot(end.1 - query.goal.y_m),
+        turn_rad: query.goal.heading_rad.map_or(ends.goal.turn_rad, |h| crate::heading::turn_rad(h, end.2)),
+    }
+}
+
+/// Names of the surfaces that steps index: the map's, then the robot's default.
+pub(crate) fn surface_names(lattice: &Lattice) -> Vec<String> {
+    let mut names = lattice.terrain.surfaces().map_or(Vec::new(), |s| s.names.clone());
+    names.push(lattice.robot.default_surface.clone());
+    names
+}

@@ -1,0 +1,124 @@
+//! What is asked of the planner and what it answers.
+
+use std::time::Duration;
+
+use crate::{lattice::Settings, patience::Patience, route::Route};
+
+/// Where the robot stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// East [m].
+    pub x_m: f64,
+    /// North [m].
+    pub y_m: f64,
+    /// Counter-clockwise from east; `None` leaves the choice to the planner [rad].
+    pub heading_rad: Option<f64>,
+}
+
+/// Where it is to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// East [m].
+    pub x_m: f64,
+    /// North [m].
+    pub y_m: f64,
+    /// Counter-clockwise from east; `None` accepts any [rad].
+    pub heading_rad: Option<f64>,
+    /// Any pose this close to the goal will do; 0 means the goal's cell [m].
+    pub tolerance_m: f64,
+}
+
+/// A question to the planner.
+#[derive(Clone, Debug)]
+pub struct Query {
+    /// Where the robot stands.
+    pub start: Start,
+    /// Where it is to go.
+    pub goal: Goal,
+    /// How it is driven.
+    pub settings: Settings,
+    /// How far a start or goal may be moved to ground where the robot can stand; `None` means one cell [m].
+    pub snap_radius_m: Option<f64>,
+    /// The path may cost so many times the least, 1 to [`Query::LOOSEST_BOUND`]; 1 asks for the least itself.
+    pub bound: f64,
+    /// Whether to refine the path off the lattice too.
+    pub refine: bool,
+    /// When to give up: the best path so far is the answer then, with the bound proven of it.
+    pub patience: Patience,
+}
+
+impl Query {
+    /// The loosest bound that can be asked for.
+    pub const LOOSEST_BOUND: f64 = 10.0;
+}
+
+/// How far an end was moved to the lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snap {
+    /// From the asked place to the cell's centre [m].
+    pub distance_m: f64,
+    /// From the asked heading to the lattice's [rad].
+    pub turn_rad: f64,
+}
+
+/// What the search did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchReport {
+    /// States expanded.
+    pub expanded: u64,
+    /// Time for preparing and searching.
+    pub duration: Duration,
+    /// Proven: the lattice's best path has no less than this share of the objective, so that the answer is at most so many
+    /// times the least; 1 when it is the least. `None` where the least may be nothing or a gain, which no factor bounds.
+    pub bound: Option<f64>,
+    /// By how much the answer may exceed the least, in the objective's unit; 0 when it is the least.
+    pub excess: f64,
+    /// Whether patience ended before the bound asked for was proven.
+    pub timed_out: bool,
+}
+
+impl SearchReport {
+    /// Whether the path is proven to be the best of the lattice.
+    pub fn is_optimal(&self) -> bool {
+        self.excess == 0.0
+    }
+}
+
+/// A least-cost path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Totals, poses and steps of the lattice's path.
+    pub route: Route,
+    /// The same way with shortcuts and freely placed arcs, never worse than `route`, where it was asked for.
+    pub refined: Option<Route>,
+    /// Central 95 % interval of the energy, from the robot's parameter uncertainty [J].
+    pub energy_interval_j: [f64; 2],
+    /// How far the start was moved.
+    pub start_snap: Snap,
+    /// How far the goal was moved; the distance to where the path ends where a tolerance allowed it.
+    pub goal_snap: Snap,
+    /// What the search did.
+    pub search: SearchReport,
+}
+
+/// The energy-minimal, shortest and fastest paths between the same ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Least energy.
+    pub energy: Plan,
+    /// Least length.
+    pub distance: Plan,
+    /// Least time.
+    pub time: Plan,
+}
+
+impl Comparison {
+    /// What the energy-minimal path saves, as a share of the size of the shortest path's energy.
+    ///
+    /// Above 1 where the energy-minimal path returns energy and the shortest takes some; 0 between equal places.
+    pub fn saving_fraction(&self) -> f64 {
+        let shortest_j = self.distance.route.total.energy_j;
+        let saved_j = shortest_j - self.energy.route.total.energy_j;
+        if shortest_j == 0.0 { 0.0 } else { saved_j / shortest_j.abs() }
+    }
+}

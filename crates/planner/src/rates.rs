@@ -1,0 +1,199 @@
+//! What turning costs on level ground, to choose among curves before any is driven.
+
+use model::Acceleration;
+
+use crate::{
+    connection::{Connection, Ends, Side, WORDS, Waypoint},
+    free::FreeGround,
+    primitive::Piece,
+};
+
+/// Radii double from R' (half the slip track) on; so many doublings reach half a kilometre for a Husky.
+const DOUBLINGS: usize = 11;
+/// Radii of the table within a doubling.
+const PER_DOUBLING: usize = 4;
+/// Arcs wider than so many times the distance between two poses hardly differ from the straight.
+const WIDEST_PER_DISTANCE: f64 = 16.0;
+
+/// Radii are settled when moves by this share of a doubling no longer pay: half a per cent.
+const SETTLED_DOUBLINGS: f64 = 1.0 / 128.0;
+/// The cost has valleys along which two arcs just touch; so many of the first radii, each with its best last one, are
+/// settled.
+const SETTLED_SEEDS: usize = 8;
+/// Ways to change two radii, as signs of the powers of two.
+pub(crate) const BENDS: [[f64; 2]; 8] =
+    [[1.0, 1.0], [-1.0, -1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+
+/// Costs on level ground of the robot's default surface, in the objective's own unit.
+pub(crate) struct LevelRates {
+    /// 0 for turns on the spot, then from R' on [m].
+    radii_m: Vec<f64>,
+    /// By direction (forward, reverse).
+    directions: Vec<Direction>,
+}
+
+struct Direction {
+    straight_per_m: f64,
+    /// By side and radius, per radian.
+    per_rad: [Vec<f64>; 2],
+}
+
+impl LevelRates {
+    pub(crate) fn new(ground: &FreeGround<'_>) -> Self {
+        let tightest_m = ground.lattice.robot.half_slip_track_m();
+        let within = |k: usize| (k as f64 / PER_DOUBLING as f64).exp2();
+        let doubled = (0..=DOUBLINGS * PER_DOUBLING).map(|k| tightest_m * within(k));
+        let radii_m: Vec<f64> = std::iter::once(0.0).chain(doubled).collect();
+        let directions = [false, true]
+            .into_iter()
+            .filter(|reverse| !reverse || ground.lattice.settings.reverse)
+            .map(|reverse| Direction {
+                straight_per_m: rate(ground, 1.0, 0.0, reverse),
+                per_rad: [1.0, -1.0]
+                    .map(|sign| radii_m.iter().map(|&r| rate(ground, r, sign, reverse)).collect()),
+            })
+            .collect();
+        LevelRates { radii_m, directions }
+    }
+
+    /// Half the slip track [m].
+    pub(crate) fn tightest_m(&self) -> f64 {
+        self.radii_m[1]
+    }
+
+    /// Cost of a connection on level ground; infinite where there is none.
+    pub(crate) fn cost(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> f64 {
+        self.cost_between(connection, &Ends::new(from, to, connection.reverse))
+    }
+
+    fn cost_between(&self, connection: &Connection, ends: &Ends) -> f64 {
+        let Some(shape) = connection.shape_between(ends) else { return f64::INFINITY };
+        let direction = &self.directions[usize::from(connection.reverse)];
+        let arc = |i: usize| {
+            let (radius_m, turn_rad) = (connection.radii_m[i], shape.turns_rad[i]);
+            let side = if turn_rad >= 0.0 { Side::Left } else { Side::Right };
+            turn_rad.abs() * self.per_rad(direction, side, radius_m)
+        };
+        arc(0) + direction.straight_per_m * shape.straight_m + arc(1)
+    }
+
+    /// The cheapest way for two arcs of given radii to bend.
+    pub(crate) fn reworded(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> Connection {
+        let words = WORDS.map(|sides| Connection { sides, ..*connection });
+        let cost = |c: &Connection| self.cost(c, from, to);
+        words.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(*connection)
+    }
+
+    /// Connections between two poses, the cheapest first: one for each way to bend and each direction that exists.
+    pub(crate) fn connections(&self, from: &Waypoint, to: &Waypoint, radii: Radii) -> Vec<Connection> {
+        let mut found: Vec<(f64, Connection)> = (0..self.directions.len())
+            .flat_map(|direction| WORDS.map(|sides| (direction == 1, sides)))
+            .filter_map(|(reverse, sides)| self.best_radii(from, to, radii, sides, reverse))
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().map(|(_, connection)| connection).collect()
+    }
+
+    fn best_radii(
+        &self,
+        from: &Waypoint,
+        to: &Waypoint,
+        radii: Radii,
+        sides: [Side; 2],
+        reverse: bool,
+    ) -> Option<(f64, Connection)> {
+        let distance_m = (to.x_m - from.x_m).hypot(to.y_m - from.y_m);
+        let useful_m = self.tightest_m().max(WIDEST_PER_DISTANCE * distance_m);
+        let useful = self.radii_m.iter().take_while(|r| **r <= useful_m).count();
+        let ends = Ends::new(from, to, reverse);
+        let direction = &self.directions[usize::from(reverse)];
+        let connection =
+            |radii: [usize; 2]| Connection { radii_m: radii.map(|i| self.radii_m[i]), sides, reverse };
+        let cost = |radii: [usize; 2]| {
+            let Some(shape) = connection(radii).shape_between(&ends) else { return f64::INFINITY };
+            let arc = |i: usize| {
+                let turn_rad = shape.turns_rad[i];
+                turn_rad.abs() * direction.per_rad[usize::from(turn_rad < 0.0)][radii[i]]
+            };
+            arc(0) + direction.straight_per_m * shape.straight_m + arc(1)
+        };
+        let cheapest = |candidates: &mut dyn Iterator<Item = [usize; 2]>| {
+            candidates.map(|radii| (cost(radii), radii)).min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let (least, chosen) = match radii {
+            Radii::EveryPair => {
+                let mut seeds: Vec<(f64, [usize; 2])> = (0..useful)
+                    .filter_map(|first| cheapest(&mut (0..useful).map(|last| [first, last])))
+                    .filter(|(cost, _)| cost.is_finite())
+                    .collect();
+                seeds.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let settled = seeds.into_iter().take(SETTLED_SEEDS);
+                return settled
+                    .map(|(cost, radii)| self.settled((cost, connection(radii)), &ends))
+                    .min_by(|a, b| a.0.total_cmp(&b.0));
+            }
+            Radii::InTurn => {
+                // 0, R' and its doublings.
+                let doubled = || std::iter::once(0).chain((1..useful).step_by(PER_DOUBLING));
+                let (_, [_, last]) = cheapest(&mut doubled().map(|both| [both, both]))?;
+                let (_, [first, _]) = cheapest(&mut doubled().map(|first| [first, last]))?;
+                cheapest(&mut doubled().map(|last| [first, last]))?
+            }
+        };
+        least.is_finite().then(|| (least, connection(chosen)))
+    }
+
+    /// The best radii near those of a connection of known cost, by moves of either or both that get smaller.
+    fn settled(&self, (mut least, mut best): (f64, Connection), ends: &Ends) -> (f64, Connection) {
+        let mut size = 1.0 / PER_DOUBLING as f64;
+        while size > SETTLED_DOUBLINGS {
+            let moved = BENDS.map(|bend| best.bent(bend.map(|way| way * size), self.tightest_m()));
+            let cheapest = moved
+                .map(|connection| (self.cost_between(&connection, ends), connection))
+                .into_iter()
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            match cheapest.filter(|(cost, _)| *cost < least) {
+                Some(better) => (least, best) = better,
+                None => size /= 2.0,
+            }
+        }
+        (least, best)
+    }
+
+    /// Per radian, between the radii of the table in proportion to the doublings.
+    fn per_rad(&self, direction: &Direction, side: Side, radius_m: f64) -> f64 {
+        let per_rad = &direction.per_rad[usize::from(side == Side::Right)];
+        if radius_m == 0.0 {
+            return per_rad[0];
+        }
+        let steps = (DOUBLINGS * PER_DOUBLING) as f64;
+        let place = ((radius_m / self.tightest_m()).log2() * PER_DOUBLING as f64).clamp(0.0, steps);
+        let below = (place as usize).min(DOUBLINGS * PER_DOUBLING - 1);
+        let above = place - below as f64;
+        // By the metre the cost changes least from one radius to the next.
+        let per_m = |place: usize| per_rad[1 + place] / self.radii_m[1 + place];
+        radius_m * (per_m(below) * (1.0 - above) + per_m(below + 1) * above)
+    }
+}
+
+/// How many radii to try.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Radii {
+    /// Equal ones, then the first and the last for themselves, by doublings.
+    InTurn,
+    /// All of the first with all of the last, four to a doubling.
+    EveryPair,
+}
+
+/// Cost of a piece by its length, or by its turn on the spot.
+fn rate(ground: &FreeGround<'_>, length_m: f64, turn_rad: f64, reverse: bool) -> f64 {
+    let piece = Piece { start_m: [0.0, 0.0], heading_rad: 0.0, length_m, turn_rad };
+    let surface = ground.lattice.surfaces.len() - 1;
+    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, surface);
+    let motion = manoeuvre.motion();
+    let duration_s =
+        if length_m > 0.0 { length_m / motion.speed_mps.abs() } else { turn_rad / motion.yaw_rate_radps };
+    let bus_w = manoeuvre.power_on_grade(1.0, 0.0, Acceleration::NONE).bus_w;
+    let weights = ground.weights;
+    weights.per_j * bus_w * duration_s + weights.per_m * length_m + weights.per_s * duration_s
+}

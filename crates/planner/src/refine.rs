@@ -1,0 +1,56 @@
+//! From the lattice's best path to a smooth one near it.
+
+use crate::{
+    course::Course,
+    free::FreeGround,
+    lattice::Lattice,
+    patience::Patience,
+    polish::polish,
+    rates::{LevelRates, Radii},
+    route::Route,
+    shortcut::{best_link, shortcut},
+    table::Objective,
+};
+
+/// A route freed from the lattice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refined {
+    /// The path; the lattice's own where none was found that has less of the objective.
+    pub route: Route,
+    /// Whether it was refined to the end, not only until patience was over.
+    pub finished: bool,
+}
+
+/// Frees a route from the lattice: the same ends, less of the objective or as much.
+///
+/// Shortcuts of an arc, a straight and an arc replace stretches of the route, then waypoints and radii move as long as
+/// that pays. Arcs have half the slip track as their smallest radius; turns on the spot remain. Everything is driven
+/// by the evaluation that the lattice's motions are driven by, in steps of at most a cell, and keeps to the same
+/// limits of pitch, roll and side force. The robot's outline stays off obstacles and unknown ground.
+///
+/// The result is a local optimum, the same on every run unless patience ends; then it is the best so far.
+pub fn refine(lattice: &Lattice, objective: Objective, route: &Route, patience: &Patience) -> Refined {
+    let ground = FreeGround::new(lattice, objective);
+    let rates = LevelRates::new(&ground);
+    let given = Course::of(&ground, route);
+    let direct = if patience.is_over() { None } else { direct(&ground, &rates, &given) };
+    let mut courses: Vec<Course> =
+        direct.into_iter().chain([shortcut(&ground, &rates, &given, patience)]).collect();
+    for course in &mut courses {
+        polish(&ground, &rates, course, patience);
+    }
+    let better = courses
+        .iter()
+        .filter_map(|course| course.drive(&ground, route))
+        .filter(|refined| ground.weighed(&refined.total) < ground.weighed(&route.total))
+        .min_by(|a, b| ground.weighed(&a.total).total_cmp(&ground.weighed(&b.total)));
+    Refined { route: better.unwrap_or_else(|| route.clone()), finished: !patience.is_over() }
+}
+
+/// The best single curve from end to end, where it costs no more than the route.
+fn direct(ground: &FreeGround<'_>, rates: &LevelRates, given: &Course) -> Option<Course> {
+    let (from, to) = (given.waypoints.first()?, given.waypoints.last()?);
+    let most = given.links.iter().map(|link| link.cost).sum();
+    let link = best_link(ground, rates, [from, to], Radii::EveryPair, most)?;
+    Some(Course { waypoints: vec![*from, *to], links: vec![link] })
+}

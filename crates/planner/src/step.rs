@@ -1,0 +1,241 @@
+//! One step at constant grade, surface and curvature: the evaluation that lattice motions and free courses share.
+
+use model::{Acceleration, Manoeuvre, Motion as BodyMotion, Robot};
+use terrain::slope;
+
+use crate::{lattice::Lattice, primitive::Piece};
+
+/// A stretch of a motion at constant grade, surface and curvature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Where it ends: x, y relative to the start cell's centre [m].
+    pub end_m: [f64; 2],
+    /// Heading of the robot at its end [rad].
+    pub heading_rad: f64,
+    /// Length along the ground [m].
+    pub length_m: f64,
+    /// Height gained [m].
+    pub rise_m: f64,
+    /// Time [s].
+    pub duration_s: f64,
+    /// Body speeds.
+    pub motion: BodyMotion,
+    /// Rise per metre across the heading, positive with the left side up.
+    pub side_grade: f64,
+    /// cos γ: share of the weight that presses on the ground.
+    pub normal: f64,
+    /// sin γ sin β: share of the weight along the heading.
+    pub along: f64,
+    /// Index of the surface among the map's, the robot's default last.
+    pub surface: usize,
+    /// Power drawn from the battery [W].
+    pub bus_w: f64,
+}
+
+impl Step {
+    /// Energy drawn from the battery [J].
+    pub fn energy_j(&self) -> f64 {
+        self.bus_w * self.duration_s
+    }
+}
+
+pub(crate) struct PreparedStep {
+    pub(crate) horizontal_m: f64,
+    pub(crate) turn_rad: f64,
+    end_m: [f64; 2],
+    end_heading_rad: f64,
+    /// Unit vector of travel half way.
+    pub(crate) travel: (f64, f64),
+    /// Cell under the middle.
+    pub(crate) middle: (i32, i32),
+    pub(crate) end: Sample,
+}
+
+/// Bilinear interpolation between cell centres at a fixed place relative to the start cell.
+pub(crate) struct Sample {
+    pub(crate) corner: (i32, i32),
+    weights: [f32; 4],
+}
+
+/// Longest step, in cells: half of the longest straight between lattice points, √5, with a little room.
+pub(crate) const STEP_CELLS: f64 = 1.25;
+/// Largest turn within a step [rad]: the widest between neighbouring headings, 0.464. Half way the pitch is that of the
+/// chord, and the error of second order in the turn.
+const STEP_TURN_RAD: f64 = 0.47;
+/// The robot's limits in the form that a step compares with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub(crate) pitch_grade: f64,
+    pub(crate) roll_grade: f64,
+    pub(crate) side_force_n: f64,
+}
+
+impl Limits {
+    pub(crate) const NONE: Limits =
+        Limits { pitch_grade: f64::INFINITY, roll_grade: f64::INFINITY, side_force_n: f64::INFINITY };
+
+    pub(crate) fn of(robot: &Robot) -> Self {
+        let limits = &robot.limits;
+        Limits {
+            pitch_grade: limits.max_pitch_rad.tan(),
+            roll_grade: limits.max_roll_rad.tan(),
+            side_force_n: limits.max_side_force_n.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+impl PreparedStep {
+    /// Drives the step on a lattice's ground, from a height; `None` where the limits or unknown ground forbid it.
+    ///
+    /// The step counts its places from the cell at row-major position `from`, and the caller has seen to it that they
+    /// lie on the map. Returns what it takes and the height at its end.
+    #[inline]
+    pub(crate) fn drive_on<'m>(
+        &self,
+        lattice: &Lattice,
+        from: usize,
+        height_m: f32,
+        reverse: bool,
+        manoeuvre_on: impl FnOnce(usize) -> &'m Manoeuvre,
+    ) -> Option<(Step, f32)> {
+        let terrain = &lattice.terrain;
+        let columns = terrain.grid.columns;
+        let offset =
+            |(c, r): (i32, i32)| (from as isize + r as isize * columns as isize + c as isize) as usize;
+        let end_m = self.end.height_m(terrain.relative_m(), offset(self.end.corner), columns);
+        let middle = terrain.grid.cell(offset(self.middle));
+        let slope = slope::gradient_at(terrain, middle);
+        let surface = lattice.surface_index(middle);
+        let rise_m = f64::from(end_m - height_m);
+        let step = self.drive(manoeuvre_on(surface), rise_m, slope, reverse, &lattice.limits, surface)?;
+        Some((step, end_m))
+    }
+
+    /// The step on ground that rises by `rise_m` and slopes by `slope` (east, north) half way.
+    #[inline]
+    pub(crate) fn drive(
+        &self,
+        manoeuvre: &Manoeuvre,
+        rise_m: f64,
+        slope: (f64, f64),
+        reverse: bool,
+        limits: &Limits,
+        surface: usize,
+    ) -> Option<Step> {
+        let (cos, sin) = self.travel;
+        let turning = self.horizontal_m == 0.0;
+        let grade = if turning { slope.0 * cos + slope.1 * sin } else { rise_m / self.horizontal_m };
+        let side_grade = slope.1 * cos - slope.0 * sin;
+        // Written so that a NaN of unknown ground fails too.
+        if !(grade.abs() <= limits.pitch_grade && side_grade.abs() <= limits.roll_grade) {
+            return None;
+        }
+        let cos_pitch = 1.0 / (1.0 + grade * grade).sqrt();
+        let cos_roll = 1.0 / (1.0 + side_grade * side_grade).sqrt();
+        let facing = if reverse { -1.0 } else { 1.0 };
+        let (normal, along) = (cos_pitch * cos_roll, facing * grade * cos_pitch);
+        let motion = *manoeuvre.motion();
+        let length_m = self.horizontal_m / cos_pitch;
+        let duration_s =
+            if turning { self.turn_rad / motion.yaw_rate_radps } else { length_m / motion.speed_mps.abs() };
+        let power = manoeuvre.power_on_grade(normal, along, Acceleration::NONE);
+        if power.force_n.left.abs().max(power.force_n.right.abs()) > limits.side_force_n {
+            return None;
+        }
+        Some(Step {
+            end_m: self.end_m,
+            heading_rad: self.end_heading_rad,
+            length_m,
+            rise_m: if turning { 0.0 } else { rise_m },
+            duration_s,
+            motion,
+            side_grade: facing * side_grade,
+            normal,
+            along,
+            surface,
+            bus_w: power.bus_w,
+        })
+    }
+}
+
+impl Sample {
+    /// Interpolates at a place; whole cells to nine decimals, so that lattice points read exactly one cell.
+    pub(crate) fn at(place_m: [f64; 2], cell_size_m: f64) -> Self {
+        let whole = |v: f64| {
+            let near = (v * 1e9).round() / 1e9;
+            (near.floor(), near - near.floor())
+        };
+        let (column, east) = whole(place_m[0] / cell_size_m);
+        let (row, north) = whole(place_m[1] / cell_size_m);
+        let weights =
+            [(1.0 - east) * (1.0 - north), east * (1.0 - north), (1.0 - east) * north, east * north];
+        Sample { corner: (column as i32, row as i32), weights: weights.map(|w| w as f32) }
+    }
+
+    /// Offsets and weights of the cells that count.
+    pub(crate) fn taps(&self) -> impl Iterator<Item = ((i32, i32), f32)> + '_ {
+        let (column, row) = self.corner;
+        let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
+        corners.into_iter().zip(self.weights).filter(|(_, weight)| *weight != 0.0)
+    }
+
+    /// The corner opposite to `corner`, as far as its weights reach.
+    pub(crate) fn far_corner(&self) -> (i32, i32) {
+        let [_, se, nw, ne] = self.weights;
+        let east = i32::from(se != 0.0 || ne != 0.0);
+        let north = i32::from(nw != 0.0 || ne != 0.0);
+        (self.corner.0 + east, self.corner.1 + north)
+    }
+
+    #[inline]
+    pub(crate) fn height_m(&self, z: &[f32], corner: usize, columns: usize) -> f32 {
+        let mut height_m = 0.0;
+        for (weight, index) in
+            self.weights.into_iter().zip([corner, corner + 1, corner + columns, corner + columns + 1])
+        {
+            if weight != 0.0 {
+                height_m += weight * z[index];
+            }
+        }
+        height_m
+    }
+}
+
+/// The steps of a piece, none longer than `longest_cells` and none turning by more than [`STEP_TURN_RAD`].
+pub(crate) fn prepare_steps(
+    piece: &Piece,
+    reverse: bool,
+    cell_size_m: f64,
+    longest_cells: f64,
+) -> impl Iterator<Item = PreparedStep> + '_ {
+    // Rounding must not add a step to whole cells.
+    let by_length = (piece.length_m / (longest_cells * cell_size_m) - 1e-9).ceil();
+    let count = by_length.max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
+    let facing_rad = if reverse { std::f64::consts::PI } else { 0.0 };
+    let straight = (piece.turn_rad == 0.0).then(|| piece.heading_rad.sin_cos());
+    let along = move |fraction: f64| match straight {
+        None => {
+            let [x, y, heading] = piece.pose_at(fraction);
+            let (sin, cos) = heading.sin_cos();
+            ([x, y], heading, (cos, sin))
+        }
+        Some((sin, cos)) => {
+            let along_m = piece.length_m * fraction;
+            let place_m = [piece.start_m[0] + along_m * cos, piece.start_m[1] + along_m * sin];
+            (place_m, piece.heading_rad, (cos, sin))
+        }
+    };
+    (0..count).map(move |i| {
+        let (end_m, heading, _) = along((i + 1) as f64 / count as f64);
+        let ([mx, my], _, travel) = along((i as f64 + 0.5) / count as f64);
+        PreparedStep {
+            horizontal_m: piece.length_m / count as f64,
+            turn_rad: piece.turn_rad / count as f64,
+            end_m,
+            end_heading_rad: heading + facing_rad,
+            travel,
+            middle: ((mx / cell_size_m).round() as i32, (my / cell_size_m).round() as i32),
+            end: Sample::at(end_m, cell_size_m),
+        }
+    })
+}

@@ -1,0 +1,74 @@
+//! Planners of the robots and maps that were asked about lately, with all that they have worked out.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use model::{Robot, robot::RobotFile};
+use planner::{Planner, Settings};
+use terrain::{CellRange, Terrain};
+
+/// A stored map, a robot and how it is driven.
+#[derive(Clone, Debug, PartialEq)]
+struct Key {
+    map_id: String,
+    robot: RobotFile,
+    settings: Settings,
+}
+
+/// Planners by what they are for, the latest at the end.
+#[derive(Default)]
+pub(crate) struct Planners {
+    kept: Mutex<Vec<(Key, Arc<Planner>)>>,
+}
+
+impl Planners {
+    /// The planner for a stored map, made if it is not at hand.
+    pub(crate) fn get(
+        &self,
+        map_id: &str,
+        terrain: &Terrain,
+        robot: &Robot,
+        settings: Settings,
+    ) -> Result<Arc<Planner>, planner::Error> {
+        let key = Key { map_id: map_id.to_owned(), robot: RobotFile::from(robot.clone()), settings };
+        let mut kept = self.lock();
+        if let Some(at) = kept.iter().position(|(other, _)| *other == key) {
+            let found = kept.remove(at);
+            let planner = Arc::clone(&found.1);
+            kept.push(found);
+            return Ok(planner);
+        }
+        drop(kept);
+        let planner = Arc::new(Planner::new(terrain, robot, settings)?);
+        self.lock().push((key, Arc::clone(&planner)));
+        Ok(planner)
+    }
+
+    /// Makes planners for a map that differs from another in some cells only, out of those of the other.
+    pub(crate) fn patch(&self, from_id: &str, to_id: &str, terrain: &Terrain, changed: &CellRange) {
+        let from: Vec<_> = self.lock().iter().filter(|(key, _)| key.map_id == from_id).cloned().collect();
+        for (key, planner) in from {
+            let key = Key { map_id: to_id.to_owned(), ..key };
+            // A surface that the robot lacks is told when it is asked for a path.
+            let Ok(planner) = planner.patched(terrain, changed) else { continue };
+            self.lock().push((key, Arc::new(planner)));
+        }
+    }
+
+    /// Forgets the planners of a map.
+    pub(crate) fn forget(&self, map_id: &str) {
+        self.lock().retain(|(key, _)| key.map_id != map_id);
+    }
+
+    /// Forgets what was not asked for lately until the rest holds so many bytes at most.
+    pub(crate) fn shrink(&self, most_bytes: usize) {
+        let mut kept = self.lock();
+        let mut held: usize = kept.iter().map(|(_, planner)| planner.bytes()).sum();
+        while held > most_bytes && !kept.is_empty() {
+            held -= kept.remove(0).1.bytes().min(held);
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(Key, Arc<Planner>)>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
