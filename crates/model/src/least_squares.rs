@@ -64,6 +64,25 @@ pub fn nonlinear(
     }
 }
 
+/// Derivatives of the residuals at x by central differences, one column a parameter.
+pub fn jacobian(
+    residuals: impl Fn(&[f64]) -> Vec<f64>,
+    x: &[f64],
+    lower: &[f64],
+    upper: &[f64],
+) -> DMatrix<f64> {
+    let columns: Vec<DVector<f64>> = (0..x.len())
+        .map(|j| {
+            let step = (upper[j] - lower[j]) * DIFFERENCE_STEP;
+            let (mut above, mut below) = (x.to_vec(), x.to_vec());
+            above[j] += step;
+            below[j] -= step;
+            (DVector::from_vec(residuals(&above)) - DVector::from_vec(residuals(&below))) / (2.0 * step)
+        })
+        .collect();
+    DMatrix::from_columns(&columns)
+}
+
 const MAX_ITERATIONS: u64 = 200;
 /// Step of the central differences, as a fraction of a parameter's range: near the cube root of the rounding.
 const DIFFERENCE_STEP: f64 = 1e-5;
@@ -112,16 +131,7 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Jacobian for Problem<F> {
     type Jacobian = DMatrix<f64>;
 
     fn jacobian(&self, x: &DVector<f64>) -> Result<DMatrix<f64>, Infallible> {
-        let columns: Vec<DVector<f64>> = (0..x.len())
-            .map(|j| {
-                let step = (self.upper[j] - self.lower[j]) * DIFFERENCE_STEP;
-                let (mut above, mut below) = (x.clone(), x.clone());
-                above[j] += step;
-                below[j] -= step;
-                (self.at(&above) - self.at(&below)) / (2.0 * step)
-            })
-            .collect();
-        Ok(DMatrix::from_columns(&columns))
+        Ok(jacobian(&self.residuals, x.as_slice(), self.lower.as_slice(), self.upper.as_slice()))
     }
 }
 

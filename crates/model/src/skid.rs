@@ -13,9 +13,17 @@ use crate::{Robot, robot::Surface};
 /// abreast of the centre of mass, as eq. 15 assumes, so the lever arms start there. α_s → 0 is the paper's
 /// Coulomb skid; α_s > 0 lets wide arcs skid less than tight ones, as rubber does.
 pub fn moment_per_load_m(robot: &Robot, surface: &Surface, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
+    let arm_m =
+        mobilized_arm_m(robot, speed_mps, yaw_rate_radps, |slip_angle_rad| saturation(slip_angle_rad, surface));
+    arm_m * surface.mu_skid * sign(yaw_rate_radps)
+}
+
+/// Σ_i |x_i − δx| · n_i · σ(α_i) of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel
+/// feels at a slip angle, 0 to π/2 \[m\].
+pub fn mobilized_arm_m(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, mobilized: impl Fn(f64) -> f64) -> f64 {
     let com = &robot.center_of_mass;
     let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
-    let mut moment_m = 0.0;
+    let mut sum_m = 0.0;
     for x_m in [half_a, -half_a] {
         let share_x = 0.5 + com.forward_m / robot.wheelbase_m * x_m.signum();
         let arm_m = x_m - com.forward_m;
@@ -23,22 +31,19 @@ pub fn moment_per_load_m(robot: &Robot, surface: &Surface, speed_mps: f64, yaw_r
             let share_y = 0.5 + com.left_m / robot.track_m * y_m.signum();
             let along_mps = speed_mps - yaw_rate_radps * y_m;
             let across_mps = yaw_rate_radps * arm_m;
-            moment_m += arm_m.abs() * share_x * share_y * saturation(across_mps, along_mps, surface);
+            if across_mps != 0.0 {
+                let slip_angle_rad = across_mps.abs().atan2(along_mps.abs());
+                sum_m += arm_m.abs() * share_x * share_y * mobilized(slip_angle_rad);
+            }
         }
     }
-    moment_m * surface.mu_skid * sign(yaw_rate_radps)
+    sum_m
 }
 
 /// tanh(α/α_s): how much of the full skid resistance a wheel feels, 0 to 1.
-fn saturation(across_mps: f64, along_mps: f64, surface: &Surface) -> f64 {
+fn saturation(slip_angle_rad: f64, surface: &Surface) -> f64 {
     let scale_rad = surface.slip_angle_scale_rad;
-    if across_mps == 0.0 {
-        return 0.0;
-    }
-    if scale_rad == 0.0 {
-        return 1.0;
-    }
-    (across_mps.abs().atan2(along_mps.abs()) / scale_rad).tanh()
+    if scale_rad == 0.0 { 1.0 } else { (slip_angle_rad / scale_rad).tanh() }
 }
 
 fn sign(value: f64) -> f64 {

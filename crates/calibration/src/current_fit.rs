@@ -1,0 +1,190 @@
+//! Fitting the current model to one surface.
+//!
+//! The structure of the model, the widths of the priors and their centres for α_s and C were chosen on all runs of BorealTC;
+//! the numbers themselves are fitted to the runs at hand only.
+
+use model::{Robot, STANDARD_GRAVITY_MPS2};
+
+use crate::{
+    Drives,
+    current::{COUNT, CurrentModel, CurrentParameters, YawSource, idle_a},
+    fit::{Fit, Parameter, Problem},
+    folds,
+};
+
+/// Size of an error of a one-second average that stands for a sigma \[A\]: twice the spread of 1 A that is left on hard ground, since
+/// neighbouring seconds err alike.
+const NOISE_A: f64 = 2.0;
+
+/// The fit of one surface.
+#[derive(Clone, Debug)]
+pub struct CurrentFit {
+    /// The numbers found.
+    pub parameters: CurrentParameters,
+    /// With their uncertainty, in the order of [`CurrentParameters::to_array`].
+    pub fit: Fit,
+    /// Reading at standstill \[A\].
+    pub idle_a: f64,
+    /// Kinematic track that was assumed \[m\].
+    pub slip_track_m: f64,
+    /// Where yaw rates came from.
+    pub yaw: YawSource,
+}
+
+/// What is known of a parameter before.
+struct Before {
+    name: &'static str,
+    unit: &'static str,
+    bounds: [f64; 2],
+    start: f64,
+    prior: Option<[f64; 2]>,
+}
+
+/// Names, units, bounds and what is known before a robot's first fit, in the order of [`CurrentParameters`]. Skid and its
+/// slip-angle scale are left open.
+const FIRST: [Before; COUNT] = {
+    const fn line(
+        name: &'static str,
+        unit: &'static str,
+        bounds: [f64; 2],
+        start: f64,
+        prior: Option<[f64; 2]>,
+    ) -> Before {
+        Before { name, unit, bounds, start, prior }
+    }
+    [
+        line("rolling_current", "A", [0.0, 15.0], 2.0, Some([2.0, 3.0])),
+        line("rolling_split", "A", [-3.0, 3.0], 0.0, Some([0.0, 0.5])),
+        line("skid_current", "A", [0.0, 60.0], 7.0, None),
+        line("slip_angle_scale", "rad", [0.005, 3.0], 0.08, None),
+        line("slip_shape", "1", [0.5, 1.95], 1.3, Some([1.3, 0.3])),
+        line("lifting_current", "A", [0.0, 100.0], 25.0, Some([25.0, 10.0])),
+        line("inertia", "A s²/m", [-5.0, 30.0], 3.0, Some([3.0, 1.5])),
+        line("turning_inertia", "A s²/m", [-5.0, 30.0], 0.5, Some([0.5, 0.5])),
+        line("relaxation_length", "m", [0.001, 1.0], 0.1, Some([0.1, 0.05])),
+        line("load_height", "m", [-1.0, 2.0], 0.25, Some([0.25, 0.15])),
+        line("wheel_mismatch", "1", [-0.1, 0.1], 0.0, Some([0.0, 0.03])),
+        line("offset_current", "A", [-2.0, 2.0], 0.0, Some([0.0, 0.25])),
+    ]
+};
+
+/// Both starting points of the slip-angle scale: with a free shape the valley has two ends \[rad\].
+const SCALE_STARTS_RAD: [f64; 2] = [0.08, 0.3];
+
+/// How far the numbers of another surface may lie from those of the reference: what belongs to the robot is nearly fixed,
+/// what belongs to the ground is open.
+fn after(reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
+    let r = reference;
+    [
+        Some([2.0, 5.0]),
+        Some([r.split_a, 0.2]),
+        None,
+        Some([0.08, 0.056]),
+        Some([1.4, 0.25]),
+        Some([r.lifting_a, 0.25 * r.lifting_a]),
+        Some([r.inertia_a_per_mps2, 0.15]),
+        Some([r.turning_inertia_a_per_mps2, 0.1]),
+        Some([r.relaxation_length_m, 0.006]),
+        Some([0.25, 0.15]),
+        Some([r.wheel_mismatch, 0.009]),
+        Some([0.0, 0.25]),
+    ]
+}
+
+/// Fits the surface that tells most about the robot: wide priors.
+pub fn fit_reference(robot: &Robot, drives: &Drives, slip_track_m: f64, yaw: YawSource) -> CurrentFit {
+    let starts = SCALE_STARTS_RAD.map(|scale_rad| {
+        let mut parameters = parameters(&FIRST.each_ref().map(|before| before.prior), drives);
+        parameters[3].start = scale_rad;
+        solve(robot, drives, slip_track_m, yaw, &parameters)
+    });
+    let [first, second] = starts;
+    if second.fit.cost < first.fit.cost { second } else { first }
+}
+
+/// Fits another surface of the same robot.
+pub fn fit_surface(robot: &Robot, drives: &Drives, reference: &CurrentFit, yaw: YawSource) -> CurrentFit {
+    let parameters = parameters(&after(&reference.parameters), drives);
+    solve(robot, drives, reference.slip_track_m, yaw, &parameters)
+}
+
+/// Fits with the lifting current left open: what one surface alone says about newtons per ampere.
+pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -> CurrentFit {
+    let mut priors = after(&reference.parameters);
+    priors[LIFTING] = None;
+    let parameters = parameters(&priors, drives);
+    solve(robot, drives, reference.slip_track_m, reference.yaw, &parameters)
+}
+
+/// Place of the lifting current among the parameters.
+pub(crate) const LIFTING: usize = 5;
+/// Place of the offset.
+const OFFSET: usize = 11;
+
+fn parameters(priors: &[Option<[f64; 2]>; COUNT], drives: &Drives) -> Vec<Parameter> {
+    let parameter = |(before, prior): (&Before, &Option<[f64; 2]>)| Parameter {
+        name: before.name.into(),
+        unit: before.unit,
+        start: prior.map_or(before.start, |[mean, _]| mean),
+        bounds: before.bounds,
+        prior: *prior,
+        held: false,
+    };
+    let mut all: Vec<Parameter> = FIRST.iter().zip(priors).map(parameter).collect();
+    if !turns_both_ways(drives) {
+        all[OFFSET] = Parameter { start: 0.0, held: true, ..all[OFFSET].clone() };
+    }
+    all
+}
+
+/// One side turned forwards and backwards for a tenth of the rows each: else an offset is rolling resistance by another name.
+fn turns_both_ways(drives: &Drives) -> bool {
+    /// Clear of standstill \[m/s\]: four encoder steps of a Husky.
+    const TURNING_MPS: f64 = 0.03;
+    const LEAST_SHARE: f64 = 0.1;
+    let used = || drives.rows.iter().filter(|row| row.used && !row.stuck);
+    let least = LEAST_SHARE * used().count() as f64;
+    let both = |side: fn(&crate::drives::Row) -> f64| {
+        let forwards = used().filter(|row| side(row) > TURNING_MPS).count() as f64;
+        let backwards = used().filter(|row| side(row) < -TURNING_MPS).count() as f64;
+        forwards.min(backwards) > least
+    };
+    both(|row| row.rim_mps.left) || both(|row| row.rim_mps.right)
+}
+
+fn solve(robot: &Robot, drives: &Drives, slip_track_m: f64, yaw: YawSource, parameters: &[Parameter]) -> CurrentFit {
+    let idle_a = idle_a(drives);
+    let model = CurrentModel::new(robot, drives, slip_track_m, yaw, idle_a);
+    let predict = |values: &[f64]| model.averages_a(&numbers(values));
+    let recorded: Vec<f64> = drives.recorded_averages();
+    let problem = Problem { recorded: &recorded, block: &folds::blocks(drives), noise: NOISE_A, predict: &predict };
+    let fit = problem.solve(parameters);
+    CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
+}
+
+fn numbers(values: &[f64]) -> CurrentParameters {
+    CurrentParameters::from_array(std::array::from_fn(|i| values.get(i).copied().unwrap_or(0.0)))
+}
+
+impl CurrentFit {
+    /// One-second averages of the reading on other drives, left behind right \[A\].
+    pub fn predict_a(&self, robot: &Robot, drives: &Drives) -> Vec<f64> {
+        CurrentModel::new(robot, drives, self.slip_track_m, self.yaw, self.idle_a).averages_a(&self.parameters)
+    }
+
+    /// c: force at the rim of a side per ampere, `m g / 2 G` \[N/A\].
+    pub fn force_n_per_a(&self, robot: &Robot) -> f64 {
+        force_n_per_a(robot, self.parameters.lifting_a)
+    }
+
+    /// 95 % interval of the force per ampere \[N/A\]; open above where the lifting current may be zero.
+    pub fn force_interval_n_per_a(&self, robot: &Robot) -> [f64; 2] {
+        let [low_a, high_a] = self.fit.interval_95(LIFTING);
+        [force_n_per_a(robot, high_a), if low_a > 0.0 { force_n_per_a(robot, low_a) } else { f64::INFINITY }]
+    }
+}
+
+/// `m g / 2 G`: a side holds half the weight on a vertical wall \[N/A\].
+fn force_n_per_a(robot: &Robot, lifting_a: f64) -> f64 {
+    robot.mass_kg * STANDARD_GRAVITY_MPS2 / 2.0 / lifting_a
+}

@@ -1,0 +1,55 @@
+//! What can be wrong with a recording that a robot is to be fitted to or judged by.
+
+/// An error of the calibration crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Nothing in the recording can be used.
+    #[error("the recording cannot be used: {reason}")]
+    NothingToFit {
+        /// Why.
+        reason: &'static str,
+    },
+    /// Runs are too few to hold one back.
+    #[error("surface `{surface}` was driven in {runs} run; record two or more, since runs that were not fitted are to judge the fit")]
+    TooFewRuns {
+        /// The surface.
+        surface: String,
+        /// Runs on it.
+        runs: usize,
+    },
+    /// A surface is named that the recording or the robot lacks.
+    #[error("run `{run}`, row {row} of it: surface `{surface}` is unknown to the robot, which knows {}; `joulepath calibrate` adds it", known.join(", "))]
+    UnknownSurface {
+        /// The run.
+        run: String,
+        /// First row of the run on that surface, from 1.
+        row: usize,
+        /// The surface.
+        surface: String,
+        /// What the robot knows.
+        known: Vec<String>,
+    },
+    /// The surface that the others lean on was not driven.
+    #[error("no run drove on the reference surface `{surface}`; the recording has {}", found.join(", "))]
+    NoReference {
+        /// The surface asked for.
+        surface: String,
+        /// What was driven on.
+        found: Vec<String>,
+    },
+    /// Motor currents need newtons per ampere to become watts.
+    #[error("the recording tells power as motor currents: give `force_n_per_a` in motors.left and motors.right of the robot, or run `joulepath calibrate`, which finds it")]
+    NoForcePerAmpere,
+    /// The method does not fit the recording.
+    #[error("{method} needs {needs}")]
+    Needs {
+        /// What was asked for.
+        method: &'static str,
+        /// What the recording lacks.
+        needs: &'static str,
+    },
+    /// The fitted robot does not pass its own checks.
+    #[error("the fitted robot cannot be: {0}")]
+    Robot(#[from] model::Error),
+}
