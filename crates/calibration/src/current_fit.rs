@@ -92,11 +92,19 @@ fn after(reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
 }
 
 /// Fits the surface that tells most about the robot: wide priors.
-pub fn fit_reference(robot: &Robot, drives: &Drives, slip_track_m: f64, yaw: YawSource) -> CurrentFit {
+///
+/// The lifting current's prior is centred on the robot file's force per ampere where it gives one. The others are those of a robot
+/// of a Husky's size.
+pub fn fit_reference(robot: &Robot, drives: &Drives) -> CurrentFit {
+    let mut priors = FIRST.each_ref().map(|before| before.prior);
+    if let (Some([mean, sigma]), Some(force_n_per_a)) = (priors[LIFTING], robot.motors.left.force_n_per_a) {
+        let lifting_a = force_n_per_a_inverse(robot, force_n_per_a);
+        priors[LIFTING] = Some([lifting_a, sigma / mean * lifting_a]);
+    }
     let starts = SCALE_STARTS_RAD.map(|scale_rad| {
-        let mut parameters = parameters(&FIRST.each_ref().map(|before| before.prior), drives);
-        parameters[3].start = scale_rad;
-        solve(robot, drives, slip_track_m, yaw, &parameters)
+        let mut parameters = parameters(&priors, drives);
+        parameters[SCALE].start = scale_rad;
+        solve(robot, drives, robot.slip_track_m, YawSource::Wheels, &parameters)
     });
     let [first, second] = starts;
     if second.fit.cost < first.fit.cost { second } else { first }
@@ -118,6 +126,8 @@ pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -
 
 /// Place of the lifting current among the parameters.
 pub(crate) const LIFTING: usize = 5;
+/// Place of the slip-angle scale.
+pub(crate) const SCALE: usize = 3;
 /// Place of the offset.
 const OFFSET: usize = 11;
 
@@ -157,7 +167,8 @@ fn solve(robot: &Robot, drives: &Drives, slip_track_m: f64, yaw: YawSource, para
     let model = CurrentModel::new(robot, drives, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
     let recorded: Vec<f64> = drives.recorded_averages();
-    let problem = Problem { recorded: &recorded, block: &folds::blocks(drives), noise: NOISE_A, predict: &predict };
+    let block = folds::blocks(drives);
+    let problem = Problem { recorded: &recorded, block: &block, noise: NOISE_A, largest: NOISE_A, predict: &predict };
     let fit = problem.solve(parameters);
     CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
 }
@@ -182,6 +193,11 @@ impl CurrentFit {
         let [low_a, high_a] = self.fit.interval_95(LIFTING);
         [force_n_per_a(robot, high_a), if low_a > 0.0 { force_n_per_a(robot, low_a) } else { f64::INFINITY }]
     }
+}
+
+/// G of a robot whose sides push `force_n_per_a` \[A\]; the relation is its own inverse.
+fn force_n_per_a_inverse(robot: &Robot, force_n_per_a: f64) -> f64 {
+    self::force_n_per_a(robot, force_n_per_a)
 }
 
 /// `m g / 2 G`: a side holds half the weight on a vertical wall \[N/A\].

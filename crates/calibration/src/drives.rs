@@ -224,6 +224,19 @@ impl Drives {
         part
     }
 
+    /// The same drives with stuck rows counted like any other.
+    #[must_use]
+    pub fn including_stuck(mut self) -> Drives {
+        self.rows.iter_mut().for_each(|row| row.stuck = false);
+        self.average();
+        self
+    }
+
+    /// The drives on one surface.
+    pub fn on_surface(&self, surface: usize) -> Drives {
+        self.select(|stretch| stretch.surface == surface)
+    }
+
     /// Averages of a quantity by row.
     pub fn averaged(&self, by_row: &[f64]) -> Vec<f64> {
         self.averaged_by(|row| by_row[row])
@@ -262,7 +275,10 @@ fn recorded(recording: &Recording, form: PowerForm) -> Vec<Vec<f64>> {
             let (amperes, volts) = (column(Channel::Current), column(Channel::Voltage));
             vec![amperes.iter().zip(&volts).map(|(i, v)| i * v).collect()]
         }
-        PowerForm::MotorCurrents => vec![column(Channel::LeftMotorCurrent), column(Channel::RightMotorCurrent)],
+        // Many drivers report no sign, so none is relied on.
+        PowerForm::MotorCurrents => [Channel::LeftMotorCurrent, Channel::RightMotorCurrent]
+            .map(|channel| column(channel).into_iter().map(f64::abs).collect())
+            .to_vec(),
     }
 }
 

@@ -26,8 +26,10 @@ pub struct Problem<'a> {
     pub recorded: &'a [f64],
     /// Blocks of recorded values whose errors hang together; the errors of different blocks do not.
     pub block: &'a [usize],
-    /// Errors beyond this count linearly rather than squared; a prior's sigma weighs as much as one error of this size.
+    /// An error of this size weighs as much as a prior that is off by its sigma.
     pub noise: f64,
+    /// Errors beyond this count linearly rather than squared.
+    pub largest: f64,
     /// Predicts what was recorded from all parameters.
     pub predict: &'a dyn Fn(&[f64]) -> Vec<f64>,
 }
@@ -65,7 +67,7 @@ impl Problem<'_> {
         let residuals = |x: &[f64]| {
             let values = all(x);
             let mut errors: Vec<f64> =
-                (self.predict)(&values).iter().zip(self.recorded).map(|(p, r)| huber(p - r, self.noise)).collect();
+                (self.predict)(&values).iter().zip(self.recorded).map(|(p, r)| huber(p - r, self.largest)).collect();
             errors.extend(free.iter().filter_map(|&i| {
                 let [mean, sigma] = parameters[i].prior?;
                 Some(self.noise * (values[i] - mean) / sigma)
@@ -84,6 +86,27 @@ impl Problem<'_> {
         }
         let cost = errors.iter().map(|e| e * e).sum();
         Fit { parameters: parameters.to_vec(), values: all(&x), covariance: whole, student, cost }
+    }
+
+    /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
+    ///
+    /// The covariance stays that of all parameters, so that the uncertainty of what is held is in the intervals of the rest.
+    pub fn solve_determined(&self, parameters: &[Parameter]) -> Fit {
+        let free = self.solve(parameters);
+        let mut again = parameters.to_vec();
+        for (i, parameter) in again.iter_mut().enumerate() {
+            if free.determined(i) {
+                parameter.start = free.values[i];
+            } else {
+                parameter.start = parameter.prior.map_or(free.values[i], |[mean, _]| mean);
+                parameter.held = true;
+            }
+        }
+        if again.iter().zip(parameters).all(|(a, b)| a.held == b.held) {
+            return free;
+        }
+        let held = self.solve(&again);
+        Fit { values: held.values, parameters: again, cost: held.cost, ..free }
     }
 
     /// The sandwich `A⁻¹ B A⁻¹` with A = JᵀJ and B the sum of the outer products of each block's score, so errors may hang
@@ -172,7 +195,7 @@ mod tests {
         recorded[20] += 50.0;
         let block: Vec<usize> = (0..40).map(|i| i / 2).collect();
         let predict = |p: &[f64]| x.iter().map(|x| p[0] + p[1] * x).collect::<Vec<f64>>();
-        let problem = Problem { recorded: &recorded, block: &block, noise: 0.02, predict: &predict };
+        let problem = Problem { recorded: &recorded, block: &block, noise: 0.02, largest: 0.04, predict: &predict };
         let fit = problem.solve(&[
             parameter("offset", None),
             parameter("slope", None),

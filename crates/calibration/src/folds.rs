@@ -3,7 +3,7 @@
 use crate::Drives;
 
 /// Length of the blocks whose errors count as one piece of evidence \[s\]: several times the manoeuvres of a hand-driven robot.
-const BLOCK_S: f64 = 15.0;
+pub(crate) const BLOCK_S: f64 = 15.0;
 
 /// The runs of drives in two halves, alternately by name: first, third, … and second, fourth, …
 ///

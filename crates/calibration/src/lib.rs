@@ -3,17 +3,25 @@
 //! SI units; axes and signs are those of the `model` and `recording` crates. What is fitted and what is judged are averages over
 //! one second ([`Drives`]); runs are kept apart, and no run is judged by a fit that saw it.
 
+pub mod calibrate;
 pub mod current;
+pub mod current_calibration;
 pub mod current_fit;
+pub mod current_judge;
 pub mod drives;
 mod error;
 pub mod fit;
 pub mod folds;
 pub mod lag;
+pub mod power;
+pub mod power_fit;
+pub mod predict;
 pub mod score;
 pub mod slip_law;
 mod stuck;
 
+pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate};
 pub use drives::Drives;
 pub use error::Error;
-pub use stuck::slip_track_m;
+pub use predict::{PredictedDrives, Prediction, RunPrediction, predict};
+pub use stuck::{SlipTrack, slip_track};

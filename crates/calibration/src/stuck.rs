@@ -1,8 +1,8 @@
 //! Rows in which the wheels turn against each other and the robot does not.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
-use crate::{Drives, drives::Row};
+use crate::{Drives, drives::Row, folds::BLOCK_S};
 
 /// Width of the centred means \[s\], longer than the clock of an inertial unit drifts from the encoders' (about 1 s).
 const MEAN_S: f64 = 2.0;
@@ -47,12 +47,26 @@ fn is_stuck(around: &[Row], slip_track_m: f64) -> bool {
         && turned_mps * difference_mps.signum() < LEAST_SHARE * difference_mps.abs()
 }
 
+/// A kinematic track that was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipTrack {
+    /// b: `yaw_rate = (v_right − v_left) / b` \[m\].
+    pub value_m: f64,
+    /// One-sigma uncertainty \[m\].
+    pub sigma_m: f64,
+}
+
 /// The slip track at which wheels and gyroscope agree, root mean square over 2 s against root mean square, over the rows that
-/// turn and are not stuck \[m\]; `None` where no yaw rate was measured in a turn.
+/// turn and are not stuck; `None` where the robot turned in fewer than [`LEAST_BLOCKS`] stretches with a measured yaw rate.
 ///
-/// The ratio of the two spreads does not mind a delay between the clocks, as a regression would.
-pub fn slip_track_m(drives: &Drives) -> Option<f64> {
-    let mut sums = (0.0, 0.0);
+/// ```text
+/// b² = Σ⟨u_r − u_l⟩² / Σ⟨ω⟩²
+/// ```
+///
+/// The ratio of the two spreads does not mind a delay between the clocks, as a regression would. Its uncertainty is that between
+/// pieces of 15 s.
+pub fn slip_track(drives: &Drives) -> Option<SlipTrack> {
+    let mut blocks: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
     for stretch in &drives.stretches {
         let rows = &drives.rows[stretch.rows.clone()];
         for (row, window) in rows.iter().zip(windows(rows)) {
@@ -60,10 +74,21 @@ pub fn slip_track_m(drives: &Drives) -> Option<f64> {
             let mean = |f: fn(&Row) -> f64| around.iter().map(f).sum::<f64>() / around.len() as f64;
             let (difference_mps, yaw_rate_radps) = (mean(Row::difference_mps), mean(|row| row.yaw_rate_radps));
             if !row.stuck && yaw_rate_radps.is_finite() && difference_mps.abs() > LEAST_DIFFERENCE_MPS {
+                let sums = blocks.entry((stretch.run, (row.t_s / BLOCK_S).floor() as i64)).or_default();
                 sums.0 += difference_mps * difference_mps;
                 sums.1 += yaw_rate_radps * yaw_rate_radps;
             }
         }
     }
-    (sums.1 > 0.0).then(|| (sums.0 / sums.1).sqrt())
+    let total = blocks.values().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    if blocks.len() < LEAST_BLOCKS || total.1 == 0.0 {
+        return None;
+    }
+    let square_m2 = total.0 / total.1;
+    let scatter: f64 = blocks.values().map(|b| (b.0 - square_m2 * b.1).powi(2)).sum();
+    let value_m = square_m2.sqrt();
+    Some(SlipTrack { value_m, sigma_m: scatter.sqrt() / total.1 / (2.0 * value_m) })
 }
+
+/// Fewer pieces of a drive say nothing of how far they scatter.
+const LEAST_BLOCKS: usize = 4;

@@ -11,23 +11,41 @@ pub(crate) struct SideForces {
     pub(crate) gravity_share: Sides<f64>,
 }
 
-/// Balances rolling and skid resistance and gravity for a motion.
+/// What a motion makes of friction coefficients: everything in its side forces but μ_R and μ_S themselves.
 ///
-/// ```text
-/// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)               + m g sinγ sinβ + m dv/dt
-/// (F_r − F_l) b/2 = M_skid + N c μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
-/// ```
-///
-/// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
-pub(crate) fn side_forces(robot: &Robot, surface: &Surface, motion: &Motion) -> SideForces {
-    let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
-    let rolling = rolling::load_share(robot)
-        .zip(motion.rim_speeds_mps)
-        .map(|(n, u)| mu_roll * n * rolling::direction(u));
-    let moment_m = skid::moment_per_load_m(robot, surface, motion.speed_mps, motion.yaw_rate_radps);
-    let skid = moment_m / robot.track_m;
-    SideForces {
-        friction_per_load: Sides { left: rolling.left - skid, right: rolling.right + skid },
-        gravity_share: Sides::both(0.5),
+/// Fits ask for the same motions with other coefficients again and again; this is the part that costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionShape {
+    /// s: direction of each side's rolling, −1 to 1 [-].
+    rolling: Sides<f64>,
+    /// Moment of skid over μ_S and the normal load, with the sign of the turn [m].
+    skid_arm_m: f64,
+}
+
+impl FrictionShape {
+    /// The shape of a motion on ground of a slip-angle scale α_s [rad].
+    pub fn new(robot: &Robot, slip_angle_scale_rad: f64, motion: &Motion) -> Self {
+        FrictionShape {
+            rolling: motion.rim_speeds_mps.map(rolling::direction),
+            skid_arm_m: skid::arm_m(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps),
+        }
+    }
+
+    /// Balances rolling and skid resistance and gravity.
+    ///
+    /// ```text
+    /// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)               + m g sinγ sinβ + m dv/dt
+    /// (F_r − F_l) b/2 = M_skid + N c μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
+    /// ```
+    ///
+    /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
+    pub(crate) fn side_forces(&self, robot: &Robot, surface: &Surface) -> SideForces {
+        let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
+        let rolling = rolling::load_share(robot).zip(self.rolling).map(|(n, s)| mu_roll * n * s);
+        let skid = self.skid_arm_m * surface.mu_skid / robot.track_m;
+        SideForces {
+            friction_per_load: Sides { left: rolling.left - skid, right: rolling.right + skid },
+            gravity_share: Sides::both(0.5),
+        }
     }
 }

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Robot, Sides, balance,
+    Robot, Sides,
+    balance::{FrictionShape, SideForces},
     gravity::{Attitude, STANDARD_GRAVITY_MPS2},
     kernel::PowerKernel,
     motion::{Acceleration, Motion},
@@ -56,9 +57,35 @@ impl Manoeuvre {
         motor_temperature_c: Sides<f64>,
     ) -> Self {
         let forces = match model {
-            PowerModel::ForceBalance => balance::side_forces(robot, surface, &motion),
+            PowerModel::ForceBalance => {
+                let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
+                shape.side_forces(robot, surface)
+            }
             PowerModel::DogruMarques => PaperForces::new(robot, surface, &motion).side_forces(&motion),
         };
+        Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, model == PowerModel::DogruMarques)
+    }
+
+    /// Prepares the side forces of a motion from its shape, by the force balance.
+    ///
+    /// The shape must be that of this motion on this surface's slip-angle scale.
+    pub fn of_shape(
+        robot: &Robot,
+        surface: &Surface,
+        motion: Motion,
+        shape: &FrictionShape,
+        motor_temperature_c: Sides<f64>,
+    ) -> Self {
+        Manoeuvre::of_forces(robot, motion, shape.side_forces(robot, surface), motor_temperature_c, false)
+    }
+
+    fn of_forces(
+        robot: &Robot,
+        motion: Motion,
+        forces: SideForces,
+        motor_temperature_c: Sides<f64>,
+        printed: bool,
+    ) -> Self {
         let motors = robot
             .motor_sides()
             .zip(motor_temperature_c)
@@ -68,7 +95,6 @@ impl Manoeuvre {
         let least_k2 = motors.left.k2.min(motors.right.k2);
         let electronics =
             motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { robot.drive_electronics_w });
-        let printed = model == PowerModel::DogruMarques;
         let kernel = PowerKernel {
             friction_n: forces.friction_per_load.map(|f| weight_n * f),
             lifting_n: forces.gravity_share.map(|share| weight_n * share),

@@ -13,13 +13,17 @@ use crate::{Robot, robot::Surface};
 /// abreast of the centre of mass, as eq. 15 assumes, so the lever arms start there. α_s → 0 is the paper's
 /// Coulomb skid; α_s > 0 lets wide arcs skid less than tight ones, as rubber does.
 pub fn moment_per_load_m(robot: &Robot, surface: &Surface, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
-    let arm_m =
-        mobilized_arm_m(robot, speed_mps, yaw_rate_radps, |slip_angle_rad| saturation(slip_angle_rad, surface));
-    arm_m * surface.mu_skid * sign(yaw_rate_radps)
+    arm_m(robot, surface.slip_angle_scale_rad, speed_mps, yaw_rate_radps) * surface.mu_skid
+}
+
+/// The moment of [`moment_per_load_m`] over μ_S [m].
+pub(crate) fn arm_m(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
+    let law = |slip_angle_rad| saturation(slip_angle_rad, slip_angle_scale_rad);
+    mobilized_arm_m(robot, speed_mps, yaw_rate_radps, law) * sign(yaw_rate_radps)
 }
 
 /// Σ_i |x_i − δx| · n_i · σ(α_i) of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel
-/// feels at a slip angle, 0 to π/2 \[m\].
+/// feels at a slip angle, 0 to π/2 [m].
 pub fn mobilized_arm_m(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, mobilized: impl Fn(f64) -> f64) -> f64 {
     let com = &robot.center_of_mass;
     let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
@@ -41,8 +45,7 @@ pub fn mobilized_arm_m(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, mobil
 }
 
 /// tanh(α/α_s): how much of the full skid resistance a wheel feels, 0 to 1.
-fn saturation(slip_angle_rad: f64, surface: &Surface) -> f64 {
-    let scale_rad = surface.slip_angle_scale_rad;
+fn saturation(slip_angle_rad: f64, scale_rad: f64) -> f64 {
     if scale_rad == 0.0 { 1.0 } else { (slip_angle_rad / scale_rad).tanh() }
 }
 

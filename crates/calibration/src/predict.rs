@@ -1,0 +1,204 @@
+//! Predicted against recorded power, run by run.
+
+use model::{Power, Robot, Sides};
+use recording::{PowerForm, Recording};
+use serde::Serialize;
+
+use crate::{
+    Drives, Error,
+    drives::Row,
+    power::{PowerModel, seen_w},
+    score::Score,
+};
+
+/// How well one run, or all of them, was predicted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunPrediction {
+    /// Name of the run; `total` for all.
+    pub run: String,
+    /// Rows compared.
+    pub rows: usize,
+    /// Rows in which the wheels turned against each other and the robot did not; they are compared all the same.
+    pub stuck_rows: usize,
+    /// Mean of predicted less recorded power \[W\].
+    pub bias_w: f64,
+    /// Root mean square of predicted less recorded power \[W\].
+    pub rmse_w: f64,
+    /// R² of power by row; `null` where the recorded power is constant.
+    pub r2: Option<f64>,
+    /// Recorded energy \[J\].
+    pub recorded_j: f64,
+    /// Predicted energy \[J\].
+    pub predicted_j: f64,
+    /// Normalised error of eq. 17 over the one-second averages, each weighted by what was recorded, as in Table IV of Dogru &
+    /// Marques (2018) \[%\]: 100 Σ|predicted − recorded| / Σ|recorded|.
+    pub normalized_error_percent: Option<f64>,
+    /// Root mean square error of one-second averages of side current, where motor currents were recorded \[A\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rmse_a: Option<f64>,
+    /// R² of the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub r2_a: Option<f64>,
+}
+
+/// Predicted against recorded power of a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Prediction {
+    /// Run by run.
+    pub runs: Vec<RunPrediction>,
+    /// All of them.
+    pub total: RunPrediction,
+}
+
+/// A prediction with what it was made of, row by row.
+#[derive(Clone, Debug)]
+pub struct PredictedDrives {
+    /// The summary.
+    pub prediction: Prediction,
+    /// The drives compared.
+    pub drives: Drives,
+    /// Predicted power by row of the drives \[W\].
+    pub predicted_w: Vec<f64>,
+    /// Recorded power by row, NaN in gaps \[W\].
+    pub recorded_w: Vec<f64>,
+}
+
+/// Predicts the power of recorded drives from their wheel speeds and slopes.
+///
+/// Where motor currents were recorded, recorded power is that of eq. 2 at the force `force_n_per_a` times the current, with the
+/// sign of the predicted force; a side that the ground drives shows 1/k2² of the current for the same force.
+///
+/// # Errors
+/// [`Error::NothingToFit`], [`Error::UnknownSurface`] or [`Error::NoForcePerAmpere`].
+pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, Error> {
+    let drives = Drives::new(robot, recording)?;
+    let stuck: Vec<bool> = drives.rows.iter().map(|row| row.stuck).collect();
+    // A prediction is judged on all of a drive; being stuck is part of it.
+    let drives = drives.including_stuck();
+    let form = drives.form.unwrap_or(PowerForm::Battery);
+    let amperes = (form == PowerForm::MotorCurrents).then(|| amperes(robot)).transpose()?;
+    let seen = PowerModel::new(&drives).by_row(robot, |row, power| Seen::of(robot, form, amperes, row, power))?;
+    let recorded_w: Vec<f64> = (0..drives.rows.len())
+        .map(|i| {
+            let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
+            seen[i].recorded_w(robot, form, &drives.rows[i], [read(0), read(1)])
+        })
+        .collect();
+    let predicted_w: Vec<f64> = seen.iter().map(|s| s.watts.iter().sum()).collect();
+    let order = drives.judged_runs();
+    let judge = |run: Option<usize>| judge(&drives, run, &seen, &predicted_w, &recorded_w, &stuck);
+    let prediction =
+        Prediction { runs: order.iter().map(|run| judge(Some(*run))).collect(), total: judge(None) };
+    Ok(PredictedDrives { prediction, drives, predicted_w, recorded_w })
+}
+
+fn amperes(robot: &Robot) -> Result<Sides<f64>, Error> {
+    match (robot.motors.left.force_n_per_a, robot.motors.right.force_n_per_a) {
+        (Some(left), Some(right)) => Ok(Sides { left, right }),
+        _ => Err(Error::NoForcePerAmpere),
+    }
+}
+
+/// What a recording would show of one row.
+struct Seen {
+    /// Power by column \[W\].
+    watts: [f64; 2],
+    /// Currents by side; NaN where none were recorded \[A\].
+    current_a: Sides<f64>,
+    /// Signed newtons that an ampere of each side's reading stands for.
+    force_n_per_a: Sides<f64>,
+}
+
+impl Seen {
+    fn of(robot: &Robot, form: PowerForm, amperes: Option<Sides<f64>>, row: &Row, power: &Power) -> Seen {
+        let watts = seen_w(robot, form, row, power);
+        let nothing = Sides::both(f64::NAN);
+        let Some(amperes) = amperes else { return Seen { watts, current_a: nothing, force_n_per_a: nothing } };
+        let k2 = robot.motor_sides().map(|motor| motor.k2);
+        let sides = power.force_n.zip(row.rim_mps).zip(amperes.zip(k2));
+        let force_n_per_a = sides.map(|((force_n, rim_mps), (per_a, k2))| {
+            let gear = if force_n * rim_mps >= 0.0 { 1.0 } else { k2 * k2 };
+            per_a * gear * if force_n < 0.0 { -1.0 } else { 1.0 }
+        });
+        Seen { watts, current_a: power.force_n.zip(force_n_per_a).map(|(f, per_a)| f / per_a), force_n_per_a }
+    }
+
+    fn recorded_w(&self, robot: &Robot, form: PowerForm, row: &Row, read: [f64; 2]) -> f64 {
+        if form != PowerForm::MotorCurrents {
+            return read[0] + read[1];
+        }
+        let force_n = Sides { left: self.force_n_per_a.left * read[0], right: self.force_n_per_a.right * read[1] };
+        let power = model::Power { force_n, ..side_power(robot, row, force_n) };
+        seen_w(robot, form, row, &power).iter().sum()
+    }
+}
+
+/// Eq. 2 on both sides at known forces, through the kernel that computes all power.
+fn side_power(robot: &Robot, row: &Row, force_n: Sides<f64>) -> Power {
+    let motors = robot.motor_sides().zip(row.motor_c).map(|(m, c)| m.at_temperature(&robot.motors, c));
+    let kernel = model::PowerKernel {
+        friction_n: force_n,
+        lifting_n: Sides::both(0.0),
+        rim_speed_mps: row.rim_mps,
+        k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
+        driving: motors.map(|m| m.k2),
+        driven: motors.map(|m| robot.motors.regeneration / m.k2),
+        lift_w: 0.0,
+        floor: [0.0; 2],
+        slack_w: 0.0,
+        standing_w: 0.0,
+    };
+    let side_w = kernel.side_w(force_n);
+    Power { force_n, mechanical_w: force_n.zip(row.rim_mps).map(|(f, u)| f * u), side_w, bus_w: side_w.sum() }
+}
+
+fn judge(
+    drives: &Drives,
+    run: Option<usize>,
+    seen: &[Seen],
+    predicted_w: &[f64],
+    recorded_w: &[f64],
+    stuck: &[bool],
+) -> RunPrediction {
+    let wanted = |other: usize| run.is_none_or(|run| run == other);
+    let (mut predicted, mut recorded, mut stuck_rows) = (Vec::new(), Vec::new(), 0);
+    let (mut predicted_j, mut recorded_j) = (0.0, 0.0);
+    for stretch in drives.stretches.iter().filter(|stretch| wanted(stretch.run)) {
+        for i in stretch.rows.clone().filter(|&i| drives.rows[i].used) {
+            predicted.push(predicted_w[i]);
+            recorded.push(recorded_w[i]);
+            stuck_rows += usize::from(stuck[i]);
+            // Trapezes; a step counts where both of its ends are there.
+            if i > stretch.rows.start && drives.rows[i - 1].used {
+                predicted_j += drives.rows[i].step_s * (predicted_w[i] + predicted_w[i - 1]) / 2.0;
+                recorded_j += drives.rows[i].step_s * (recorded_w[i] + recorded_w[i - 1]) / 2.0;
+            }
+        }
+    }
+    let by_row = Score::of(&predicted, &recorded);
+    let averages = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let all = drives.averaged_by(values);
+        drives.averages.iter().zip(all).filter(|(a, _)| wanted(a.run)).map(|(_, v)| v).collect()
+    };
+    let (p, r) = (averages(&|i| predicted_w[i]), averages(&|i| recorded_w[i]));
+    let missed: f64 = p.iter().zip(&r).map(|(p, r)| (p - r).abs()).sum();
+    let amount: f64 = r.iter().map(|r| r.abs()).sum();
+    let current = (drives.form == Some(PowerForm::MotorCurrents)).then(|| {
+        let predicted_a = [averages(&|i| seen[i].current_a.left), averages(&|i| seen[i].current_a.right)].concat();
+        let recorded_a = [averages(&|i| drives.recorded[0][i]), averages(&|i| drives.recorded[1][i])].concat();
+        Score::of(&predicted_a, &recorded_a)
+    });
+    RunPrediction {
+        run: run.map_or_else(|| "total".into(), |run| drives.runs[run].clone()),
+        rows: predicted.len(),
+        stuck_rows,
+        bias_w: by_row.bias,
+        rmse_w: by_row.rmse,
+        r2: by_row.r2.is_finite().then_some(by_row.r2),
+        recorded_j,
+        predicted_j,
+        normalized_error_percent: (amount > 0.0).then(|| 100.0 * missed / amount),
+        rmse_a: current.map(|score| score.rmse),
+        r2_a: current.map(|score| score.r2),
+    }
+}
