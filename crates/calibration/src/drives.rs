@@ -136,7 +136,7 @@ impl Drives {
         for stretch in &drives.stretches {
             accelerations(&mut drives.rows[stretch.rows.clone()]);
         }
-        stuck::flag(&mut drives, robot.slip_track_m);
+        stuck::flag(&mut drives, robot);
         drives.average();
         if drives.averages.is_empty() {
             return Err(Error::NothingToFit { reason: "no second of it has speeds and power of wheels that hold the ground" });

@@ -41,6 +41,16 @@ pub enum Error {
     /// Motor currents need newtons per ampere to become watts.
     #[error("the recording tells power as motor currents: give `force_n_per_a` in motors.left and motors.right of the robot, or run `joulepath calibrate`, which finds it")]
     NoForcePerAmpere,
+    /// A cell of a lifting test that is not what it should be.
+    #[error("line {line}, column `{column}`: `{found}` will not do; the table needs the columns side (left or right), force_n, rim_speed_mps, power_w with numbers below them")]
+    Lift {
+        /// Line from 1.
+        line: usize,
+        /// The column.
+        column: String,
+        /// What stands there.
+        found: String,
+    },
     /// The method does not fit the recording.
     #[error("{method} needs {needs}")]
     Needs {

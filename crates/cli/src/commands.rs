@@ -1,6 +1,8 @@
 //! One file for each command: its arguments and what it does with them.
 
+pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod plan;
+pub(crate) mod predict;
 pub(crate) mod serve;

@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod picture;
+mod recorded;
 mod table;
 
 use std::process::ExitCode;
@@ -24,6 +25,10 @@ enum Command {
     Plan(commands::plan::Arguments),
     /// Compare the energy-minimal, shortest and fastest paths over a map
     Compare(commands::compare::Arguments),
+    /// Compare the power that recorded drives drew with what the robot's model says
+    Predict(commands::predict::Arguments),
+    /// Fit a robot to its recordings
+    Calibrate(commands::calibrate::Arguments),
     /// Serve the HTTP API
     Serve(commands::serve::Arguments),
     /// Start the service, compare paths over real terrain, and draw them
@@ -35,6 +40,8 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Predict(arguments) => commands::predict::run(&arguments),
+        Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Demo(arguments) => commands::demo::run(&arguments),
     };

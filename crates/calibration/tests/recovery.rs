@@ -1,0 +1,231 @@
+//! Known parameters are found again in simulated recordings, as often as the intervals promise.
+
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+
+use calibration::{
+    Drives, Options, calibrate,
+    power::{PowerModel, seen_w},
+    power_fit::fit_power,
+    predict,
+};
+use model::{Robot, builtin};
+use proptest::prelude::*;
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+use recording::{Channel, PowerForm, Recording, Run};
+
+const RUNS: usize = 6;
+const ROWS: usize = 400;
+
+/// A standard normal number, by Box and Muller.
+fn normal(random: &mut Pcg64Mcg) -> f64 {
+    let (a, b): (f64, f64) = (random.random(), random.random());
+    (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+}
+
+/// Drives with straights, arcs, spins, slopes and halts, without power yet.
+fn drives(random: &mut Pcg64Mcg, runs: usize, rows: usize) -> Recording {
+    let mut recording = Recording::default();
+    let mut channels: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
+    for run in 0..runs {
+        let start = recording.t_s.len();
+        let (mut left, mut right) = (0.0, 0.0);
+        let (mut to_left, mut to_right) = (0.0, 0.0);
+        let phase = random.random::<f64>() * std::f64::consts::TAU;
+        for row in 0..rows {
+            if row % 40 == 0 {
+                let speed: f64 = random.random_range(-0.4..0.9);
+                let turn: f64 = [0.0, random.random_range(-0.4..0.4)][random.random_range(0..2)];
+                let spin = random.random_range(0..4) == 0;
+                let halt = random.random_range(0..6) == 0;
+                let (v, d) = if halt { (0.0, 0.0) } else if spin { (0.0, turn) } else { (speed, turn) };
+                (to_left, to_right) = (v - d, v + d);
+            }
+            left += (to_left - left) * 0.3;
+            right += (to_right - right) * 0.3;
+            recording.t_s.push(row as f64 * 0.1);
+            let pitch = 0.15 * (phase + row as f64 * 0.013).sin();
+            for (channel, value) in
+                [(Channel::LeftSpeed, left), (Channel::RightSpeed, right), (Channel::Pitch, pitch)]
+            {
+                channels.entry(channel).or_default().push(value);
+            }
+        }
+        let rows = start..recording.t_s.len();
+        recording.runs.push(Run { name: format!("run-{run}"), rows, gap_s: 0.5, start_unix_s: None });
+    }
+    recording.channels = channels;
+    recording
+}
+
+/// The power that a robot would show on these drives, with noise of 2 W and 3 %.
+fn with_power(robot: &Robot, mut recording: Recording, random: &mut Pcg64Mcg) -> Recording {
+    for channel in [Channel::LeftPower, Channel::RightPower] {
+        recording.channels.insert(channel, vec![0.0; recording.t_s.len()]);
+    }
+    let prepared = Drives::new(robot, &recording).unwrap();
+    let seen = PowerModel::new(&prepared)
+        .by_row(robot, |row, power| seen_w(robot, PowerForm::Sides, row, power))
+        .unwrap();
+    for (side, channel) in [Channel::LeftPower, Channel::RightPower].into_iter().enumerate() {
+        let noisy = |watts: &[f64; 2]| watts[side] + (2.0 + 0.03 * watts[side].abs()) * normal(random);
+        recording.channels.insert(channel, seen.iter().map(noisy).collect());
+    }
+    recording
+}
+
+/// What the robot file says; the truth of each trial is drawn from it with its own uncertainty.
+fn file() -> Robot {
+    let mut robot = builtin::husky_a200();
+    robot.motors.regeneration = 0.5;
+    robot.drive_electronics_w = 20.0;
+    robot
+}
+
+fn truth(random: &mut Pcg64Mcg) -> Robot {
+    let mut robot = file();
+    let u = robot.uncertainty;
+    let mut vary = |value: &mut f64, relative: f64| *value *= 1.0 + relative * normal(random);
+    let marble = robot.surfaces.get_mut("marble").unwrap();
+    vary(&mut marble.mu_roll, u.mu_roll);
+    vary(&mut marble.mu_skid, u.mu_skid);
+    vary(&mut marble.slip_angle_scale_rad, 0.2);
+    for motor in [&mut robot.motors.left, &mut robot.motors.right] {
+        vary(&mut motor.k1_w_per_n2, u.k1);
+        vary(&mut motor.k2, u.k2);
+    }
+    vary(&mut robot.motors.regeneration, 0.3);
+    vary(&mut robot.drive_electronics_w, 0.3);
+    robot
+}
+
+fn value(robot: &Robot, name: &str) -> f64 {
+    let marble = &robot.surfaces["marble"];
+    match name {
+        "surfaces.marble.mu_roll" => marble.mu_roll,
+        "surfaces.marble.mu_skid" => marble.mu_skid,
+        "surfaces.marble.slip_angle_scale_rad" => marble.slip_angle_scale_rad,
+        "motors.left.k1_w_per_n2" => robot.motors.left.k1_w_per_n2,
+        "motors.left.k2" => robot.motors.left.k2,
+        "motors.right.k1_w_per_n2" => robot.motors.right.k1_w_per_n2,
+        "motors.right.k2" => robot.motors.right.k2,
+        "motors.regeneration" => robot.motors.regeneration,
+        "drive_electronics_w" => robot.drive_electronics_w,
+        other => unreachable!("{other}"),
+    }
+}
+
+#[test]
+fn determined_parameters_lie_in_their_95_per_cent_intervals_in_90_to_99_of_100_trials() {
+    const TRIALS: usize = 100;
+    let mut hits: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    for seed in 0..TRIALS {
+        let mut random = Pcg64Mcg::new(0x6a6f_756c_6500 + seed as u128);
+        let truth = truth(&mut random);
+        let plain = drives(&mut random, RUNS, ROWS);
+        let recording = with_power(&truth, plain, &mut random);
+        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
+        for i in 0..fit.values.len() {
+            if fit.determined(i) {
+                let name = &fit.parameters[i].name;
+                let [low, high] = fit.interval_95(i);
+                let entry = hits.entry(name.clone()).or_default();
+                entry.0 += usize::from((low..=high).contains(&value(&truth, name)));
+                entry.1 += 1;
+            }
+        }
+    }
+    println!("{hits:#?}");
+    let always: Vec<_> = hits.iter().filter(|(_, (_, trials))| *trials > TRIALS / 2).collect();
+    assert!(always.len() >= 6, "most parameters are determined by such drives: {hits:?}");
+    for (name, (inside, trials)) in always {
+        let share = *inside as f64 / *trials as f64;
+        assert!((0.90..=0.99).contains(&share), "{name}: inside in {inside} of {trials}");
+    }
+}
+
+#[test]
+fn a_calibrated_robot_predicts_better_than_its_file_and_level_straights_do_not_tell_skid() {
+    let mut random = Pcg64Mcg::new(7);
+    let mut truth = truth(&mut random);
+    truth.surfaces.get_mut("marble").unwrap().mu_roll = 0.09;
+    let plain = drives(&mut random, RUNS, ROWS);
+    let recording = with_power(&truth, plain, &mut random);
+    let found = calibrate(&file(), &recording, &Options::default()).unwrap();
+    let rmse_w = |robot: &Robot| predict(robot, &recording).unwrap().prediction.total.rmse_w;
+    assert!(rmse_w(&found.robot) < 0.7 * rmse_w(&file()), "{} {}", rmse_w(&found.robot), rmse_w(&file()));
+    assert!(found.held_out.unwrap().r2 > 0.97);
+
+    let mut straight = drives(&mut random, RUNS, ROWS);
+    let left = straight.channels[&Channel::LeftSpeed].clone();
+    straight.channels.insert(Channel::RightSpeed, left);
+    let recording = with_power(&truth, straight, &mut random);
+    let found = calibrate(&file(), &recording, &Options::default()).unwrap();
+    let skid = found.parameters.iter().find(|p| p.name.ends_with("mu_skid")).unwrap();
+    assert!(!skid.determined);
+    assert_eq!(skid.value, file().surfaces["marble"].mu_skid, "held at the file's value");
+    let track = found.parameters.iter().find(|p| p.name == "slip_track_m").unwrap();
+    assert!(!track.determined, "there was no gyroscope");
+}
+
+#[test]
+fn the_papers_procedure_finds_friction_of_the_printed_form_in_steady_stretches() {
+    let mut random = Pcg64Mcg::new(3);
+    let mut robot = builtin::husky_a200();
+    robot.surfaces.get_mut("marble").unwrap().slip_angle_scale_rad = 0.0;
+    let mut plain = drives(&mut random, 8, 800);
+    plain.channels.remove(&Channel::Pitch);
+    // Eq. 16 is the force of the outer side beyond R_c.
+    let left: Vec<f64> = plain.channels[&Channel::LeftSpeed].iter().map(|u| 0.5 + 0.2 * u).collect();
+    plain.channels.insert(Channel::LeftSpeed, left);
+    let right: Vec<f64> = plain.channels[&Channel::RightSpeed].iter().map(|u| 0.5 + 0.2 * u).collect();
+    plain.channels.insert(Channel::RightSpeed, right);
+    let recording = with_power(&robot, plain, &mut random);
+    let found = calibration::dogru_marques::calibrate(&robot, &recording).unwrap();
+    let value = |ending: &str| found.parameters.iter().find(|p| p.name.ends_with(ending)).unwrap().value;
+    assert!((value("marble.mu_skid") - 0.29).abs() < 0.05, "{}", value("marble.mu_skid"));
+    assert!((value("marble.mu_roll") - 0.063).abs() < 0.03, "{}", value("marble.mu_roll"));
+}
+
+#[test]
+fn what_cannot_be_used_is_refused_with_a_way_out() {
+    let mut random = Pcg64Mcg::new(1);
+    let plain = drives(&mut random, 1, 100);
+    let refused = calibrate(&file(), &plain, &Options::default()).unwrap_err().to_string();
+    assert!(refused.contains("power"), "{refused}");
+    let mut currents = plain.clone();
+    for channel in [Channel::LeftMotorCurrent, Channel::RightMotorCurrent] {
+        currents.channels.insert(channel, vec![3.0; 100]);
+    }
+    let refused = predict(&file(), &currents).unwrap_err().to_string();
+    assert!(refused.contains("force_n_per_a"), "{refused}");
+    let refused = calibrate(&file(), &currents, &Options::default()).unwrap_err().to_string();
+    assert!(refused.contains("two or more"), "{refused}");
+    let mut moss = with_power(&file(), plain, &mut random);
+    let index = (0..100).map(|row| u32::from(row >= 60)).collect();
+    moss.surface = Some(recording::Labels { names: vec!["marble".into(), "moss".into()], index });
+    let refused = predict(&file(), &moss).unwrap_err().to_string();
+    assert!(refused.contains("run-0") && refused.contains("row 61") && refused.contains("moss"), "{refused}");
+    assert!(refused.contains("marble"), "{refused}");
+    assert!(calibrate(&file(), &moss, &Options::default()).unwrap().robot.surfaces.contains_key("moss"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+    #[test]
+    fn a_robot_predicts_its_own_noiseless_power_exactly(seed in any::<u64>()) {
+        let mut random = Pcg64Mcg::new(u128::from(seed));
+        let truth = truth(&mut random);
+        let mut recording = drives(&mut random, 2, 120);
+        for channel in [Channel::LeftPower, Channel::RightPower] {
+            recording.channels.insert(channel, vec![0.0; recording.t_s.len()]);
+        }
+        let predicted = predict(&truth, &recording).unwrap();
+        recording.channels.insert(Channel::LeftPower, predicted.predicted_w.clone());
+        let again = predict(&truth, &recording).unwrap().prediction.total;
+        prop_assert!(again.rmse_w < 1e-9);
+        prop_assert!((again.predicted_j - again.recorded_j).abs() < 1e-6 * again.recorded_j.abs().max(1.0));
+    }
+}

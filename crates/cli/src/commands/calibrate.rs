@@ -1,0 +1,87 @@
+//! `joulepath calibrate`.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use calibration::{Calibration, Options, calibrate, lift};
+use clap::{Args, ValueEnum};
+
+use crate::{
+    failure::BadInput,
+    recorded::{Recorded, text},
+};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    recorded: Recorded,
+    /// Lifting test: a table of side, force_n, rim_speed_mps, power_w, which gives k1 and k2
+    #[arg(long)]
+    lift: Option<PathBuf>,
+    /// Which procedure: a fit of everything, or the paper's own
+    #[arg(long, value_enum, default_value = "fit")]
+    method: Method,
+    /// For motor currents: the surface that what belongs to the robot is fitted on
+    #[arg(long)]
+    reference_surface: Option<String>,
+    /// Where to write the fitted robot
+    #[arg(long)]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Method {
+    Fit,
+    DogruMarques,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let (mut robot, recording) = arguments.recorded.read()?;
+    if let Some(path) = &arguments.lift {
+        let name = path.display().to_string();
+        let lifts = lift::read(&text(&name)?).map_err(|error| BadInput(format!("{name}: {error}")))?;
+        robot = lift::apply(&robot, &lifts).map_err(|error| BadInput(format!("{name}: {error}")))?;
+    }
+    let found = match arguments.method {
+        Method::Fit => {
+            let options = Options { reference_surface: arguments.reference_surface.clone() };
+            calibrate(&robot, &recording, &options)
+        }
+        Method::DogruMarques => calibration::dogru_marques::calibrate(&robot, &recording),
+    };
+    let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
+    let file = serde_json::to_string_pretty(&found.robot)?;
+    let out = &arguments.out;
+    std::fs::write(out, file + "\n").with_context(|| format!("cannot write the robot to {}", out.display()))?;
+    if arguments.recorded.json {
+        println!("{}", serde_json::to_string(&found)?);
+    } else {
+        println!("{}", summary(&found));
+    }
+    Ok(())
+}
+
+fn summary(found: &Calibration) -> String {
+    let mut text = String::new();
+    for parameter in &found.parameters {
+        let interval = match parameter.interval_95 {
+            Some([low, high]) if parameter.determined => format!("{low:.4} to {high:.4}"),
+            _ => "not determined, held".to_owned(),
+        };
+        let unit = if parameter.unit == "1" { "" } else { &parameter.unit };
+        text += &format!("{:<42} {:>10.4} {unit:<7} {interval}\n", parameter.name, parameter.value);
+    }
+    if let Some(held_out) = &found.held_out {
+        text += &format!(
+            "\nheld-out runs: R² {:.3}, RMSE {:.1} W, energy within {:.1} % (median)",
+            held_out.r2, held_out.rmse_w, held_out.median_energy_error_percent
+        );
+        if let (Some(r2), Some(rmse_a)) = (held_out.r2_a, held_out.rmse_a) {
+            text += &format!("; side current R² {r2:.3}, RMSE {rmse_a:.2} A");
+        }
+    }
+    for note in &found.notes {
+        text += &format!("\n{note}");
+    }
+    text
+}

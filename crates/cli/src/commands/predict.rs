@@ -1,0 +1,58 @@
+//! `joulepath predict`.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use calibration::{RunPrediction, predict};
+use clap::Args;
+
+use crate::recorded::Recorded;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    recorded: Recorded,
+    /// Where to write a report with plots of what is left unexplained
+    #[arg(long)]
+    html: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let (robot, recording) = arguments.recorded.read()?;
+    let found = predict(&robot, &recording).map_err(|error| arguments.recorded.refuse(&error))?;
+    if let Some(path) = &arguments.html {
+        let page = calibration::report::html(&robot, &found);
+        std::fs::write(path, page).with_context(|| format!("cannot write the report to {}", path.display()))?;
+    }
+    if arguments.recorded.json {
+        println!("{}", serde_json::to_string(&found.prediction)?);
+        return Ok(());
+    }
+    let currents = found.prediction.total.r2_a.is_some();
+    println!(
+        "{:<20} {:>8} {:>9} {:>9} {:>7} {:>11} {:>11} {:>8}{}",
+        "run", "rows", "bias", "RMSE", "R²", "recorded", "predicted", "error",
+        if currents { "   R² (A)" } else { "" }
+    );
+    for run in found.prediction.runs.iter().chain([&found.prediction.total]) {
+        println!("{}", line(run));
+    }
+    Ok(())
+}
+
+fn line(run: &RunPrediction) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
+    let error_percent = 100.0 * (run.predicted_j / run.recorded_j - 1.0);
+    let current = run.r2_a.map_or(String::new(), |r2| format!(" {r2:>8.3}"));
+    format!(
+        "{:<20} {:>8} {:>7.1} W {:>7.1} W {:>7} {:>8.2} kJ {:>8.2} kJ {:>+6.1} %{current}",
+        run.run,
+        run.rows,
+        run.bias_w,
+        run.rmse_w,
+        number(run.r2),
+        run.recorded_j / 1e3,
+        run.predicted_j / 1e3,
+        error_percent
+    )
+}
