@@ -36,7 +36,9 @@ fn recording(rows: usize) -> Recording {
     let watts = predict(&robot, &recording).unwrap().predicted_w;
     for (channel, share) in [(Channel::LeftPower, 0.52), (Channel::RightPower, 0.48)] {
         let noise = wave(0.37);
-        recording.channels.insert(channel, watts.iter().enumerate().map(|(i, w)| share * w + 3.0 * noise(i)).collect());
+        recording
+            .channels
+            .insert(channel, watts.iter().enumerate().map(|(i, w)| share * w + 3.0 * noise(i)).collect());
     }
     recording
 }
@@ -57,6 +59,10 @@ fn main() {
         drop(predicted);
         let began = Instant::now();
         calibrate(&robot, &recording, &Options::default()).unwrap();
-        println!("calibrate {rows:>8} rows: {:.3} s, peak {:.0} MB", began.elapsed().as_secs_f64(), peak_mb());
+        println!(
+            "calibrate {rows:>8} rows: {:.3} s, peak {:.0} MB",
+            began.elapsed().as_secs_f64(),
+            peak_mb()
+        );
     }
 }

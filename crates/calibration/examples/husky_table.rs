@@ -33,15 +33,20 @@ fn main() {
     print_forces(&found);
     let (snow, _) = recording::read_paths(&[file("snow")], None).unwrap();
     print_snow(&found, &Drives::new(&found.robot, &snow).unwrap());
-    println!("\nPaper's Table IV, normalised errors of power: marble 3.29, 3.61 and 4.00 %, soil 11.85 % (fitted and judged on the same drives).");
-    println!("Parameters are held out by run. The structure of the model, the prior widths and the stuck rule were chosen on all of these runs.");
+    println!(
+        "\nPaper's Table IV, normalised errors of power: marble 3.29, 3.61 and 4.00 %, soil 11.85 % (fitted and judged on the same drives)."
+    );
+    println!(
+        "Parameters are held out by run. The structure of the model, the prior widths and the stuck rule were chosen on all of these runs."
+    );
 }
 
 fn print_surfaces(found: &CurrentCalibration) {
     println!("reference {}, slip track {:.3} m\n", found.reference, found.robot.slip_track_m);
     println!("surface     runs   rows  stuck   R² 1→2  R² 2→1  pooled  energy error, median (worst run)");
     for verdict in found.surfaces.iter().filter_map(|s| s.verdict.as_ref()) {
-        let worst = verdict.energy_error_percent.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap();
+        let worst =
+            verdict.energy_error_percent.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap();
         println!(
             "{:<11} {:>4} {:>6} {:>6}   {:>6.3}  {:>6.3}  {:>6.3}  {:>5.1} %  ({} {:+.1} %)",
             verdict.surface,
@@ -79,13 +84,20 @@ fn print_snow(found: &CurrentCalibration, snow: &Drives) {
     for (label, drives) in [("all rows", snow.clone().including_stuck()), ("rows not stuck", snow.clone())] {
         for (source, yaw) in [("wheels", YawSource::Wheels), ("gyroscope", YawSource::Gyroscope)] {
             let (v, _) = judge(&found.robot, &drives, &found.reference_halves, false, yaw);
-            println!("{label:<15} {source:<30} {:>10.3}  {:>6.3}  {:>6.3}", v.r2_a[0], v.r2_a[1], v.pooled_r2_a);
+            println!(
+                "{label:<15} {source:<30} {:>10.3}  {:>6.3}  {:>6.3}",
+                v.r2_a[0], v.r2_a[1], v.pooled_r2_a
+            );
         }
     }
     println!("runs on snow in which the wheels turn and the robot does not, share of rows:");
     for (run, name) in snow.runs.iter().enumerate() {
-        let rows: Vec<_> =
-            snow.stretches.iter().filter(|s| s.run == run).flat_map(|s| snow.rows[s.rows.clone()].iter()).collect();
+        let rows: Vec<_> = snow
+            .stretches
+            .iter()
+            .filter(|s| s.run == run)
+            .flat_map(|s| snow.rows[s.rows.clone()].iter())
+            .collect();
         let stuck = rows.iter().filter(|row| row.stuck).count();
         if rows.is_empty() {
             println!("  {name}: repeats the beginning of another run, left out");

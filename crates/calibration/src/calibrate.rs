@@ -9,7 +9,7 @@ use crate::{
     current_judge::SurfaceVerdict,
     folds,
     power::{PowerModel, seen_w},
-    power_fit::{PowerFit, fit_power},
+    power_fit::{PowerFit, fit_power, fit_thinned},
     score::{Score, median},
     stuck,
 };
@@ -136,8 +136,10 @@ fn fitted(found: &PowerFit, i: usize) -> FittedParameter {
 fn with_uncertainty(found: &PowerFit) -> Robot {
     let mut robot = found.robot.clone();
     let relative = |ending: &str, before: f64| {
-        let matching = (0..found.fit.values.len()).filter(|&i| found.fit.parameters[i].name.ends_with(ending));
-        let sigmas = matching.filter(|&i| found.fit.values[i] > 0.0).map(|i| found.fit.sigma(i) / found.fit.values[i]);
+        let matching =
+            (0..found.fit.values.len()).filter(|&i| found.fit.parameters[i].name.ends_with(ending));
+        let sigmas =
+            matching.filter(|&i| found.fit.values[i] > 0.0).map(|i| found.fit.sigma(i) / found.fit.values[i]);
         let largest = sigmas.fold(0.0, f64::max);
         if largest > 0.0 { largest.min(1.0) } else { before }
     };
@@ -157,7 +159,7 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
     let halves = folds::halves(drives);
     let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..2 {
-        let fitted = fit_power(robot, &halves[i])?.robot;
+        let fitted = fit_thinned(robot, &halves[i])?.robot;
         let mut judging = fitted.clone();
         let others = &halves[1 - i];
         for name in &others.surfaces {
@@ -167,9 +169,8 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
             }
         }
         let form = others.form.unwrap_or(PowerForm::Battery);
-        let seen = PowerModel::new(others).by_row(&judging, |row, power| {
-            seen_w(&judging, form, row, power).iter().sum::<f64>()
-        })?;
+        let seen = PowerModel::new(others)
+            .by_row(&judging, |row, power| seen_w(&judging, form, row, power).iter().sum::<f64>())?;
         let predicted = others.averaged(&seen);
         let recorded = others.averaged_by(|row| others.recorded.iter().map(|column| column[row]).sum());
         for run in others.judged_runs() {

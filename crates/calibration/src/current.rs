@@ -135,9 +135,14 @@ impl<'a> CurrentModel<'a> {
         for stretch in &drives.stretches {
             tilt_rad.extend(lag::tilt_error_rad(&drives.rows[stretch.rows.clone()], ATTITUDE_TIME_S));
         }
-        let load_shift_per_m = drives.rows.iter().map(|row| 2.0 * row.roll_rad.tan() / robot.track_m).collect();
-        let weight_along =
-            drives.rows.iter().zip(tilt_rad).map(|(row, error_rad)| (row.pitch_rad - error_rad).sin()).collect();
+        let load_shift_per_m =
+            drives.rows.iter().map(|row| 2.0 * row.roll_rad.tan() / robot.track_m).collect();
+        let weight_along = drives
+            .rows
+            .iter()
+            .zip(tilt_rad)
+            .map(|(row, error_rad)| (row.pitch_rad - error_rad).sin())
+            .collect();
         CurrentModel {
             robot,
             drives,
@@ -183,7 +188,9 @@ impl<'a> CurrentModel<'a> {
         let rolling = row.rim_mps.map(rolling::direction);
         Sides {
             left: ((p.rolling_a - p.split_a) * rolling.left - skid_a) * (1.0 - shift) - turning_a + common_a,
-            right: ((p.rolling_a + p.split_a) * rolling.right + skid_a) * (1.0 + shift) + turning_a + common_a,
+            right: ((p.rolling_a + p.split_a) * rolling.right + skid_a) * (1.0 + shift)
+                + turning_a
+                + common_a,
         }
     }
 
@@ -211,7 +218,9 @@ impl<'a> CurrentModel<'a> {
         let speed_mps = row.speed_mps();
         let by_wheels = (row.difference_mps() + p.wheel_mismatch * speed_mps) / self.slip_track_m;
         let (yaw_rate_radps, turnaround_radps) = match self.yaw {
-            YawSource::Gyroscope if row.yaw_rate_radps.is_finite() => (row.yaw_rate_radps, TURNAROUND_RADPS[1]),
+            YawSource::Gyroscope if row.yaw_rate_radps.is_finite() => {
+                (row.yaw_rate_radps, TURNAROUND_RADPS[1])
+            }
             _ => (by_wheels, TURNAROUND_RADPS[0]),
         };
         let law = |angle_rad| slip_law::peaked(angle_rad, p.slip_angle_scale_rad, p.slip_shape);

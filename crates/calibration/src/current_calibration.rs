@@ -82,7 +82,13 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         SurfaceFit { surface: drives.surfaces[i].clone(), fit, force_alone, verdict }
     });
     let surfaces = surfaces.collect();
-    Ok(CurrentCalibration { reference: drives.surfaces[reference].clone(), robot, reference_halves, surfaces, slip_track })
+    Ok(CurrentCalibration {
+        reference: drives.surfaces[reference].clone(),
+        robot,
+        reference_halves,
+        surfaces,
+        slip_track,
+    })
 }
 
 /// The surface with two runs or more whose lifting current is known best, relative to its size.
@@ -214,7 +220,8 @@ fn held_out(found: &CurrentCalibration) -> Option<HeldOut> {
         return None;
     }
     let runs: f64 = verdicts.iter().map(|v| v.runs as f64).sum();
-    let mean = |f: fn(&SurfaceVerdict) -> f64| verdicts.iter().map(|v| v.runs as f64 * f(v)).sum::<f64>() / runs;
+    let mean =
+        |f: fn(&SurfaceVerdict) -> f64| verdicts.iter().map(|v| v.runs as f64 * f(v)).sum::<f64>() / runs;
     let errors: Vec<f64> =
         verdicts.iter().flat_map(|v| v.energy_error_percent.iter().map(|(_, e)| e.abs())).collect();
     Some(HeldOut {

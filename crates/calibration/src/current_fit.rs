@@ -162,13 +162,20 @@ fn turns_both_ways(drives: &Drives) -> bool {
     both(|row| row.rim_mps.left) || both(|row| row.rim_mps.right)
 }
 
-fn solve(robot: &Robot, drives: &Drives, slip_track_m: f64, yaw: YawSource, parameters: &[Parameter]) -> CurrentFit {
+fn solve(
+    robot: &Robot,
+    drives: &Drives,
+    slip_track_m: f64,
+    yaw: YawSource,
+    parameters: &[Parameter],
+) -> CurrentFit {
     let idle_a = idle_a(drives);
     let model = CurrentModel::new(robot, drives, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
     let recorded: Vec<f64> = drives.recorded_averages();
     let block = folds::blocks(drives);
-    let problem = Problem { recorded: &recorded, block: &block, noise: NOISE_A, largest: NOISE_A, predict: &predict };
+    let problem =
+        Problem { recorded: &recorded, block: &block, noise: NOISE_A, largest: NOISE_A, predict: &predict };
     let fit = problem.solve(parameters);
     CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
 }
@@ -180,7 +187,8 @@ fn numbers(values: &[f64]) -> CurrentParameters {
 impl CurrentFit {
     /// One-second averages of the reading on other drives, left behind right \[A\].
     pub fn predict_a(&self, robot: &Robot, drives: &Drives) -> Vec<f64> {
-        CurrentModel::new(robot, drives, self.slip_track_m, self.yaw, self.idle_a).averages_a(&self.parameters)
+        CurrentModel::new(robot, drives, self.slip_track_m, self.yaw, self.idle_a)
+            .averages_a(&self.parameters)
     }
 
     /// c: force at the rim of a side per ampere, `m g / 2 G` \[N/A\].

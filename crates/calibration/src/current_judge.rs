@@ -99,7 +99,8 @@ impl Judged {
         let right = drives.averaged_by(|row| drives.rows[row].rim_mps.right.abs());
         let count = drives.averages.len();
         let watts = |amperes: &[f64]| -> Vec<f64> {
-            let motors = [robot.motors.left, robot.motors.right].map(|m| WarmMotor { k1_w_per_n2: m.k1_w_per_n2, k2: m.k2 });
+            let motors = [robot.motors.left, robot.motors.right]
+                .map(|m| WarmMotor { k1_w_per_n2: m.k1_w_per_n2, k2: m.k2 });
             let side = |i: usize, side: usize, rim_mps: f64| {
                 motors[side].printed_power_w(force_n_per_a * amperes[side * count + i], rim_mps)
             };

@@ -55,7 +55,10 @@ pub fn calibrate(robot: &Robot, recording: &Recording) -> Result<Calibration, Er
     let (fitted, mut parameters) = fit(&robot, &drives, &steady)?;
     parameters.insert(0, slip_track);
     let held_out = held_out(&robot, &drives, &steady);
-    let notes = vec![format!("{} steady seconds; errors are those of the paper's printed form on them", steady.len())];
+    let notes = vec![format!(
+        "{} steady seconds; errors are those of the paper's printed form on them",
+        steady.len()
+    )];
     Ok(Calibration { parameters, held_out, notes, robot: fitted })
 }
 
@@ -116,7 +119,8 @@ fn friction(robot: &Robot, steady: &Steady) -> Option<(FrictionSample, Option<f6
     };
     let rims = steady.motion.rim_speeds_mps;
     let left_is_outer = rims.left.abs() > rims.right.abs();
-    let slope = steady.attitude.weight_along() / steady.attitude.weight_normal() * steady.motion.speed_mps.signum();
+    let slope =
+        steady.attitude.weight_along() / steady.attitude.weight_normal() * steady.motion.speed_mps.signum();
     let com_m = robot.center_of_mass.left_m;
     let outward_m = if left_is_outer { com_m } else { -com_m };
     let (outer, inner) = (of(left_is_outer)?, of(!left_is_outer));
@@ -136,7 +140,8 @@ fn fit(robot: &Robot, drives: &Drives, steady: &[Steady]) -> Result<(Robot, Vec<
     let mut parameters = Vec::new();
     for (index, name) in drives.surfaces.iter().enumerate() {
         let here: Vec<_> = steady.iter().filter(|s| s.surface == index).collect();
-        let found: Vec<_> = here.iter().filter_map(|s| Some((s.motion.speed_mps.abs(), friction(robot, s)?))).collect();
+        let found: Vec<_> =
+            here.iter().filter_map(|s| Some((s.motion.speed_mps.abs(), friction(robot, s)?))).collect();
         if found.is_empty() {
             continue;
         }
@@ -147,7 +152,13 @@ fn fit(robot: &Robot, drives: &Drives, steady: &[Steady]) -> Result<(Robot, Vec<
         let by_speed = by_speed(robot, &found);
         let mut add = |field: &str, value: f64| {
             let name = format!("surfaces.{name}.{field}");
-            parameters.push(FittedParameter { name, value, unit: "1".into(), interval_95: None, determined: true });
+            parameters.push(FittedParameter {
+                name,
+                value,
+                unit: "1".into(),
+                interval_95: None,
+                determined: true,
+            });
         };
         add("mu_roll", mu_roll);
         add("mu_skid", mu_skid);
@@ -178,8 +189,11 @@ fn by_speed(robot: &Robot, found: &[(f64, (FrictionSample, Option<f64>))]) -> Ve
     steps.sort_unstable();
     steps.dedup();
     let row = |at: i64| {
-        let samples: Vec<FrictionSample> =
-            found.iter().filter(|(speed_mps, _)| step(*speed_mps) == at).map(|(_, (sample, _))| *sample).collect();
+        let samples: Vec<FrictionSample> = found
+            .iter()
+            .filter(|(speed_mps, _)| step(*speed_mps) == at)
+            .map(|(_, (sample, _))| *sample)
+            .collect();
         let (mu_roll, mu_skid) = rolling_and_skid(robot, &samples).ok()?;
         let possible = (-1.0..=2.0).contains(&mu_roll) && (0.0..=3.0).contains(&mu_skid);
         possible.then_some(SpeedFriction { speed_mps: at as f64 * SPEED_STEP_MPS, mu_roll, mu_skid })
@@ -192,13 +206,15 @@ fn held_out(robot: &Robot, drives: &Drives, steady: &[Steady]) -> Option<HeldOut
     let halves = folds::halves(drives).map(|half| half.judged_runs());
     let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..2 {
-        let part = |runs: &[usize]| steady.iter().filter(|s| runs.contains(&s.run)).cloned().collect::<Vec<_>>();
+        let part =
+            |runs: &[usize]| steady.iter().filter(|s| runs.contains(&s.run)).cloned().collect::<Vec<_>>();
         let (fitted, _) = fit(robot, drives, &part(&halves[i])).ok()?;
         for run in &halves[1 - i] {
             let (mut predicted_j, mut recorded_j) = (0.0, 0.0);
             for s in part(&[*run]) {
                 let surface = fitted.surfaces.get(&drives.surfaces[s.surface])?;
-                let power = model::power(PowerModel::DogruMarques, &fitted, surface, s.motion, s.attitude, s.motor_c);
+                let power =
+                    model::power(PowerModel::DogruMarques, &fitted, surface, s.motion, s.attitude, s.motor_c);
                 predicted_w.push(power.side_w.sum());
                 recorded_w.push(s.recorded_w.sum());
                 predicted_j += power.side_w.sum() * s.duration_s;

@@ -139,7 +139,9 @@ impl Drives {
         stuck::flag(&mut drives, robot);
         drives.average();
         if drives.averages.is_empty() {
-            return Err(Error::NothingToFit { reason: "no second of it has speeds and power of wheels that hold the ground" });
+            return Err(Error::NothingToFit {
+                reason: "no second of it has speeds and power of wheels that hold the ground",
+            });
         }
         Ok(drives)
     }
@@ -205,6 +207,24 @@ impl Drives {
 
     /// The stretches that satisfy a condition, with their rows and averages.
     pub fn select(&self, keep: impl Fn(&Stretch) -> bool) -> Drives {
+        self.only(self.stretches.iter().filter(|stretch| keep(stretch)).cloned())
+    }
+
+    /// About so many rows at most, in pieces spread evenly over all stretches.
+    pub fn thinned(&self, most_rows: usize) -> Drives {
+        /// Long enough that the cuts between pieces do not matter, short enough to meet every manoeuvre.
+        const PIECE_ROWS: usize = 512;
+        let every = self.rows.len().div_ceil(most_rows.max(1)).max(1);
+        let pieces = self.stretches.iter().flat_map(|stretch| {
+            stretch.rows.clone().step_by(PIECE_ROWS).map(|start| {
+                let rows = start..(start + PIECE_ROWS).min(stretch.rows.end);
+                Stretch { rows, ..stretch.clone() }
+            })
+        });
+        self.only(pieces.step_by(every))
+    }
+
+    fn only(&self, stretches: impl Iterator<Item = Stretch>) -> Drives {
         let mut part = Drives {
             runs: self.runs.clone(),
             surfaces: self.surfaces.clone(),
@@ -212,13 +232,13 @@ impl Drives {
             recorded: vec![Vec::new(); self.recorded.len()],
             ..Drives::default()
         };
-        for stretch in self.stretches.iter().filter(|stretch| keep(stretch)) {
+        for stretch in stretches {
             let start = part.rows.len();
             part.rows.extend_from_slice(&self.rows[stretch.rows.clone()]);
             for (to, from) in part.recorded.iter_mut().zip(&self.recorded) {
                 to.extend_from_slice(&from[stretch.rows.clone()]);
             }
-            part.stretches.push(Stretch { rows: start..part.rows.len(), ..stretch.clone() });
+            part.stretches.push(Stretch { rows: start..part.rows.len(), ..stretch });
         }
         part.average();
         part
@@ -312,7 +332,13 @@ fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]) -> Vec<Ro
 
 /// Runs whose wheel speeds and power repeat those of a longer or earlier run from its first row on.
 fn copies(recording: &Recording) -> Vec<usize> {
-    let channels = [Channel::LeftSpeed, Channel::RightSpeed, Channel::LeftMotorCurrent, Channel::Power, Channel::LeftPower];
+    let channels = [
+        Channel::LeftSpeed,
+        Channel::RightSpeed,
+        Channel::LeftMotorCurrent,
+        Channel::Power,
+        Channel::LeftPower,
+    ];
     let columns: Vec<&[f64]> = channels.iter().filter_map(|channel| recording.channel(*channel)).collect();
     let same = |a: usize, b: usize, count: usize| {
         columns.iter().all(|column| (0..count).all(|i| column[a + i].to_bits() == column[b + i].to_bits()))
@@ -320,7 +346,9 @@ fn copies(recording: &Recording) -> Vec<usize> {
     let repeats = |(i, run): &(usize, &recording::Run)| {
         recording.runs.iter().enumerate().any(|(j, other)| {
             let longer = (other.rows.len(), *i) > (run.rows.len(), j);
-            longer && run.rows.len() >= LEAST_COPY_ROWS && same(run.rows.start, other.rows.start, run.rows.len())
+            longer
+                && run.rows.len() >= LEAST_COPY_ROWS
+                && same(run.rows.start, other.rows.start, run.rows.len())
         })
     };
     recording.runs.iter().enumerate().filter(repeats).map(|(i, _)| i).collect()

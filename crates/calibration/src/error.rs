@@ -11,7 +11,9 @@ pub enum Error {
         reason: &'static str,
     },
     /// Runs are too few to hold one back.
-    #[error("surface `{surface}` was driven in {runs} run; record two or more, since runs that were not fitted are to judge the fit")]
+    #[error(
+        "surface `{surface}` was driven in {runs} run; record two or more, since runs that were not fitted are to judge the fit"
+    )]
     TooFewRuns {
         /// The surface.
         surface: String,
@@ -39,10 +41,14 @@ pub enum Error {
         found: Vec<String>,
     },
     /// Motor currents need newtons per ampere to become watts.
-    #[error("the recording tells power as motor currents: give `force_n_per_a` in motors.left and motors.right of the robot, or run `joulepath calibrate`, which finds it")]
+    #[error(
+        "the recording tells power as motor currents: give `force_n_per_a` in motors.left and motors.right of the robot, or run `joulepath calibrate`, which finds it"
+    )]
     NoForcePerAmpere,
     /// A cell of a lifting test that is not what it should be.
-    #[error("line {line}, column `{column}`: `{found}` will not do; the table needs the columns side (left or right), force_n, rim_speed_mps, power_w with numbers below them")]
+    #[error(
+        "line {line}, column `{column}`: `{found}` will not do; the table needs the columns side (left or right), force_n, rim_speed_mps, power_w with numbers below them"
+    )]
     Lift {
         /// Line from 1.
         line: usize,

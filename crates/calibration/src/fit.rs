@@ -66,8 +66,11 @@ impl Problem<'_> {
         };
         let residuals = |x: &[f64]| {
             let values = all(x);
-            let mut errors: Vec<f64> =
-                (self.predict)(&values).iter().zip(self.recorded).map(|(p, r)| huber(p - r, self.largest)).collect();
+            let mut errors: Vec<f64> = (self.predict)(&values)
+                .iter()
+                .zip(self.recorded)
+                .map(|(p, r)| huber(p - r, self.largest))
+                .collect();
             errors.extend(free.iter().filter_map(|&i| {
                 let [mean, sigma] = parameters[i].prior?;
                 Some(self.noise * (values[i] - mean) / sigma)
@@ -90,7 +93,11 @@ impl Problem<'_> {
 
     /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
     ///
-    /// The covariance stays that of all parameters, so that the uncertainty of what is held is in the intervals of the rest.
+    /// What the prior leaves open of a held parameter widens the intervals of the rest by as much as they lean on it:
+    ///
+    /// ```text
+    /// C = C_f + S diag(σ²) Sᵀ,   S = C_fh C_hh⁻¹ of the fit of all
+    /// ```
     pub fn solve_determined(&self, parameters: &[Parameter]) -> Fit {
         let free = self.solve(parameters);
         let mut again = parameters.to_vec();
@@ -102,15 +109,35 @@ impl Problem<'_> {
                 parameter.held = true;
             }
         }
-        if again.iter().zip(parameters).all(|(a, b)| a.held == b.held) {
+        let newly: Vec<usize> = (0..again.len()).filter(|&i| again[i].held && !parameters[i].held).collect();
+        if newly.is_empty() {
             return free;
         }
-        let held = self.solve(&again);
-        Fit { values: held.values, parameters: again, cost: held.cost, ..free }
+        let mut held = self.solve(&again);
+        let width = |i: usize| parameters[i].prior.map_or_else(|| free.sigma(i), |[_, sigma]| sigma);
+        let all = |a: &[usize], b: &[usize]| {
+            DMatrix::from_fn(a.len(), b.len(), |i, j| free.covariance[(a[i], b[j])])
+        };
+        let rest: Vec<usize> = (0..again.len()).filter(|&i| !again[i].held).collect();
+        if let Some(inverse) = all(&newly, &newly).try_inverse() {
+            let widths = DVector::from_iterator(newly.len(), newly.iter().map(|&i| width(i).powi(2)));
+            let leaning = all(&rest, &newly) * inverse;
+            let added = &leaning * DMatrix::from_diagonal(&widths) * leaning.transpose();
+            for (a, &i) in rest.iter().enumerate() {
+                for (b, &j) in rest.iter().enumerate() {
+                    held.covariance[(i, j)] += added[(a, b)];
+                }
+            }
+        }
+        // Held values keep the width of what was known before.
+        newly.iter().for_each(|&i| held.covariance[(i, i)] = width(i).powi(2));
+        held
     }
 
-    /// The sandwich `A⁻¹ B A⁻¹` with A = JᵀJ and B the sum of the outer products of each block's score, so errors may hang
-    /// together within a block and be larger in one than in another. A prior's row enters B with its own variance.
+    /// The larger, parameter by parameter, of two covariances: `noise² A⁻¹`, which trusts that errors are alike everywhere, and
+    /// the sandwich `A⁻¹ B A⁻¹`, which does not, but is itself uncertain where blocks are few. A = JᵀJ; B sums the outer products
+    /// of each block's score, so errors may hang together within a block; a prior's row enters it with its own variance.
+    /// Taking the larger is the advice of Angrist & Pischke (2009), *Mostly Harmless Econometrics*, §8.1.
     fn covariance(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> (DMatrix<f64>, f64) {
         let count = jacobian.ncols();
         let blocks = self.block.iter().max().map_or(0, |b| b + 1);
@@ -121,15 +148,26 @@ impl Problem<'_> {
             }
         }
         let mut middle = &scores * scores.transpose();
-        // Fitted errors are smaller than true ones by the freedom that the parameters took.
-        let freedom = blocks.saturating_sub(count).max(1) as f64;
-        middle *= blocks as f64 / freedom;
+        // Fitted errors are smaller than true ones: Cameron & Miller (2015), *A practitioner's guide to cluster-robust inference*, eq. 12.
+        let rows = self.recorded.len() as f64;
+        let scale =
+            blocks as f64 / (blocks as f64 - 1.0).max(1.0) * (rows - 1.0) / (rows - count as f64).max(1.0);
+        middle *= scale;
         for row in self.recorded.len()..errors.len() {
             let gradient = DVector::from_iterator(count, jacobian.row(row).iter().copied());
             middle += &gradient * gradient.transpose() * self.noise * self.noise;
         }
-        let bread = (jacobian.transpose() * jacobian).pseudo_inverse(1e-14).unwrap_or_else(|_| DMatrix::zeros(count, count));
-        (&bread * middle * &bread, student_975(freedom))
+        let bread = (jacobian.transpose() * jacobian)
+            .pseudo_inverse(1e-14)
+            .unwrap_or_else(|_| DMatrix::zeros(count, count));
+        let sandwich = &bread * middle * &bread;
+        let stretch = DVector::from_fn(count, |i, _| {
+            let trusting = self.noise * self.noise * bread[(i, i)];
+            if sandwich[(i, i)] > 0.0 { (trusting / sandwich[(i, i)]).max(1.0).sqrt() } else { 1.0 }
+        });
+        let covariance = DMatrix::from_fn(count, count, |i, j| sandwich[(i, j)] * stretch[i] * stretch[j]);
+        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
+        (covariance, student_975(blocks.saturating_sub(count) as f64))
     }
 }
 
@@ -191,11 +229,13 @@ mod tests {
     #[test]
     fn a_line_is_found_past_an_outlier_and_what_no_row_touches_keeps_its_prior() {
         let x: Vec<f64> = (0..40).map(f64::from).collect();
-        let mut recorded: Vec<f64> = x.iter().enumerate().map(|(i, x)| 1.0 + 0.2 * x + 0.01 * ((i * 7 % 5) as f64 - 2.0)).collect();
+        let mut recorded: Vec<f64> =
+            x.iter().enumerate().map(|(i, x)| 1.0 + 0.2 * x + 0.01 * ((i * 7 % 5) as f64 - 2.0)).collect();
         recorded[20] += 50.0;
         let block: Vec<usize> = (0..40).map(|i| i / 2).collect();
         let predict = |p: &[f64]| x.iter().map(|x| p[0] + p[1] * x).collect::<Vec<f64>>();
-        let problem = Problem { recorded: &recorded, block: &block, noise: 0.02, largest: 0.04, predict: &predict };
+        let problem =
+            Problem { recorded: &recorded, block: &block, noise: 0.02, largest: 0.04, predict: &predict };
         let fit = problem.solve(&[
             parameter("offset", None),
             parameter("slope", None),

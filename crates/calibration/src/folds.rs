@@ -11,7 +11,9 @@ pub(crate) const BLOCK_S: f64 = 15.0;
 pub fn halves(drives: &Drives) -> [Drives; 2] {
     let order = drives.judged_runs();
     let half = |parity: usize| {
-        drives.select(|stretch| order.iter().position(|run| *run == stretch.run).is_some_and(|i| i % 2 == parity))
+        drives.select(|stretch| {
+            order.iter().position(|run| *run == stretch.run).is_some_and(|i| i % 2 == parity)
+        })
     };
     [half(0), half(1)]
 }

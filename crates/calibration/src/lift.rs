@@ -81,9 +81,14 @@ mod tests {
         }
         let husky = model::builtin::husky_a200();
         let robot = apply(&husky, &read(&text).unwrap()).unwrap();
-        assert!((robot.motors.left.k1_w_per_n2 - 0.003).abs() < 1e-9 && (robot.motors.left.k2 - 1.8).abs() < 1e-9);
+        assert!(
+            (robot.motors.left.k1_w_per_n2 - 0.003).abs() < 1e-9 && (robot.motors.left.k2 - 1.8).abs() < 1e-9
+        );
         assert_eq!(robot.motors.right, husky.motors.right);
         let message = read(&(text + "left,60,fast,20\n")).unwrap_err().to_string();
-        assert!(message.contains("line 5") && message.contains("rim_speed_mps") && message.contains("fast"), "{message}");
+        assert!(
+            message.contains("line 5") && message.contains("rim_speed_mps") && message.contains("fast"),
+            "{message}"
+        );
     }
 }

@@ -32,7 +32,12 @@ impl<'a> PowerModel<'a> {
             let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
             [attitude.weight_normal(), attitude.weight_along()]
         };
-        PowerModel { drives, surface, grade: drives.rows.iter().map(grade).collect(), shapes: RefCell::default() }
+        PowerModel {
+            drives,
+            surface,
+            grade: drives.rows.iter().map(grade).collect(),
+            shapes: RefCell::default(),
+        }
     }
 
     /// Power of every row, reduced to what is wanted of it.
@@ -78,7 +83,8 @@ impl<'a> PowerModel<'a> {
     fn unknown_surface(&self, robot: &Robot, surface: usize) -> Error {
         let drives = self.drives;
         let place = drives.stretches.iter().find(|stretch| stretch.surface == surface);
-        let first_row = |run: usize| drives.stretches.iter().find(|s| s.run == run).map_or(0, |s| s.rows.start);
+        let first_row =
+            |run: usize| drives.stretches.iter().find(|s| s.run == run).map_or(0, |s| s.rows.start);
         Error::UnknownSurface {
             run: place.map(|s| drives.runs[s.run].clone()).unwrap_or_default(),
             row: place.map_or(1, |s| s.rows.start - first_row(s.run) + 1),

@@ -50,29 +50,44 @@ enum Field {
     Electronics,
 }
 
-/// Fits friction per surface, motor constants, regeneration and standing powers.
+/// Rows on which a first fit of a long recording is made, before all of them have their say.
+const FIRST_ROWS: usize = 50_000;
+
+/// Fits friction per surface, motor constants, regeneration and standing powers to all rows.
 ///
 /// # Errors
 /// [`Error::Robot`] where the result does not pass the robot's own checks.
 pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
+    if drives.rows.len() <= FIRST_ROWS {
+        return fit_from(robot, drives, None);
+    }
+    let first = fit_thinned(robot, drives)?;
+    fit_from(robot, drives, Some(&first.fit))
+}
+
+/// Fits to a part of a long recording, spread evenly over it: what judges other runs need not be as sharp as what is kept.
+///
+/// # Errors
+/// Those of [`fit_power`].
+pub fn fit_thinned(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
+    let part = drives.thinned(FIRST_ROWS);
+    if part.averages.is_empty() { fit_from(robot, drives, None) } else { fit_from(robot, &part, None) }
+}
+
+fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<PowerFit, Error> {
     let form = drives.form.unwrap_or(PowerForm::Battery);
-    let known = robot;
     let robot = with_new_ground(known, drives);
-    let (fields, parameters) = known_before(&robot, known, drives, form);
-    let model = PowerModel::new(drives);
-    let two_sided = drives.recorded.len() == 2;
-    let predict = |values: &[f64]| -> Vec<f64> {
-        let candidate = applied(&robot, &fields, values);
-        let Ok(seen) = model.by_row(&candidate, |row, power| seen_w(&candidate, form, row, power)) else {
-            return Vec::new();
-        };
-        let mut averages = drives.averaged_by(|row| seen[row][0]);
-        if two_sided {
-            averages.extend(drives.averaged_by(|row| seen[row][1]));
+    let (fields, mut parameters) = known_before(&robot, known, drives, form);
+    for parameter in &mut parameters {
+        let earlier =
+            before.and_then(|fit| Some((fit, fit.parameters.iter().position(|p| p.name == parameter.name)?)));
+        if let Some((fit, i)) = earlier {
+            parameter.start = fit.values[i];
         }
-        averages
-    };
+    }
+    let model = PowerModel::new(drives);
     model.by_row(&robot, |_, _| ())?;
+    let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);
     let problem = |noise: Noise| Problem {
@@ -83,14 +98,28 @@ pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
         predict: &predict,
     };
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-    let rough = problem(Noise::of(&predict(&start), &recorded, drives)).solve(&parameters);
-    let noise = Noise::of(&predict(&rough.values), &recorded, drives);
-    let warm: Vec<Parameter> =
-        parameters.iter().zip(&rough.values).map(|(p, v)| Parameter { start: *v, ..p.clone() }).collect();
-    let fit = problem(noise).solve_determined(&warm);
+    let mut noise = Noise::of(&predict(&start), &recorded, drives);
+    if before.is_none() {
+        let rough = problem(noise).solve(&parameters);
+        noise = Noise::of(&predict(&rough.values), &recorded, drives);
+        parameters.iter_mut().zip(&rough.values).for_each(|(parameter, value)| parameter.start = *value);
+    }
+    let fit = problem(noise).solve_determined(&parameters);
     let fitted = applied(&robot, &fields, &fit.values);
     fitted.validate()?;
     Ok(PowerFit { robot: fitted, fit })
+}
+
+/// One-second averages of what a recording of a candidate would show, column behind column.
+fn predicted(model: &PowerModel<'_>, candidate: &Robot, drives: &Drives, form: PowerForm) -> Vec<f64> {
+    let Ok(seen) = model.by_row(candidate, |row, power| seen_w(candidate, form, row, power)) else {
+        return Vec::new();
+    };
+    let mut averages = drives.averaged_by(|row| seen[row][0]);
+    if drives.recorded.len() == 2 {
+        averages.extend(drives.averaged_by(|row| seen[row][1]));
+    }
+    averages
 }
 
 /// How far errors scatter, and by how much their hanging together widens what follows from them.
@@ -137,12 +166,18 @@ fn with_new_ground(robot: &Robot, drives: &Drives) -> Robot {
 }
 
 /// What the robot file says of each field, and how surely; ground that it did not know has its own widths.
-fn known_before(robot: &Robot, known: &Robot, drives: &Drives, form: PowerForm) -> (Vec<Field>, Vec<Parameter>) {
+fn known_before(
+    robot: &Robot,
+    known: &Robot,
+    drives: &Drives,
+    form: PowerForm,
+) -> (Vec<Field>, Vec<Parameter>) {
     let mut lines = Vec::new();
-    let mut add = |field: Field, name: String, unit: &'static str, mean: f64, sigma: f64, bounds: [f64; 2]| {
-        let prior = Some([mean, sigma]);
-        lines.push((field, Parameter { name, unit, start: mean, bounds, prior, held: false }));
-    };
+    let mut add =
+        |field: Field, name: String, unit: &'static str, mean: f64, sigma: f64, bounds: [f64; 2]| {
+            let prior = Some([mean, sigma]);
+            lines.push((field, Parameter { name, unit, start: mean, bounds, prior, held: false }));
+        };
     let u = &robot.uncertainty;
     let driven = |name: &String| drives.stretches.iter().any(|s| drives.surfaces[s.surface] == *name);
     for name in drives.surfaces.iter().filter(|name| driven(name)) {
@@ -150,13 +185,37 @@ fn known_before(robot: &Robot, known: &Robot, drives: &Drives, form: PowerForm) 
         let new = !known.surfaces.contains_key(name);
         let sigma = |i: usize, mean: f64, relative: f64| if new { NEW_GROUND[i][1] } else { relative * mean };
         let at = |field: &str| format!("surfaces.{name}.{field}");
-        add(Field::MuRoll(name.clone()), at("mu_roll"), "1", s.mu_roll, sigma(0, s.mu_roll, u.mu_roll), [0.0, 1.0]);
-        add(Field::MuSkid(name.clone()), at("mu_skid"), "1", s.mu_skid, sigma(1, s.mu_skid, u.mu_skid), [0.0, 2.0]);
+        add(
+            Field::MuRoll(name.clone()),
+            at("mu_roll"),
+            "1",
+            s.mu_roll,
+            sigma(0, s.mu_roll, u.mu_roll),
+            [0.0, 1.0],
+        );
+        add(
+            Field::MuSkid(name.clone()),
+            at("mu_skid"),
+            "1",
+            s.mu_skid,
+            sigma(1, s.mu_skid, u.mu_skid),
+            [0.0, 2.0],
+        );
         let scale_rad = s.slip_angle_scale_rad.max(0.02);
         let scale_sigma_rad = sigma(2, scale_rad, SCALE_SIGMA);
-        add(Field::Scale(name.clone()), at("slip_angle_scale_rad"), "rad", scale_rad, scale_sigma_rad, [0.01, 1.5]);
+        add(
+            Field::Scale(name.clone()),
+            at("slip_angle_scale_rad"),
+            "rad",
+            scale_rad,
+            scale_sigma_rad,
+            [0.01, 1.5],
+        );
     }
-    let sides = [("left", robot.motors.left, Field::LeftK1, Field::LeftK2), ("right", robot.motors.right, Field::RightK1, Field::RightK2)];
+    let sides = [
+        ("left", robot.motors.left, Field::LeftK1, Field::LeftK2),
+        ("right", robot.motors.right, Field::RightK1, Field::RightK2),
+    ];
     for (side, Motor { k1_w_per_n2: k1, k2, .. }, first, second) in sides {
         let name = format!("motors.{side}.k1_w_per_n2");
         add(first, name, "W/N²", k1, u.k1 * k1, [0.2 * k1, 5.0 * k1 + 1e-9]);

@@ -77,7 +77,8 @@ pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, 
     let drives = drives.including_stuck();
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let amperes = (form == PowerForm::MotorCurrents).then(|| amperes(robot)).transpose()?;
-    let seen = PowerModel::new(&drives).by_row(robot, |row, power| Seen::of(robot, form, amperes, row, power))?;
+    let seen =
+        PowerModel::new(&drives).by_row(robot, |row, power| Seen::of(robot, form, amperes, row, power))?;
     let recorded_w: Vec<f64> = (0..drives.rows.len())
         .map(|i| {
             let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
@@ -86,7 +87,8 @@ pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, 
         .collect();
     let predicted_w: Vec<f64> = seen.iter().map(|s| s.watts.iter().sum()).collect();
     let order = drives.judged_runs();
-    let judge = |run: Option<usize>| judge(&drives, run, &seen, &predicted_w, &recorded_w, &stuck);
+    let averages = Averages::of(&drives, &seen, &predicted_w, &recorded_w);
+    let judge = |run: Option<usize>| judge(&drives, run, &predicted_w, &recorded_w, &stuck, &averages);
     let prediction =
         Prediction { runs: order.iter().map(|run| judge(Some(*run))).collect(), total: judge(None) };
     Ok(PredictedDrives { prediction, drives, predicted_w, recorded_w })
@@ -113,7 +115,9 @@ impl Seen {
     fn of(robot: &Robot, form: PowerForm, amperes: Option<Sides<f64>>, row: &Row, power: &Power) -> Seen {
         let watts = seen_w(robot, form, row, power);
         let nothing = Sides::both(f64::NAN);
-        let Some(amperes) = amperes else { return Seen { watts, current_a: nothing, force_n_per_a: nothing } };
+        let Some(amperes) = amperes else {
+            return Seen { watts, current_a: nothing, force_n_per_a: nothing };
+        };
         let k2 = robot.motor_sides().map(|motor| motor.k2);
         let sides = power.force_n.zip(row.rim_mps).zip(amperes.zip(k2));
         let force_n_per_a = sides.map(|((force_n, rim_mps), (per_a, k2))| {
@@ -127,7 +131,8 @@ impl Seen {
         if form != PowerForm::MotorCurrents {
             return read[0] + read[1];
         }
-        let force_n = Sides { left: self.force_n_per_a.left * read[0], right: self.force_n_per_a.right * read[1] };
+        let force_n =
+            Sides { left: self.force_n_per_a.left * read[0], right: self.force_n_per_a.right * read[1] };
         let power = model::Power { force_n, ..side_power(robot, row, force_n) };
         seen_w(robot, form, row, &power).iter().sum()
     }
@@ -152,13 +157,40 @@ fn side_power(robot: &Robot, row: &Row, force_n: Sides<f64>) -> Power {
     Power { force_n, mechanical_w: force_n.zip(row.rim_mps).map(|(f, u)| f * u), side_w, bus_w: side_w.sum() }
 }
 
+/// One-second averages: predicted and recorded power, and pairs of predicted and recorded current by side.
+struct Averages {
+    predicted_w: Vec<f64>,
+    recorded_w: Vec<f64>,
+    currents_a: Vec<[Vec<f64>; 2]>,
+}
+
+impl Averages {
+    fn of(drives: &Drives, seen: &[Seen], predicted_w: &[f64], recorded_w: &[f64]) -> Averages {
+        let mut currents_a = Vec::new();
+        if drives.form == Some(PowerForm::MotorCurrents) {
+            let left = drives.averaged_by(|i| seen[i].current_a.left);
+            let right = drives.averaged_by(|i| seen[i].current_a.right);
+            currents_a = [left, right]
+                .into_iter()
+                .zip(&drives.recorded)
+                .map(|(p, r)| [p, drives.averaged(r)])
+                .collect();
+        }
+        Averages {
+            predicted_w: drives.averaged(predicted_w),
+            recorded_w: drives.averaged(recorded_w),
+            currents_a,
+        }
+    }
+}
+
 fn judge(
     drives: &Drives,
     run: Option<usize>,
-    seen: &[Seen],
     predicted_w: &[f64],
     recorded_w: &[f64],
     stuck: &[bool],
+    averages: &Averages,
 ) -> RunPrediction {
     let wanted = |other: usize| run.is_none_or(|run| run == other);
     let (mut predicted, mut recorded, mut stuck_rows) = (Vec::new(), Vec::new(), 0);
@@ -176,17 +208,16 @@ fn judge(
         }
     }
     let by_row = Score::of(&predicted, &recorded);
-    let averages = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let all = drives.averaged_by(values);
-        drives.averages.iter().zip(all).filter(|(a, _)| wanted(a.run)).map(|(_, v)| v).collect()
-    };
-    let (p, r) = (averages(&|i| predicted_w[i]), averages(&|i| recorded_w[i]));
-    let missed: f64 = p.iter().zip(&r).map(|(p, r)| (p - r).abs()).sum();
-    let amount: f64 = r.iter().map(|r| r.abs()).sum();
-    let current = (drives.form == Some(PowerForm::MotorCurrents)).then(|| {
-        let predicted_a = [averages(&|i| seen[i].current_a.left), averages(&|i| seen[i].current_a.right)].concat();
-        let recorded_a = [averages(&|i| drives.recorded[0][i]), averages(&|i| drives.recorded[1][i])].concat();
-        Score::of(&predicted_a, &recorded_a)
+    let places: Vec<usize> = (0..drives.averages.len()).filter(|&i| wanted(drives.averages[i].run)).collect();
+    let missed = |&i: &usize| (averages.predicted_w[i] - averages.recorded_w[i]).abs();
+    let missed: f64 = places.iter().map(missed).sum();
+    let amount: f64 = places.iter().map(|&i| averages.recorded_w[i].abs()).sum();
+    let current = (!averages.currents_a.is_empty()).then(|| {
+        let column = |which: usize| {
+            let sides = averages.currents_a.iter();
+            sides.flat_map(|side| places.iter().map(move |&i| side[which][i])).collect::<Vec<f64>>()
+        };
+        Score::of(&column(0), &column(1))
     });
     RunPrediction {
         run: run.map_or_else(|| "total".into(), |run| drives.runs[run].clone()),

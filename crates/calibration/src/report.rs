@@ -22,8 +22,12 @@ pub fn html(robot: &Robot, found: &PredictedDrives) -> String {
     let yaw_radps = mean(&|i| drives.rows[i].difference_mps() / robot.slip_track_m);
     // Beyond 10 m an arc is as good as straight for a robot of half a metre; the axis ends there.
     let widest_m = 20.0 * robot.track_m;
-    let radius_m: Vec<f64> =
-        speed_mps.iter().zip(&yaw_radps).map(|(v, w)| (v / w).abs().min(widest_m)).map(|r| if r.is_nan() { 0.0 } else { r }).collect();
+    let radius_m: Vec<f64> = speed_mps
+        .iter()
+        .zip(&yaw_radps)
+        .map(|(v, w)| (v / w).abs().min(widest_m))
+        .map(|r| if r.is_nan() { 0.0 } else { r })
+        .collect();
     let pitch_rad = mean(&|i| drives.rows[i].pitch_rad);
     let surface: Vec<f64> = drives.averages.iter().map(|a| a.surface as f64).collect();
     let mut elapsed_s = 0.0;
@@ -35,7 +39,8 @@ pub fn html(robot: &Robot, found: &PredictedDrives) -> String {
             elapsed_s
         })
         .collect();
-    let surfaces: Vec<String> = drives.surfaces.iter().enumerate().map(|(i, name)| format!("{i} {}", escaped(name))).collect();
+    let surfaces: Vec<String> =
+        drives.surfaces.iter().enumerate().map(|(i, name)| format!("{i} {}", escaped(name))).collect();
     let plots = [
         ("time driven [s], runs behind one another", &time_s),
         ("speed v [m/s]", &speed_mps),
@@ -58,7 +63,8 @@ pub fn html(robot: &Robot, found: &PredictedDrives) -> String {
 fn table(found: &PredictedDrives) -> String {
     let mut rows = String::new();
     for run in found.prediction.runs.iter().chain([&found.prediction.total]) {
-        let number = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+        let number =
+            |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
         let _ = write!(
             rows,
             "<tr><td>{}<td>{}<td>{}<td>{:.1}<td>{:.1}<td>{}<td>{:.2}<td>{:.2}<td>{}",

@@ -45,7 +45,10 @@ fn held_out_runs_of_the_real_husky_reach_the_targets_and_force_per_ampere_agrees
     }
     let force = |name: &str| {
         let surface = found.surfaces.iter().find(|s| s.surface == name).unwrap();
-        (surface.force_alone.force_n_per_a(&found.robot), surface.force_alone.force_interval_n_per_a(&found.robot))
+        (
+            surface.force_alone.force_n_per_a(&found.robot),
+            surface.force_alone.force_interval_n_per_a(&found.robot),
+        )
     };
     let (flooring, asphalt) = (force("flooring"), force("asphalt"));
     assert!(asphalt.1[0] < flooring.0 && flooring.0 < asphalt.1[1], "{flooring:?} {asphalt:?}");
@@ -59,10 +62,15 @@ fn held_out_runs_of_the_real_husky_reach_the_targets_and_force_per_ampere_agrees
     assert!(gyroscope > wheels + 0.05, "the measured yaw rate explains more of snow: {gyroscope} {wheels}");
     let share = |name: &str| {
         let run = snow.runs.iter().position(|run| run == name).unwrap();
-        let rows = snow.stretches.iter().filter(|s| s.run == run).flat_map(|s| snow.rows[s.rows.clone()].iter());
-        let (stuck, all) = rows.fold((0.0, 0.0), |(stuck, all), row| (stuck + f64::from(u8::from(row.stuck)), all + 1.0));
+        let rows =
+            snow.stretches.iter().filter(|s| s.run == run).flat_map(|s| snow.rows[s.rows.clone()].iter());
+        let (stuck, all) =
+            rows.fold((0.0, 0.0), |(stuck, all), row| (stuck + f64::from(u8::from(row.stuck)), all + 1.0));
         stuck / all
     };
     assert!(share("snow-02") > 0.9 && share("snow-04") > 0.9 && share("snow-00") < 0.05);
-    assert!(share("snow-12").is_nan(), "snow-12 repeats the beginning of snow-13 and must not judge what snow-13 fitted");
+    assert!(
+        share("snow-12").is_nan(),
+        "snow-12 repeats the beginning of snow-13 and must not judge what snow-13 fitted"
+    );
 }

@@ -10,13 +10,13 @@ use calibration::{
     power_fit::fit_power,
     predict,
 };
-use model::{Robot, builtin};
+use model::{Attitude, Motion, Robot, Sides, builtin, power};
 use proptest::prelude::*;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use recording::{Channel, PowerForm, Recording, Run};
 
-const RUNS: usize = 6;
+const RUNS: usize = 12;
 const ROWS: usize = 400;
 
 /// A standard normal number, by Box and Muller.
@@ -40,7 +40,13 @@ fn drives(random: &mut Pcg64Mcg, runs: usize, rows: usize) -> Recording {
                 let turn: f64 = [0.0, random.random_range(-0.4..0.4)][random.random_range(0..2)];
                 let spin = random.random_range(0..4) == 0;
                 let halt = random.random_range(0..6) == 0;
-                let (v, d) = if halt { (0.0, 0.0) } else if spin { (0.0, turn) } else { (speed, turn) };
+                let (v, d) = if halt {
+                    (0.0, 0.0)
+                } else if spin {
+                    (0.0, turn)
+                } else {
+                    (speed, turn)
+                };
                 (to_left, to_right) = (v - d, v + d);
             }
             left += (to_left - left) * 0.3;
@@ -122,7 +128,9 @@ fn determined_parameters_lie_in_their_95_per_cent_intervals_in_90_to_99_of_100_t
     const TRIALS: usize = 100;
     let mut hits: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for seed in 0..TRIALS {
-        let mut random = Pcg64Mcg::new(0x6a6f_756c_6500 + seed as u128);
+        // Neighbouring states of this generator begin alike, so seeds are spread by an odd number (2^128 over the golden ratio).
+        let mut random =
+            Pcg64Mcg::new((2 * seed as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
         let truth = truth(&mut random);
         let plain = drives(&mut random, RUNS, ROWS);
         let recording = with_power(&truth, plain, &mut random);
@@ -140,9 +148,12 @@ fn determined_parameters_lie_in_their_95_per_cent_intervals_in_90_to_99_of_100_t
     println!("{hits:#?}");
     let always: Vec<_> = hits.iter().filter(|(_, (_, trials))| *trials > TRIALS / 2).collect();
     assert!(always.len() >= 6, "most parameters are determined by such drives: {hits:?}");
+    let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
+    let share = inside as f64 / trials as f64;
+    assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
     for (name, (inside, trials)) in always {
-        let share = *inside as f64 / *trials as f64;
-        assert!((0.90..=0.99).contains(&share), "{name}: inside in {inside} of {trials}");
+        // Of 100 trials at 95 %, fewer than 88 happen once in 300: one parameter alone may not be far below the promise.
+        assert!(*inside as f64 >= 0.88 * *trials as f64, "{name}: inside in {inside} of {trials}");
     }
 }
 
@@ -171,22 +182,28 @@ fn a_calibrated_robot_predicts_better_than_its_file_and_level_straights_do_not_t
 }
 
 #[test]
-fn the_papers_procedure_finds_friction_of_the_printed_form_in_steady_stretches() {
+fn the_papers_procedure_gives_the_coefficients_of_the_printed_form_back() {
     let mut random = Pcg64Mcg::new(3);
-    let mut robot = builtin::husky_a200();
-    robot.surfaces.get_mut("marble").unwrap().slip_angle_scale_rad = 0.0;
-    let mut plain = drives(&mut random, 8, 800);
-    plain.channels.remove(&Channel::Pitch);
-    // Eq. 16 is the force of the outer side beyond R_c.
-    let left: Vec<f64> = plain.channels[&Channel::LeftSpeed].iter().map(|u| 0.5 + 0.2 * u).collect();
-    plain.channels.insert(Channel::LeftSpeed, left);
-    let right: Vec<f64> = plain.channels[&Channel::RightSpeed].iter().map(|u| 0.5 + 0.2 * u).collect();
-    plain.channels.insert(Channel::RightSpeed, right);
-    let recording = with_power(&robot, plain, &mut random);
+    let robot = builtin::husky_a200();
+    let marble = &robot.surfaces["marble"];
+    let mut recording = drives(&mut random, 8, 800);
+    recording.channels.remove(&Channel::Pitch);
+    let speeds =
+        [Channel::LeftSpeed, Channel::RightSpeed].map(|channel| recording.channels[&channel].clone());
+    let watts = speeds[0].iter().zip(&speeds[1]).map(|(left, right)| {
+        let motion = Motion::of_wheels(&robot, Sides { left: *left, right: *right });
+        power(model::PowerModel::DogruMarques, &robot, marble, motion, Attitude::LEVEL, Sides::both(20.0))
+            .side_w
+    });
+    let (left, right): (Vec<f64>, Vec<f64>) =
+        watts.map(|w| (w.left + normal(&mut random), w.right + normal(&mut random))).unzip();
+    recording.channels.insert(Channel::LeftPower, left);
+    recording.channels.insert(Channel::RightPower, right);
     let found = calibration::dogru_marques::calibrate(&robot, &recording).unwrap();
     let value = |ending: &str| found.parameters.iter().find(|p| p.name.ends_with(ending)).unwrap().value;
-    assert!((value("marble.mu_skid") - 0.29).abs() < 0.05, "{}", value("marble.mu_skid"));
-    assert!((value("marble.mu_roll") - 0.063).abs() < 0.03, "{}", value("marble.mu_roll"));
+    assert!((value("marble.mu_skid") - marble.mu_skid).abs() < 0.02, "{}", value("marble.mu_skid"));
+    assert!((value("marble.mu_roll") - marble.mu_roll).abs() < 0.02, "{}", value("marble.mu_roll"));
+    assert!(found.held_out.unwrap().r2 > 0.9);
 }
 
 #[test]

@@ -33,8 +33,8 @@ impl Recorded {
             let text = text(&path.display().to_string())?;
             Map::from_json(&text).map_err(|error| BadInput(format!("{}: {error}", path.display())))
         });
-        let (recording, reports) =
-            read_paths(&self.recording, map.transpose()?.as_ref()).map_err(|error| BadInput(error.to_string()))?;
+        let (recording, reports) = read_paths(&self.recording, map.transpose()?.as_ref())
+            .map_err(|error| BadInput(error.to_string()))?;
         for report in reports {
             if !report.aside.is_empty() {
                 eprintln!("{}: kept aside: {}", report.source, report.aside.join(", "));

@@ -24,7 +24,12 @@ pub(crate) fn arm_m(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, ya
 
 /// Σ_i |x_i − δx| · n_i · σ(α_i) of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel
 /// feels at a slip angle, 0 to π/2 [m].
-pub fn mobilized_arm_m(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, mobilized: impl Fn(f64) -> f64) -> f64 {
+pub fn mobilized_arm_m(
+    robot: &Robot,
+    speed_mps: f64,
+    yaw_rate_radps: f64,
+    mobilized: impl Fn(f64) -> f64,
+) -> f64 {
     let com = &robot.center_of_mass;
     let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
     let mut sum_m = 0.0;

@@ -84,11 +84,7 @@ impl GoalField {
     /// Once the start is settled and the order has passed its cost by a margin, at `floor`, every other cell costs `floor`
     /// less its distance from the start at least. The smaller of both bounds is a bound again, and no motion drops it by
     /// more than it costs.
-    pub fn new(
-        table: &CostTable,
-        ends: FieldEnds<'_>,
-        patience: &Patience,
-    ) -> Option<Self> {
+    pub fn new(table: &CostTable, ends: FieldEnds<'_>, patience: &Patience) -> Option<Self> {
         let layout = table.lattice().layout;
         let mut field = GoalField {
             complement: vec![0u32; layout.cells()],

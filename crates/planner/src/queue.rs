@@ -63,7 +63,8 @@ impl BucketQueue {
     /// Items in no particular order.
     pub(crate) fn items(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         let filled = if self.len == 0 { 0 } else { self.highest - self.current + 1 };
-        let buckets = (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
+        let buckets =
+            (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
         buckets.flat_map(|slot| self.ring[slot].iter().copied())
     }
 

@@ -251,7 +251,12 @@ impl RowStep {
     #[inline(always)]
     fn ground(&self, rise_m: &Lanes, east: &Lanes, north: &Lanes) -> Ground {
         let (cos, sin) = self.travel;
-        let mut ground = Ground { grade: [0.0; TILE], side_grade: [0.0; TILE], cos_pitch: [0.0; TILE], cos_roll: [0.0; TILE] };
+        let mut ground = Ground {
+            grade: [0.0; TILE],
+            side_grade: [0.0; TILE],
+            cos_pitch: [0.0; TILE],
+            cos_roll: [0.0; TILE],
+        };
         for x in 0..TILE {
             ground.side_grade[x] = north[x] * cos - east[x] * sin;
         }

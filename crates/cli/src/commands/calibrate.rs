@@ -52,7 +52,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;
     let out = &arguments.out;
-    std::fs::write(out, file + "\n").with_context(|| format!("cannot write the robot to {}", out.display()))?;
+    std::fs::write(out, file + "\n")
+        .with_context(|| format!("cannot write the robot to {}", out.display()))?;
     if arguments.recorded.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {

@@ -22,7 +22,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found = predict(&robot, &recording).map_err(|error| arguments.recorded.refuse(&error))?;
     if let Some(path) = &arguments.html {
         let page = calibration::report::html(&robot, &found);
-        std::fs::write(path, page).with_context(|| format!("cannot write the report to {}", path.display()))?;
+        std::fs::write(path, page)
+            .with_context(|| format!("cannot write the report to {}", path.display()))?;
     }
     if arguments.recorded.json {
         println!("{}", serde_json::to_string(&found.prediction)?);
@@ -31,7 +32,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let currents = found.prediction.total.r2_a.is_some();
     println!(
         "{:<20} {:>8} {:>9} {:>9} {:>7} {:>11} {:>11} {:>8}{}",
-        "run", "rows", "bias", "RMSE", "R²", "recorded", "predicted", "error",
+        "run",
+        "rows",
+        "bias",
+        "RMSE",
+        "R²",
+        "recorded",
+        "predicted",
+        "error",
         if currents { "   R² (A)" } else { "" }
     );
     for run in found.prediction.runs.iter().chain([&found.prediction.total]) {
