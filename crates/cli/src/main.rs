@@ -24,6 +24,8 @@ enum Command {
     Plan(commands::plan::Arguments),
     /// Compare the energy-minimal, shortest and fastest paths over a map
     Compare(commands::compare::Arguments),
+    /// Print what plans take, beside general-purpose searches on the same graphs
+    Bench(commands::bench::Arguments),
     /// Serve the HTTP API
     Serve(commands::serve::Arguments),
     /// Start the service, compare paths over real terrain, and draw them
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Demo(arguments) => commands::demo::run(&arguments),
     };

@@ -205,6 +205,11 @@ impl GoalField {
         }
     }
 
+    /// The same in the table's units; the largest number where no chain of motions leads there.
+    pub fn units(&self, cell: Cell) -> u32 {
+        self.units_at(self.layout.pack(State { cell, heading: Heading::new(0) }))
+    }
+
     /// The same in the table's units, for a packed state.
     #[inline(always)]
     pub(crate) fn units_at(&self, state: u32) -> u32 {

@@ -23,6 +23,12 @@ impl Workspace {
         self.labels.bytes() + self.queue.bytes()
     }
 
+    /// Bytes held for each state of the tiles that the last search touched.
+    pub fn bytes_per_state(&self) -> f64 {
+        let states = self.labels.tiles.iter().flatten().count() * TILE_STATES;
+        self.bytes() as f64 / states.max(1) as f64
+    }
+
     /// Forgets the last search.
     pub(crate) fn clear(&mut self) {
         self.labels.clear();
@@ -42,7 +48,7 @@ pub(crate) struct Labels {
 }
 
 /// Up to so many labels are taken back one by one; beyond, their tiles are given back, which costs less.
-const LOG_LIMIT: usize = 1 << 17;
+const LOG_LIMIT: usize = 1 << 14;
 
 impl Labels {
     fn new(layout: &Layout) -> Self {

@@ -185,7 +185,7 @@ impl CostTable {
     }
 
     /// Units per joule, metre or second.
-    pub(crate) fn units(&self) -> f64 {
+    pub fn units(&self) -> f64 {
         self.units
     }
 
@@ -278,6 +278,16 @@ impl CostTable {
         let codes = self.codes(Layout::tile(state), &Patience::default());
         let place = Layout::within(state) * self.stride() + motion;
         codes.and_then(|codes| codes.get(place).copied()).unwrap_or(FORBIDDEN)
+    }
+
+    /// Where the motions from a state lead and what they cost in the table's units, for other searches over the same graph.
+    pub fn successors(&self, state: State) -> impl Iterator<Item = (State, u32)> + '_ {
+        let packed = self.lattice.layout.pack(state);
+        (0..self.lattice.motions_per_state()).filter_map(move |motion| {
+            let code = self.code(packed, motion);
+            let next = self.lattice.successor(state, motion).filter(|_| code != FORBIDDEN)?;
+            Some((next, decode(code)))
+        })
     }
 
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
