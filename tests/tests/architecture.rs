@@ -24,8 +24,14 @@ fn arrows() -> BTreeMap<String, Vec<String>> {
 
 #[test]
 fn arrows_only_point_up_the_list_of_crates() {
-    let order =
-        ["joulepath-model", "joulepath-terrain", "joulepath-planner", "joulepath-bench", "joulepath-service", "joulepath"];
+    let order = [
+        "joulepath-model",
+        "joulepath-terrain",
+        "joulepath-planner",
+        "joulepath-bench",
+        "joulepath-service",
+        "joulepath",
+    ];
     for (package, needs) in arrows() {
         if package == "joulepath-tests" {
             assert!(needs.is_empty(), "the black-box tests know no crate: {needs:?}");
@@ -49,8 +55,8 @@ fn the_model_and_the_terrain_know_nothing_of_each_other() {
 fn nothing_below_the_service_is_async_or_speaks_http() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
     for package in metadata.packages {
-        let below =
-            ["joulepath-model", "joulepath-terrain", "joulepath-planner", "joulepath-bench"].contains(&package.name.as_str());
+        let below = ["joulepath-model", "joulepath-terrain", "joulepath-planner", "joulepath-bench"]
+            .contains(&package.name.as_str());
         let banned = ["tokio", "axum", "hyper", "tower", "reqwest", "ureq"];
         let has = package.dependencies.iter().find(|d| banned.contains(&d.name.as_str()));
         assert!(!below || has.is_none(), "{} needs {:?}", package.name, has.map(|d| &d.name));

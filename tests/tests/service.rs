@@ -349,7 +349,8 @@ fn the_description_lists_what_the_service_does() {
 #[test]
 fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
     let server = Server::start();
-    let map = server.post("/v1/maps", "image/tiff", &std::fs::read(file("maps/minnesota.tif")).unwrap()).json();
+    let map =
+        server.post("/v1/maps", "image/tiff", &std::fs::read(file("maps/minnesota.tif")).unwrap()).json();
     let ask = |extra: Value| {
         let mut question = json!({
             "map_id": map["id"], "robot": "husky-a200",
@@ -367,7 +368,8 @@ fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
     assert_eq!((&best["search"]["optimal"], &best["search"]["bound"]), (&json!(true), &json!(1.0)));
     let energy = |plan: &Value| plan["energy_j"].as_f64().unwrap();
     assert!(best["refined_energy_j"].as_f64().unwrap() <= energy(&best));
-    let (lattice, refined) = (best["poses"].as_array().unwrap(), best["refined"]["poses"].as_array().unwrap());
+    let (lattice, refined) =
+        (best["poses"].as_array().unwrap(), best["refined"]["poses"].as_array().unwrap());
     for field in ["x_m", "y_m", "heading_rad"] {
         assert_eq!(lattice[0][field], refined[0][field], "both begin in one pose");
     }
@@ -389,8 +391,11 @@ fn unusable_bounds_times_and_tolerances_are_named() {
         ("/timeout_s", json!(-3), "/timeout_s"),
         ("/timeout_s", json!(1e300), "/timeout_s"),
     ] {
-        let problem =
-            assert_problem(&server.post_json("/v1/plan", &question_with(pointer, value)), 400, "invalid-request");
+        let problem = assert_problem(
+            &server.post_json("/v1/plan", &question_with(pointer, value)),
+            400,
+            "invalid-request",
+        );
         assert_eq!(problem["errors"][0]["pointer"], at, "{problem}");
     }
     let mut question = question_with("/snap_radius_m", json!(5.0));
@@ -407,7 +412,10 @@ fn a_patch_makes_a_new_map_beside_the_old_one() {
     let wall = json!({ "row": 0, "column": 15, "obstacle": vec![vec![true]; 30] });
     let plan = |id: &Value| {
         let ends = (json!({ "x_m": 4.5, "y_m": 15.5 }), json!({ "x_m": 26.5, "y_m": 15.5 }));
-        server.post_json("/v1/plan", &json!({ "map_id": id, "robot": "husky-a200", "start": ends.0, "goal": ends.1 }))
+        server.post_json(
+            "/v1/plan",
+            &json!({ "map_id": id, "robot": "husky-a200", "start": ends.0, "goal": ends.1 }),
+        )
     };
     assert_eq!(plan(&map["id"]).status, 200);
     let answer = server.patch_json(&path, &wall);

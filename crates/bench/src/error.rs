@@ -21,7 +21,9 @@ pub enum Error {
         source: terrain::Error,
     },
     /// No path between the ends that are measured.
-    #[error("{side} × {side} cells: there is no path between the ends that are measured; take a tile that can be crossed")]
+    #[error(
+        "{side} × {side} cells: there is no path between the ends that are measured; take a tile that can be crossed"
+    )]
     NoPath {
         /// Side of the map [cells].
         side: usize,

@@ -42,7 +42,8 @@ const LARGEST_PEER: usize = 500;
 /// # Errors
 /// A terrain that the built-in Husky cannot cross from corner to corner.
 pub fn run(tile: &Terrain, sides: &[usize], mut progress: impl FnMut(&str)) -> Result<Report, Error> {
-    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| Error::Threads(e.to_string()))?;
+    let one_core =
+        rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| Error::Threads(e.to_string()))?;
     let mut report = Report {
         cases: Vec::new(),
         peers: Vec::new(),

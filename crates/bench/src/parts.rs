@@ -66,7 +66,8 @@ pub(crate) fn build(scene: &Scene) -> Result<Built, Error> {
 pub(crate) fn measure(scene: &Scene, built: &Built, exact: bool) -> Result<Parts, Error> {
     let cells = scene.terrain.grid.cells();
     let edges = scene.states() * scene.lattice.motions_per_state();
-    let slope_time = (0..REPEATS).map(|_| timed(|| SlopeMap::new(&scene.terrain)).1).min().unwrap_or_default();
+    let slope_time =
+        (0..REPEATS).map(|_| timed(|| SlopeMap::new(&scene.terrain)).1).min().unwrap_or_default();
     let mut parts = Parts {
         cells_per_side: scene.side,
         slope_million_cells_per_s: cells as f64 / slope_time.as_secs_f64() / 1e6,
@@ -95,10 +96,10 @@ pub(crate) fn batch_ratio(scene: &Scene) -> Result<f64, Error> {
     let plan_error = |source| Error::Plan { side, source };
     let planner = Planner::new(&scene.terrain, &scene.robot, scene.lattice.settings).map_err(plan_error)?;
     let step_m = scene.terrain.grid.cell_size_m * side as f64 / 100.0;
-    let queries: Vec<Query> = (0..BATCH)
-        .map(|i| scene.query([step_m * (i % 4) as f64, step_m * (i / 4) as f64]))
-        .collect();
-    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| Error::Threads(e.to_string()))?;
+    let queries: Vec<Query> =
+        (0..BATCH).map(|i| scene.query([step_m * (i % 4) as f64, step_m * (i / 4) as f64])).collect();
+    let one_core =
+        rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| Error::Threads(e.to_string()))?;
     // The first round evaluates costs and the field, and leaves memory to search in.
     for answer in planner.plan_many(&queries, Objective::Energy) {
         answer.map_err(plan_error)?;

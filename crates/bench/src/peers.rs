@@ -58,10 +58,8 @@ fn pathfinding_astar(scene: &Scene, built: &Built) -> Result<(u64, f64), Error> 
 /// petgraph wants the graph in memory, edge by edge.
 fn petgraph_astar(scene: &Scene, built: &Built) -> Result<(u64, f64), Error> {
     let lattice = &scene.lattice;
-    let mut graph = DiGraph::<(), u32>::with_capacity(
-        lattice.states(),
-        lattice.states() * lattice.motions_per_state(),
-    );
+    let mut graph =
+        DiGraph::<(), u32>::with_capacity(lattice.states(), lattice.states() * lattice.motions_per_state());
     for _ in 0..lattice.states() {
         graph.add_node(());
     }

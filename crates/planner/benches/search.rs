@@ -5,8 +5,8 @@ use std::sync::Arc;
 use divan::Bencher;
 use model::builtin;
 use planner::{
-    CostTable, FieldEnds, GoalField, Heading, Lattice, Objective, Patience, Search, Settings, State, Workspace,
-    search,
+    CostTable, FieldEnds, GoalField, Heading, Lattice, Objective, Patience, Search, Settings, State,
+    Workspace, search,
 };
 use terrain::{Cell, Grid, SlopeMap, Terrain, synthetic};
 

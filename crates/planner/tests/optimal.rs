@@ -154,8 +154,7 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
                 truth[node.index()] = truth[node.index()].min(cost);
             }
         }
-        let whole = GoalField::new(&table, FieldEnds { start: None, ..ends }, &Patience::default())
-            .unwrap();
+        let whole = GoalField::new(&table, FieldEnds { start: None, ..ends }, &Patience::default()).unwrap();
         let cells = || (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i));
         ended_early += usize::from(cells().any(|cell| field.at(cell) < whole.at(cell)));
         for (state, truth) in truth.iter().enumerate() {

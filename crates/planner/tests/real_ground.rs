@@ -91,8 +91,8 @@ fn memory_follows_the_search_and_not_the_map() {
     let grid = Grid { rows: side, columns: side, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
     let terrain = Terrain::new(grid, &synthetic::relief(grid, 4, 200.0, 12.0)).unwrap();
     let planner = Planner::new(&terrain, &robot, Settings::of(&robot)).unwrap();
-    let found =
-        planner.plan(&query(&terrain, [[0.48, 0.49], [0.53, 0.52]], planner.lattice().settings), Objective::Energy);
+    let found = planner
+        .plan(&query(&terrain, [[0.48, 0.49], [0.53, 0.52]], planner.lattice().settings), Objective::Energy);
     assert!(found.unwrap().search.is_optimal());
     let tiles = (side / 64) * (side / 64);
     let held = planner.table(Objective::Energy).tiles_held();

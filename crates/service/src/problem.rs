@@ -197,9 +197,7 @@ impl Problem {
             E::NoPath { .. } | E::NoRoomToTurn { .. } => (ProblemType::NoPath, None),
             E::Timeout { .. } => (ProblemType::Timeout, None),
             E::UnknownSurface { .. } => (ProblemType::UnknownSurface, Some("/robot/surfaces".into())),
-            E::ConflictingTolerance { .. } => {
-                (ProblemType::InvalidRequest, Some("/goal/tolerance_m".into()))
-            }
+            E::ConflictingTolerance { .. } => (ProblemType::InvalidRequest, Some("/goal/tolerance_m".into())),
             E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, Some(pointer(field))),
             E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
             E::TooManyStates { .. } => (ProblemType::TooLarge, Some("/map".into())),

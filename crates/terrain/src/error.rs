@@ -103,7 +103,9 @@ pub enum Error {
     #[error("the patch has no cells: give rows of elevation_m, surface or obstacle")]
     EmptyPatch,
     /// A patch that reaches beyond the map.
-    #[error("{field} {first} and {count} more reach beyond the map, which has {limit}: move or crop the patch")]
+    #[error(
+        "{field} {first} and {count} more reach beyond the map, which has {limit}: move or crop the patch"
+    )]
     PatchOutside {
         /// `row` or `column`.
         field: &'static str,

@@ -119,8 +119,7 @@ impl Terrain {
         changed: &CellRange,
         names: impl Iterator<Item = Option<&'a str>>,
     ) -> Result<(), Error> {
-        let unnamed =
-            || Surfaces { names: Vec::new(), class: vec![Surfaces::UNNAMED; self.grid.cells()] };
+        let unnamed = || Surfaces { names: Vec::new(), class: vec![Surfaces::UNNAMED; self.grid.cells()] };
         let surfaces = Arc::make_mut(self.surfaces.get_or_insert_with(|| Arc::new(unnamed())));
         for (cell, name) in changed.cells().zip(names) {
             surfaces.class[self.grid.index(cell)] = surfaces.class_of(name)?;

@@ -51,15 +51,27 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Ratios first: they hold on other machines too.
 fn text(report: &Report) -> String {
-    let mut text = String::from("The same search by general-purpose libraries, as multiples of the planner's time\n\n");
+    let mut text =
+        String::from("The same search by general-purpose libraries, as multiples of the planner's time\n\n");
     text.push_str(&format!("{:<38} {:>6} {:>10} {:>8}\n", "library", "side", "ms", "ratio"));
     for peer in &report.peers {
-        text.push_str(&format!("{:<38} {:>6} {:>10.1} {:>7.1}×\n", peer.name, peer.cells_per_side, peer.ms, peer.ratio));
+        text.push_str(&format!(
+            "{:<38} {:>6} {:>10.1} {:>7.1}×\n",
+            peer.name, peer.cells_per_side, peer.ms, peer.ratio
+        ));
     }
     text.push_str("\nWays across the map, on one core with the costs of motions at hand\n\n");
     text.push_str(&format!(
         "{:>6} {:>10} {:>6} {:>7} {:>9} {:>9} {:>11} {:>13} {:>12}\n",
-        "side", "terrain", "bound", "proven", "cold ms", "warm ms", "expansions", "ns/expansion", "bytes/state"
+        "side",
+        "terrain",
+        "bound",
+        "proven",
+        "cold ms",
+        "warm ms",
+        "expansions",
+        "ns/expansion",
+        "bytes/state"
     ));
     for case in &report.cases {
         text.push_str(&format!(
@@ -78,9 +90,18 @@ fn text(report: &Report) -> String {
     text.push_str(&format!("\nParts, on one core; batches on {} against one\n\n", report.cores));
     text.push_str(&format!(
         "{:>6} {:>14} {:>14} {:>12} {:>14} {:>15} {:>14} {:>10} {:>8}\n",
-        "side", "slope Mcells/s", "table ns/edge", "bytes/edge", "field ns/cell", "exact ns/state", "held goal ms", "overrun ms", "batches"
+        "side",
+        "slope Mcells/s",
+        "table ns/edge",
+        "bytes/edge",
+        "field ns/cell",
+        "exact ns/state",
+        "held goal ms",
+        "overrun ms",
+        "batches"
     ));
-    let or_dash = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
+    let or_dash =
+        |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
     for parts in &report.parts {
         text.push_str(&format!(
             "{:>6} {:>14.0} {:>14.1} {:>12.2} {:>14.1} {:>15} {:>14} {:>10.1} {:>7.2}×\n",

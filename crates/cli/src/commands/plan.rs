@@ -33,7 +33,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let (terrain, request) = arguments.question.read(objective)?;
     let planner = request.planner(&terrain).map_err(Refused)?;
-    let found = request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
+    let found =
+        request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
     if arguments.question.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {

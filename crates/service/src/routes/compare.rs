@@ -47,7 +47,11 @@ pub(crate) async fn handler(
 ///
 /// # Errors
 /// As [`super::plan::answer`].
-pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> Result<CompareAnswer, Problem> {
+pub fn answer(
+    planner: &Planner,
+    request: &PlanRequest,
+    patience: &Patience,
+) -> Result<CompareAnswer, Problem> {
     let query = request.query(planner, patience);
     let found = planner.compare(&query).map_err(|e| Problem::no_plan(&e))?;
     Ok(CompareAnswer {

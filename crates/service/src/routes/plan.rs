@@ -288,15 +288,15 @@ pub(crate) async fn with_planner<T: Send + 'static>(
             let found = match (stored, inline) {
                 (Some(stored), _) => {
                     let map_id = request.map_id.as_deref().unwrap_or_default();
-                    large(&stored).and_then(|()| request.planner_of(&own, map_id, &stored)).and_then(|planner| {
-                        answer(&planner, &request, &request.patience(patience)?)
-                    })
+                    large(&stored)
+                        .and_then(|()| request.planner_of(&own, map_id, &stored))
+                        .and_then(|planner| answer(&planner, &request, &request.patience(patience)?))
                 }
                 (None, Some(file)) => {
                     let terrain = terrain_from(file, "/map")?;
-                    large(&terrain).and_then(|()| request.planner(&terrain)).and_then(|planner| {
-                        answer(&planner, &request, &request.patience(patience)?)
-                    })
+                    large(&terrain)
+                        .and_then(|()| request.planner(&terrain))
+                        .and_then(|planner| answer(&planner, &request, &request.patience(patience)?))
                 }
                 (None, None) => return Err(no_map()),
             };
@@ -389,7 +389,9 @@ impl PlanRequest {
         let Some(timeout_s) = self.timeout_s else { return Ok(patience.clone()) };
         let allowed = Duration::try_from_secs_f64(timeout_s).ok().filter(|time| !time.is_zero());
         let Some(allowed) = allowed else {
-            let detail = format!("timeout_s is {timeout_s}, but must be above 0: leave it out for the service's limit");
+            let detail = format!(
+                "timeout_s is {timeout_s}, but must be above 0: leave it out for the service's limit"
+            );
             return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/timeout_s"));
         };
         Ok(patience.no_later_than(Instant::now().checked_add(allowed)))
