@@ -29,6 +29,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-terrain",
         "joulepath-planner",
         "joulepath-bench",
+        "joulepath-recording",
         "joulepath-service",
         "joulepath",
     ];
@@ -45,18 +46,25 @@ fn arrows_only_point_up_the_list_of_crates() {
 }
 
 #[test]
-fn the_model_and_the_terrain_know_nothing_of_each_other() {
+fn the_model_the_terrain_and_the_recording_know_nothing_of_each_other() {
     let arrows = arrows();
     assert!(arrows["joulepath-model"].is_empty());
     assert!(arrows["joulepath-terrain"].is_empty());
+    assert!(arrows["joulepath-recording"].is_empty());
 }
 
 #[test]
 fn nothing_below_the_service_is_async_or_speaks_http() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
     for package in metadata.packages {
-        let below = ["joulepath-model", "joulepath-terrain", "joulepath-planner", "joulepath-bench"]
-            .contains(&package.name.as_str());
+        let below = [
+            "joulepath-model",
+            "joulepath-terrain",
+            "joulepath-planner",
+            "joulepath-bench",
+            "joulepath-recording",
+        ]
+        .contains(&package.name.as_str());
         let banned = ["tokio", "axum", "hyper", "tower", "reqwest", "ureq"];
         let has = package.dependencies.iter().find(|d| banned.contains(&d.name.as_str()));
         assert!(!below || has.is_none(), "{} needs {:?}", package.name, has.map(|d| &d.name));

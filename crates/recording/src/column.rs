@@ -1,0 +1,325 @@
+//! From the columns of a table to a recording: which column is what, and what must hold of the rows.
+
+use std::{mem, ops::Range};
+
+use crate::{
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Recording, Repair, Run,
+    error::Position,
+    map::{Place, Target},
+    report::{ChannelReport, ReadingReport},
+    units,
+};
+
+/// How a column of the file is to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Numbers; anything else is an error.
+    Number,
+    /// Text.
+    Label,
+    /// Numbers, if it holds nothing else.
+    Perhaps,
+}
+
+/// What was read from a column.
+#[derive(Debug)]
+pub(crate) enum Column {
+    Numbers(Vec<f64>),
+    Labels(Labels),
+    /// Nothing of use, and why.
+    Unusable(String),
+}
+
+/// Which columns become what.
+pub(crate) struct Plan {
+    /// How to read each column of the file.
+    pub(crate) kinds: Vec<Kind>,
+    headers: Vec<String>,
+    entries: Vec<Entry>,
+    ignored: Vec<Ignored>,
+    surface: Option<String>,
+}
+
+struct Entry {
+    target: Target,
+    columns: Vec<usize>,
+    combine: Combine,
+    conversion: Conversion,
+    unit: String,
+}
+
+impl Plan {
+    /// Plans by the map first; columns that it does not name and that bear a contract's name are what they say, others are
+    /// kept aside.
+    pub(crate) fn new(headers: Vec<String>, map: Option<&Map>) -> Result<Plan, Error> {
+        for (index, header) in headers.iter().enumerate() {
+            if headers[..index].contains(header) {
+                let (channel, first) = (header.clone(), header.clone());
+                return Err(Error::Duplicate { channel, first, second: header.clone() });
+            }
+        }
+        let mut plan = Plan {
+            kinds: vec![Kind::Perhaps; headers.len()],
+            entries: Vec::new(),
+            ignored: Vec::new(),
+            surface: map.and_then(|map| map.surface.clone()),
+            headers,
+        };
+        plan.add_mapped(map);
+        plan.add_named_by_contract()?;
+        for entry in &plan.entries {
+            let kind = match entry.target {
+                Target::Run | Target::Surface => Kind::Label,
+                Target::Aside(_) => Kind::Perhaps,
+                Target::Time | Target::Channel(_) => Kind::Number,
+            };
+            for column in &entry.columns {
+                plan.kinds[*column] = kind;
+            }
+        }
+        Ok(plan)
+    }
+
+    fn add_mapped(&mut self, map: Option<&Map>) {
+        for source in map.map_or(&[][..], |map| &map.sources) {
+            let Place::Columns(names) = &source.place else { continue };
+            let position = |name: &String| self.headers.iter().position(|header| header == name);
+            let columns: Option<Vec<usize>> = names.iter().map(position).collect();
+            let taken = self.entries.iter().any(|entry| entry.target == source.target);
+            let reason = match columns {
+                None => "the map names it, but the file has no such column",
+                Some(_) if taken => "an earlier source of the map gives the same channel",
+                Some(columns) => {
+                    self.entries.push(Entry {
+                        target: source.target.clone(),
+                        columns,
+                        combine: source.combine,
+                        conversion: source.conversion,
+                        unit: source.unit.clone(),
+                    });
+                    continue;
+                }
+            };
+            self.ignored.push(Ignored { name: names.join(", "), reason: reason.into() });
+        }
+    }
+
+    fn add_named_by_contract(&mut self) -> Result<(), Error> {
+        for (index, header) in self.headers.iter().enumerate() {
+            if self.entries.iter().any(|entry| entry.columns.contains(&index)) {
+                continue;
+            }
+            let (target, unit) = match header.as_str() {
+                "t_s" => (Target::Time, "s"),
+                "run" => (Target::Run, ""),
+                "surface" => (Target::Surface, ""),
+                name => match Channel::from_name(name) {
+                    Some(channel) => (Target::Channel(channel), units::si_unit(channel.quantity())),
+                    None => (Target::Aside(name.to_owned()), ""),
+                },
+            };
+            if let Some(other) = self.entries.iter().find(|entry| entry.target == target) {
+                let first = other.columns.first().and_then(|&column| self.headers.get(column));
+                let (first, channel) = (first.cloned().unwrap_or_default(), header.clone());
+                return Err(Error::Duplicate { channel, first, second: header.clone() });
+            }
+            let (combine, conversion) = (Combine::Mean, Conversion::IDENTITY);
+            self.entries.push(Entry { target, columns: vec![index], combine, conversion, unit: unit.into() });
+        }
+        Ok(())
+    }
+
+    /// The recording of what was read, and the beginning of its report.
+    pub(crate) fn assemble(
+        mut self,
+        mut columns: Vec<Column>,
+        name: &str,
+        position: impl Fn(usize) -> Position,
+    ) -> Result<(Recording, ReadingReport), Error> {
+        let (t_s, time_column) = self.take_time(&mut columns)?;
+        if t_s.is_empty() {
+            return Err(Error::Empty {
+                found: format!("a header of {} columns and no row", self.headers.len()),
+            });
+        }
+        if let Some(row) = t_s.iter().position(|t| !t.is_finite()) {
+            return Err(Error::NoTime { position: position(row), column: time_column });
+        }
+        let mut recording = Recording { t_s, ..Recording::default() };
+        let mut report = ReadingReport::default();
+        let mut runs = None;
+        for entry in mem::take(&mut self.entries) {
+            match self.combined(&entry, &mut columns) {
+                Ok(Column::Labels(labels)) if entry.target == Target::Run => runs = Some(labels),
+                Ok(Column::Labels(labels)) => recording.surface = Some(labels),
+                Ok(Column::Numbers(values)) => match entry.target {
+                    Target::Channel(channel) => {
+                        report.channels.push(ChannelReport::new(channel, self.names(&entry), entry.unit));
+                        recording.channels.insert(channel, values);
+                    }
+                    Target::Aside(name) => {
+                        recording.aside.insert(name, values);
+                    }
+                    _ => {}
+                },
+                Ok(Column::Unusable(reason)) | Err(reason) => {
+                    self.ignored.push(Ignored { name: self.names(&entry), reason });
+                }
+            }
+        }
+        if let (None, Some(surface)) = (&recording.surface, &self.surface) {
+            recording.surface = Some(Labels::constant(surface, recording.rows()));
+        }
+        let order = divide(&mut recording, runs, name, &mut report);
+        check_order(&recording, |row| position(order.as_ref().map_or(row, |order| order[row])))?;
+        report.ignored = self.ignored;
+        Ok((recording, report))
+    }
+
+    /// The time column of the file, in seconds.
+    fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String), Error> {
+        let Some(at) = self.entries.iter().position(|entry| entry.target == Target::Time) else {
+            return Err(Error::missing_names(&["t_s".into()], &["t_s"], &self.headers));
+        };
+        let entry = self.entries.remove(at);
+        let name = self.names(&entry);
+        match self.combined(&entry, columns) {
+            Ok(Column::Numbers(t_s)) => Ok((t_s, name)),
+            Ok(Column::Unusable(reason)) | Err(reason) => Err(Error::Field {
+                topic: "of the table".into(),
+                field: name,
+                reason: format!("time is needed, but {reason}"),
+            }),
+            Ok(Column::Labels(_)) => Err(Error::missing_names(&["t_s".into()], &["t_s"], &self.headers)),
+        }
+    }
+
+    fn names(&self, entry: &Entry) -> String {
+        let names: Vec<&str> = entry.columns.iter().map(|&column| self.headers[column].as_str()).collect();
+        names.join(", ")
+    }
+
+    /// The one column that an entry makes of its columns.
+    fn combined(&self, entry: &Entry, columns: &mut [Column]) -> Result<Column, String> {
+        if let &[only] = entry.columns.as_slice() {
+            // One column is moved, which spares a copy of the whole file.
+            let taken = mem::replace(&mut columns[only], Column::Unusable("it is used twice".into()));
+            return Ok(match taken {
+                Column::Numbers(mut values) => {
+                    if entry.conversion != Conversion::IDENTITY {
+                        values.iter_mut().for_each(|value| *value = entry.conversion.apply(*value));
+                    }
+                    Column::Numbers(values)
+                }
+                other => other,
+            });
+        }
+        let mut parts: Vec<&[f64]> = Vec::with_capacity(entry.columns.len());
+        for &column in &entry.columns {
+            match &columns[column] {
+                Column::Numbers(values) => parts.push(values),
+                _ => return Err(format!("column `{}` holds no numbers", self.headers[column])),
+            }
+        }
+        let rows = parts.iter().map(|part| part.len()).min().unwrap_or(0);
+        let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]));
+        Ok(Column::Numbers((0..rows).map(|row| entry.conversion.apply(at(row))).collect()))
+    }
+}
+
+impl Combine {
+    /// One value of several; NaN when one of them is.
+    pub(crate) fn of(self, values: impl Iterator<Item = f64>) -> f64 {
+        let (mut count, mut sum, mut product) = (0.0, 0.0, 1.0);
+        for value in values {
+            count += 1.0;
+            sum += value;
+            product *= value;
+        }
+        match self {
+            Combine::Mean => sum / count,
+            Combine::Sum => sum,
+            Combine::Product => product,
+        }
+    }
+}
+
+/// Divides the rows into runs. Rows of one run that lie apart are brought together, in their order; then the place of each
+/// row in the file is returned.
+fn divide(
+    recording: &mut Recording,
+    runs: Option<Labels>,
+    name: &str,
+    report: &mut ReadingReport,
+) -> Option<Vec<usize>> {
+    let rows = recording.rows();
+    let Some(mut labels) = runs else {
+        recording.runs = vec![Run::new(name.to_owned(), 0..rows, &recording.t_s, None)];
+        return None;
+    };
+    if labels.index.contains(&Labels::NONE) {
+        let unnamed = u32::try_from(labels.names.len()).unwrap_or(Labels::NONE);
+        labels.names.push("unnamed".into());
+        labels.index.iter_mut().filter(|index| **index == Labels::NONE).for_each(|index| *index = unnamed);
+    }
+    let order = scattered(&labels).then(|| {
+        let mut order: Vec<usize> = (0..rows).collect();
+        order.sort_by_key(|&row| labels.index[row]);
+        report.repairs.push(Repair {
+            place: "column `run`".into(),
+            what: "the rows of a run lie apart in the file; they were brought together".into(),
+        });
+        reorder(recording, &order);
+        labels.index = order.iter().map(|&row| labels.index[row]).collect();
+        order
+    });
+    recording.runs = stretches(&labels.index)
+        .map(|(index, rows)| {
+            let name = labels.names.get(index as usize).cloned().unwrap_or_default();
+            Run::new(name, rows, &recording.t_s, None)
+        })
+        .collect();
+    order
+}
+
+fn scattered(labels: &Labels) -> bool {
+    let mut seen = vec![false; labels.names.len()];
+    stretches(&labels.index)
+        .any(|(index, _)| seen.get_mut(index as usize).is_some_and(|seen| mem::replace(seen, true)))
+}
+
+/// Stretches of equal indices.
+fn stretches(index: &[u32]) -> impl Iterator<Item = (u32, Range<usize>)> {
+    let mut start = 0;
+    index.chunk_by(|a, b| a == b).map(move |stretch| {
+        let rows = start..start + stretch.len();
+        start = rows.end;
+        (stretch[0], rows)
+    })
+}
+
+fn reorder(recording: &mut Recording, order: &[usize]) {
+    let sorted = |values: &[f64]| -> Vec<f64> { order.iter().map(|&row| values[row]).collect() };
+    recording.t_s = sorted(&recording.t_s);
+    for values in recording.channels.values_mut().chain(recording.aside.values_mut()) {
+        *values = sorted(values);
+    }
+    if let Some(surface) = &mut recording.surface {
+        surface.index = order.iter().map(|&row| surface.index[row]).collect();
+    }
+}
+
+fn check_order(recording: &Recording, position: impl Fn(usize) -> Position) -> Result<(), Error> {
+    for run in &recording.runs {
+        let t_s = &recording.t_s[run.rows.clone()];
+        if let Some(at) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(Error::TimeOrder {
+                position: position(run.rows.start + at + 1),
+                run: run.name.clone(),
+                t_s: t_s[at + 1],
+                previous_s: t_s[at],
+            });
+        }
+    }
+    Ok(())
+}

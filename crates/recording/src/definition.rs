@@ -1,0 +1,186 @@
+//! Message definitions of ROS 1 and ROS 2 (`.msg` text with its dependencies behind lines of `=`).
+
+use std::collections::BTreeMap;
+
+/// A number type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Primitive {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Primitive {
+    pub(crate) fn bytes(self) -> usize {
+        match self {
+            Primitive::I8 | Primitive::U8 => 1,
+            Primitive::I16 | Primitive::U16 => 2,
+            Primitive::I32 | Primitive::U32 | Primitive::F32 => 4,
+            Primitive::I64 | Primitive::U64 | Primitive::F64 => 8,
+        }
+    }
+}
+
+/// What a field is made of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Base {
+    Number(Primitive),
+    Text,
+    /// Two numbers of four bytes: seconds and nanoseconds.
+    Time,
+    /// Another message, by full name.
+    Message(String),
+}
+
+/// How many of it there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Count {
+    One,
+    Fixed(usize),
+    Sequence,
+}
+
+/// A field of a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Field {
+    pub(crate) name: String,
+    pub(crate) base: Base,
+    pub(crate) count: Count,
+}
+
+/// A message's fields, and those of all messages within it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Definition {
+    root: String,
+    messages: BTreeMap<String, Vec<Field>>,
+}
+
+impl Definition {
+    /// Parses a definition with its dependencies.
+    pub(crate) fn parse(type_name: &str, text: &str) -> Result<Definition, String> {
+        let root = full_name(type_name, "");
+        let mut name = root.clone();
+        let mut messages = BTreeMap::from([(root.clone(), Vec::new())]);
+        for line in text.lines() {
+            let line = line.trim();
+            if line.len() > 2 && line.bytes().all(|byte| byte == b'=') {
+                continue;
+            }
+            if let Some(next) = line.strip_prefix("MSG:") {
+                name = full_name(next.trim(), "");
+                // The root may be defined once more behind a separator; the later text stands for itself.
+                messages.insert(name.clone(), Vec::new());
+                continue;
+            }
+            if let Some(field) = field(line, &name)? {
+                messages.entry(name.clone()).or_default().push(field);
+            }
+        }
+        Ok(Definition { root, messages })
+    }
+
+    /// Fields of the message itself.
+    pub(crate) fn root(&self) -> &[Field] {
+        self.fields(&self.root).unwrap_or_default()
+    }
+
+    /// Fields of a message within it.
+    pub(crate) fn fields(&self, message: &str) -> Option<&[Field]> {
+        self.messages.get(message).map(Vec::as_slice)
+    }
+}
+
+/// `package/Name` of `package/msg/Name`, and of a bare `Name` within a package.
+fn full_name(name: &str, within: &str) -> String {
+    let package = |full: &str| full.split_once('/').map_or(String::new(), |(package, _)| package.to_owned());
+    match name.split_once('/') {
+        Some((package, rest)) => format!("{package}/{}", rest.rsplit('/').next().unwrap_or(rest)),
+        // The one type that ROS 1 lets stand without its package from anywhere.
+        None if name == "Header" => "std_msgs/Header".into(),
+        None => format!("{}/{name}", package(within)),
+    }
+}
+
+/// The field of a line; `None` for an empty line, a comment or a constant.
+fn field(line: &str, within: &str) -> Result<Option<Field>, String> {
+    let line = line.split('#').next().unwrap_or_default().trim();
+    let Some((kind, rest)) = line.split_once(char::is_whitespace) else {
+        return if line.is_empty() { Ok(None) } else { Err(format!("`{line}` is no field of a message")) };
+    };
+    let rest = rest.trim();
+    let name_end = rest.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(rest.len());
+    let (name, behind) = rest.split_at(name_end);
+    if behind.trim_start().starts_with('=') {
+        return Ok(None);
+    }
+    let (base, count) = match kind.split_once('[') {
+        None => (kind, Count::One),
+        Some((base, inside)) => match inside.strip_suffix(']') {
+            Some("") => (base, Count::Sequence),
+            Some(bound) if bound.starts_with("<=") => (base, Count::Sequence),
+            Some(fixed) => {
+                let count = fixed.parse().map_err(|_| format!("`{kind}` is no array"))?;
+                (base, Count::Fixed(count))
+            }
+            None => return Err(format!("`{kind}` is no array")),
+        },
+    };
+    Ok(Some(Field { name: name.to_owned(), base: parse_base(base, within)?, count }))
+}
+
+fn parse_base(name: &str, within: &str) -> Result<Base, String> {
+    // A bound of a text, as in `string<=10`, does not show in its bytes.
+    let plain = name.split('<').next().unwrap_or(name);
+    Ok(match plain {
+        "bool" | "uint8" | "char" => Base::Number(Primitive::U8),
+        // `byte` is signed in ROS 1 and unsigned in ROS 2; nothing measured comes in it.
+        "int8" | "byte" => Base::Number(Primitive::I8),
+        "int16" => Base::Number(Primitive::I16),
+        "uint16" => Base::Number(Primitive::U16),
+        "int32" => Base::Number(Primitive::I32),
+        "uint32" => Base::Number(Primitive::U32),
+        "int64" => Base::Number(Primitive::I64),
+        "uint64" => Base::Number(Primitive::U64),
+        "float32" => Base::Number(Primitive::F32),
+        "float64" => Base::Number(Primitive::F64),
+        "string" => Base::Text,
+        "wstring" => return Err("wide strings are not read: their width is not standardised".into()),
+        "time" | "duration" => Base::Time,
+        _ => match full_name(plain, within) {
+            name if name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration" => Base::Time,
+            name => Base::Message(name),
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_constants_arrays_and_dependencies_are_told_apart() {
+        let text = "# a comment\nHeader header\nuint8 FULL=3\nstring<=9 name \"a=b\"\nfloat64[9] covariance\n\
+                    Part[<=4] parts\n================\nMSG: my_msgs/Part\nfloat32 value  # in A\n\
+                    ================\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
+        let definition = Definition::parse("my_msgs/msg/Whole", text).unwrap();
+        let names: Vec<&str> = definition.root().iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["header", "name", "covariance", "parts"]);
+        assert_eq!(definition.root()[2].count, Count::Fixed(9));
+        assert_eq!(definition.root()[3].base, Base::Message("my_msgs/Part".into()));
+        assert_eq!(definition.fields("my_msgs/Part").unwrap()[0].base, Base::Number(Primitive::F32));
+        assert_eq!(definition.fields("std_msgs/Header").unwrap()[1].base, Base::Time);
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_its_text() {
+        assert!(Definition::parse("a/B", "float64[x] y").unwrap_err().contains("float64[x]"));
+        assert!(Definition::parse("a/B", "lonely").unwrap_err().contains("lonely"));
+    }
+}

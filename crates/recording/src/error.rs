@@ -1,0 +1,249 @@
+//! What can be wrong with a recording or a map of one.
+
+use crate::Channel;
+
+/// An error of the recording crate; the message names file, place and channel, and says how to mend it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An error in a named file.
+    #[error("{path}: {source}")]
+    InFile {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        source: Box<Error>,
+    },
+    /// The file cannot be read at all.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// A file name that says nothing about its format.
+    #[error("`{ending}` is no recording: the name must end in .csv, .parquet, .mcap or .bag")]
+    UnknownFormat {
+        /// The ending found.
+        ending: String,
+    },
+    /// The map file is not the JSON that a map is.
+    #[error("map, {path}: {message}")]
+    Map {
+        /// Where in the document, as `sources[3].unit`.
+        path: String,
+        /// What is wrong there.
+        message: String,
+    },
+    /// A source of the map gives a unit that its channel cannot come in.
+    #[error("map, sources[{index}].unit: `{unit}` is no unit of {channel}; it may be {}{}", known.join(", "),
+        if *needs_radius { ", and wheel_radius_m must be given" } else { "" })]
+    Unit {
+        /// Which source, from 0.
+        index: usize,
+        /// The unit found.
+        unit: String,
+        /// The channel it was given for.
+        channel: String,
+        /// The units it may be.
+        known: Vec<&'static str>,
+        /// The unit would do if the map gave the wheel radius.
+        needs_radius: bool,
+    },
+    /// Something of the map is not in the recording, or is of another kind there.
+    #[error("topic {topic}, field `{field}`: {reason}")]
+    Field {
+        /// The topic.
+        topic: String,
+        /// The field path.
+        field: String,
+        /// Why it cannot be read.
+        reason: String,
+    },
+    /// Channels without which a recording tells nothing.
+    #[error("{missing} missing; found: {}{}", found.join(", "), hints(nearest))]
+    Missing {
+        /// What is missing, in words.
+        missing: String,
+        /// The columns or topics of the file.
+        found: Vec<String>,
+        /// The nearest of them, with the name that was looked for.
+        nearest: Vec<(String, String)>,
+    },
+    /// Two columns of one name, or two columns for one channel.
+    #[error("two columns give {channel}: `{first}` and `{second}`; rename one of them or map it `aside`")]
+    Duplicate {
+        /// The channel.
+        channel: String,
+        /// One column.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// A cell of a numeric column that holds no number.
+    #[error("{position}, column `{column}`: `{found}` is no finite number; leave the cell empty for a gap")]
+    Number {
+        /// Line or row.
+        position: Position,
+        /// The column.
+        column: String,
+        /// What stands there.
+        found: String,
+    },
+    /// Time that does not increase within a run.
+    #[error(
+        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; sort the rows, or number the drives in a column `run`",
+        if t_s == previous_s { "repeats" } else { "goes back" }
+    )]
+    TimeOrder {
+        /// Line or row.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time there \[s\].
+        t_s: f64,
+        /// The time before it \[s\].
+        previous_s: f64,
+    },
+    /// A row without a time.
+    #[error("{position}: there is no time in column `{column}`; remove the row or fill it in")]
+    NoTime {
+        /// Line or row.
+        position: Position,
+        /// The time column.
+        column: String,
+    },
+    /// The clock of a topic was set while it was recorded.
+    #[error(
+        "topic {topic}, message {message}: its clock jumps by {by_s:.3} s; cut the file there, or try the map with `\"stamp\": \"{other}\"`"
+    )]
+    ClockJump {
+        /// The topic.
+        topic: String,
+        /// Which of its messages, from 1.
+        message: usize,
+        /// How far it jumps \[s\], forwards or back.
+        by_s: f64,
+        /// The other clock that the map may ask for.
+        other: &'static str,
+    },
+    /// The CSV text is malformed.
+    #[error("line {line}: {message}")]
+    Csv {
+        /// Line from 1.
+        line: u64,
+        /// What is wrong there.
+        message: String,
+    },
+    /// The Parquet library refused the file.
+    #[error("not a readable Parquet file: {0}; was it closed by its writer?")]
+    Parquet(#[from] parquet::errors::ParquetError),
+    /// The file is not of the format that its name says.
+    #[error("this is no {format} file: {reason}")]
+    NotTheFormat {
+        /// The format expected.
+        format: &'static str,
+        /// What is there instead.
+        reason: String,
+    },
+    /// A topic that the map names has no message that could be read.
+    #[error(
+        "topic {topic}: none of its {messages} messages is a {type_name} as its definition says: {reason}"
+    )]
+    Undecodable {
+        /// The topic.
+        topic: String,
+        /// Its type.
+        type_name: String,
+        /// Messages there.
+        messages: usize,
+        /// What was wrong with the first.
+        reason: String,
+    },
+    /// The file holds no rows or no messages of the topics that the map names.
+    #[error("there is nothing to read: {found}")]
+    Empty {
+        /// What was found instead.
+        found: String,
+    },
+}
+
+/// A place in a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Position {
+    /// A line of a text file, from 1.
+    Line(u64),
+    /// A row of a table, from 1.
+    Row(u64),
+}
+
+impl std::fmt::Display for Position {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Position::Line(line) => write!(f, "line {line}"),
+            Position::Row(row) => write!(f, "row {row}"),
+        }
+    }
+}
+
+impl Error {
+    /// Says in which file it happened.
+    #[must_use]
+    pub fn in_file(self, path: &std::path::Path) -> Error {
+        Error::InFile { path: path.display().to_string(), source: Box::new(self) }
+    }
+
+    /// The missing channels that a recording cannot do without, with the names in the file that come nearest.
+    pub(crate) fn missing(lacks: &[Channel], power: bool, found: &[String]) -> Error {
+        let mut missing: Vec<String> = lacks.iter().map(|channel| channel.name().to_owned()).collect();
+        let mut wanted: Vec<&str> = lacks.iter().map(|channel| channel.name()).collect();
+        if power {
+            missing.push(
+                "power (power_left_w and power_right_w, or power_w, or current_a and voltage_v, \
+                 or motor_current_left_a and motor_current_right_a)"
+                    .into(),
+            );
+            wanted.extend(Channel::all().filter(|channel| channel.tells_power()).map(Channel::name));
+        }
+        Error::missing_names(&missing, &wanted, found)
+    }
+
+    /// Missing names, whatever they stand for.
+    pub(crate) fn missing_names(missing: &[String], wanted: &[&str], found: &[String]) -> Error {
+        let near = |name: &&str| {
+            let best =
+                found.iter().filter(|f| f != name).map(|f| (strsim::normalized_levenshtein(f, name), f));
+            let (likeness, best) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            (likeness >= WORTH_NAMING).then(|| (best.clone(), (*name).to_owned()))
+        };
+        let nearest = wanted.iter().filter_map(near).collect();
+        let verb = if missing.len() == 1 { "is" } else { "are" };
+        Error::Missing { missing: format!("{} {verb}", missing.join(", ")), found: shortened(found), nearest }
+    }
+}
+
+/// Names that share at least so much of their letters are worth naming as a likely slip (`power_kw` for `power_w`: 0.88).
+const WORTH_NAMING: f64 = 0.6;
+
+/// Most names that a message lists.
+const MOST_NAMES: usize = 40;
+
+fn shortened(names: &[String]) -> Vec<String> {
+    let mut some: Vec<String> = names.iter().take(MOST_NAMES).map(|name| excerpt(name)).collect();
+    if names.len() > MOST_NAMES {
+        some.push(format!("and {} more", names.len() - MOST_NAMES));
+    }
+    some
+}
+
+/// The beginning of what stands in a file, short enough for a message.
+pub(crate) fn excerpt(text: &str) -> String {
+    text.chars().take(60).collect()
+}
+
+fn hints(nearest: &[(String, String)]) -> String {
+    let hint = |(found, wanted): &(String, String)| format!("`{}` for {wanted}", excerpt(found));
+    match nearest {
+        [] => "; rename the columns or name them in a map".into(),
+        _ => {
+            let hints: Vec<String> = nearest.iter().map(hint).collect();
+            format!("; did you mean {}? Rename it, or name it with its unit in a map", hints.join(", "))
+        }
+    }
+}

@@ -1,0 +1,409 @@
+//! A walk through a message's bytes that stops at the numbers wanted and steps over everything else.
+
+use crate::{
+    cursor::{Cursor, Encoding, Short},
+    definition::{Base, Count, Definition, Field, Primitive},
+    field::{Angle, Pick, Resolved, Segment, resolve},
+};
+
+/// Deepest nesting and most fields that a message may have; real ones stay below 10 and 300.
+const DEEPEST: usize = 32;
+const MOST_NODES: usize = 20_000;
+
+/// The walk through one type of message.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    encoding: Encoding,
+    root: Vec<Node>,
+    slots: usize,
+    keys: usize,
+    values: Vec<Value>,
+    /// Slots of the header's seconds and nanoseconds.
+    stamp: Option<[usize; 2]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    kind: ValueKind,
+    /// The slot of the first covariance, which `sensor_msgs/Imu` sets to −1 where the value is not known.
+    unknown_when_negative: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum ValueKind {
+    Slot(usize),
+    Angle([usize; 4], Angle),
+}
+
+#[derive(Clone, Debug)]
+enum Node {
+    Number(Primitive, Option<usize>),
+    Text,
+    /// Seconds and nanoseconds; wanted together.
+    Time(Option<[usize; 2]>),
+    Message(Vec<Node>),
+    Array {
+        count: Option<usize>,
+        element: Box<Node>,
+        picks: Vec<(Picked, Node)>,
+        /// Texts looked for among the elements, and under which key their place is kept.
+        keys: Vec<(String, usize)>,
+    },
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Picked {
+    At(usize),
+    Key(usize),
+}
+
+/// A number wanted: the rest of its path, and the slots that it goes to.
+#[derive(Clone, Debug)]
+struct Want<'p> {
+    path: &'p [Segment],
+    slots: [usize; 2],
+}
+
+/// What a walk has found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    slots: Vec<f64>,
+    keys: Vec<Option<usize>>,
+    wanted: usize,
+}
+
+impl Layout {
+    /// Plans the walk; every path must exist in the definition.
+    pub(crate) fn new(
+        definition: &Definition,
+        paths: &[&str],
+        encoding: Encoding,
+    ) -> Result<Layout, (String, String)> {
+        let mut plan: Vec<(Vec<Segment>, [usize; 2])> = Vec::new();
+        let mut slots = 0;
+        let mut slot = |path: Vec<Segment>| {
+            // Roll and pitch want the same four numbers.
+            if let Some((_, [known, _])) = plan.iter().find(|(planned, _)| *planned == path) {
+                return *known;
+            }
+            slots += 1;
+            plan.push((path, [slots - 1; 2]));
+            slots - 1
+        };
+        let mut values = Vec::new();
+        for &path in paths {
+            let (kind, root) = match resolve(definition, path).map_err(|reason| (path.to_owned(), reason))? {
+                Resolved::Number(segments) => {
+                    let root = segments.first().cloned();
+                    (ValueKind::Slot(slot(segments)), root)
+                }
+                Resolved::Angle(segments, angle) => {
+                    let part = |name: &str| {
+                        let last = Segment { name: name.into(), pick: None };
+                        segments.iter().cloned().chain([last]).collect()
+                    };
+                    let parts = ["x", "y", "z", "w"].map(part);
+                    (ValueKind::Angle(parts.map(&mut slot), angle), segments.first().cloned())
+                }
+            };
+            let covariance = root.and_then(|root| covariance(definition, &root.name));
+            values.push(Value { kind, unknown_when_negative: covariance.map(&mut slot) });
+        }
+        let stamp = has_stamp(definition).then(|| {
+            let names = ["header", "stamp"];
+            let path = names.map(|name| Segment { name: name.into(), pick: None }).to_vec();
+            plan.push((path, [slots, slots + 1]));
+            slots += 2;
+            [slots - 2, slots - 1]
+        });
+        let wants = plan.iter().map(|(path, slots)| Want { path, slots: *slots }).collect::<Vec<_>>();
+        let mut builder = Builder { definition, encoding, nodes: 0, keys: 0 };
+        let root = builder.message(definition.root(), &wants, 0).map_err(|reason| (String::new(), reason))?;
+        Ok(Layout { encoding, root, slots, keys: builder.keys, values, stamp })
+    }
+
+    /// Reads a message into `values`, one per path, NaN where it has none; returns its stamp \[ns\].
+    pub(crate) fn read(
+        &self,
+        bytes: &[u8],
+        found: &mut Found,
+        values: &mut [f64],
+    ) -> Result<Option<i64>, String> {
+        found.slots.clear();
+        found.slots.resize(self.slots, f64::NAN);
+        found.keys.clear();
+        found.keys.resize(self.keys, None);
+        found.wanted = self.slots;
+        let mut cursor = Cursor::message(bytes, self.encoding)?;
+        for node in &self.root {
+            let short = |Short| format!("its {} bytes end too soon", bytes.len());
+            node.walk(&mut cursor, found).map_err(short)?;
+            if found.wanted == 0 {
+                break;
+            }
+        }
+        for (value, wanted) in values.iter_mut().zip(&self.values) {
+            *value = wanted.of(&found.slots);
+        }
+        // Seconds and nanoseconds are whole numbers below 2³², which doubles hold exactly.
+        let [seconds, nanoseconds] = self.stamp.unwrap_or_default().map(|slot| found.slots.get(slot));
+        let whole = |part: Option<&f64>| part.map(|part| *part as i64);
+        let stamp = whole(seconds).zip(whole(nanoseconds)).map(|(s, ns)| s * 1_000_000_000 + ns);
+        Ok(stamp.filter(|_| self.stamp.is_some()))
+    }
+}
+
+impl Value {
+    fn of(&self, slots: &[f64]) -> f64 {
+        if self.unknown_when_negative.is_some_and(|slot| slots[slot] == -1.0) {
+            return f64::NAN;
+        }
+        let value = match self.kind {
+            ValueKind::Slot(slot) => slots[slot],
+            ValueKind::Angle(parts, angle) => angle.of(parts.map(|slot| slots[slot])),
+        };
+        // An infinity is no measurement: drivers use it as NaN.
+        if value.is_finite() { value } else { f64::NAN }
+    }
+}
+
+/// The path of the first element of the covariance that belongs to a field of the message.
+fn covariance(definition: &Definition, field: &str) -> Option<Vec<Segment>> {
+    let name = format!("{field}_covariance");
+    let there = |field: &&Field| field.name == name && matches!(field.base, Base::Number(_));
+    definition.root().iter().find(there).filter(|field| field.count != Count::One)?;
+    Some(vec![Segment { name, pick: Some(Pick::At(0)) }])
+}
+
+fn has_stamp(definition: &Definition) -> bool {
+    let header = definition.root().iter().find(|field| field.name == "header" && field.count == Count::One);
+    let Some(Base::Message(name)) = header.map(|field| &field.base) else { return false };
+    let stamp =
+        |field: &Field| field.name == "stamp" && field.base == Base::Time && field.count == Count::One;
+    definition.fields(name).is_some_and(|fields| fields.iter().any(stamp))
+}
+
+struct Builder<'d> {
+    definition: &'d Definition,
+    encoding: Encoding,
+    nodes: usize,
+    keys: usize,
+}
+
+impl Builder<'_> {
+    fn message(&mut self, fields: &[Field], wants: &[Want<'_>], depth: usize) -> Result<Vec<Node>, String> {
+        if depth > DEEPEST {
+            return Err("its definition nests too deeply".into());
+        }
+        if fields.is_empty() && self.encoding == Encoding::Cdr {
+            // ROS 2 gives a message without fields one byte: the OMG IDL that it becomes has no empty structs.
+            return Ok(vec![Node::Number(Primitive::U8, None)]);
+        }
+        let mut nodes = Vec::with_capacity(fields.len());
+        // Texts that pick elements of the arrays behind: (text array, text, key).
+        let mut keys: Vec<(&str, &str, usize)> = Vec::new();
+        for want in wants {
+            if let Some(Segment { pick: Some(Pick::Named { array, text }), .. }) = want.path.first()
+                && !keys.iter().any(|(a, t, _)| a == array && t == text)
+            {
+                keys.push((array, text, self.keys));
+                self.keys += 1;
+            }
+        }
+        for field in fields {
+            nodes.push(self.field(field, wants, &keys, depth)?);
+        }
+        Ok(nodes)
+    }
+
+    fn field(
+        &mut self,
+        field: &Field,
+        wants: &[Want<'_>],
+        keys: &[(&str, &str, usize)],
+        depth: usize,
+    ) -> Result<Node, String> {
+        self.nodes += 1;
+        if self.nodes > MOST_NODES {
+            return Err("its definition has too many fields".into());
+        }
+        let mut wanted: Vec<(Option<Pick>, Want<'_>)> = Vec::new();
+        for want in wants {
+            if let Some((segment, rest)) = want.path.split_first()
+                && segment.name == field.name
+            {
+                wanted.push((segment.pick.clone(), Want { path: rest, slots: want.slots }));
+            }
+        }
+        if field.count == Count::One {
+            let wants: Vec<Want<'_>> = wanted.into_iter().map(|(_, want)| want).collect();
+            return self.one(&field.base, &wants, depth);
+        }
+        let element = Box::new(self.one(&field.base, &[], depth)?);
+        let mut picks = Vec::new();
+        for (pick, want) in wanted {
+            let picked = match pick {
+                Some(Pick::At(place)) => Picked::At(place),
+                Some(Pick::Named { array, text }) => {
+                    let key = keys.iter().find(|(a, t, _)| *a == array && *t == text).map(|(_, _, key)| *key);
+                    Picked::Key(key.ok_or("its keys were not planned")?)
+                }
+                None => return Err(format!("`{}` is an array", field.name)),
+            };
+            picks.push((picked, self.one(&field.base, &[want], depth)?));
+        }
+        let looked_for = keys.iter().filter(|(array, ..)| *array == field.name);
+        Ok(Node::Array {
+            count: if let Count::Fixed(count) = field.count { Some(count) } else { None },
+            element,
+            picks,
+            keys: looked_for.map(|(_, text, key)| ((*text).to_owned(), *key)).collect(),
+        })
+    }
+
+    fn one(&mut self, base: &Base, wants: &[Want<'_>], depth: usize) -> Result<Node, String> {
+        let slots = wants.iter().find(|want| want.path.is_empty()).map(|want| want.slots);
+        Ok(match base {
+            Base::Number(primitive) => Node::Number(*primitive, slots.map(|slots| slots[0])),
+            Base::Text => Node::Text,
+            Base::Time => Node::Time(slots),
+            Base::Message(name) => {
+                let fields = self.definition.fields(name);
+                let fields = fields.ok_or_else(|| format!("its definition lacks {name}"))?;
+                Node::Message(self.message(fields, wants, depth + 1)?)
+            }
+        })
+    }
+}
+
+impl Node {
+    fn walk(&self, cursor: &mut Cursor<'_>, found: &mut Found) -> Result<(), Short> {
+        match self {
+            Node::Number(primitive, None) => {
+                cursor.align(primitive.bytes())?;
+                cursor.skip(primitive.bytes())
+            }
+            Node::Number(primitive, Some(slot)) => {
+                let value = primitive.read(cursor)?;
+                found.keep(*slot, value);
+                Ok(())
+            }
+            Node::Text => cursor.text().map(|_| ()),
+            Node::Time(slots) => {
+                let (seconds, nanoseconds) = (cursor.u32()?, cursor.u32()?);
+                if let Some([first, second]) = slots {
+                    found.keep(*first, f64::from(seconds));
+                    found.keep(*second, f64::from(nanoseconds));
+                }
+                Ok(())
+            }
+            Node::Message(nodes) => {
+                for node in nodes {
+                    node.walk(cursor, found)?;
+                    if found.wanted == 0 {
+                        return Ok(());
+                    }
+                }
+                Ok(())
+            }
+            Node::Array { count, element, picks, keys } => {
+                let count = match count {
+                    Some(count) => *count,
+                    None => cursor.u32()? as usize,
+                };
+                Node::walk_array(count, element, picks, keys, cursor, found)
+            }
+        }
+    }
+
+    fn walk_array(
+        count: usize,
+        element: &Node,
+        picks: &[(Picked, Node)],
+        keys: &[(String, usize)],
+        cursor: &mut Cursor<'_>,
+        found: &mut Found,
+    ) -> Result<(), Short> {
+        if count == 0 || element.is_empty() {
+            return Ok(());
+        }
+        // Every element has at least one byte, so a count that lies is caught before it costs time.
+        if count > cursor.left() {
+            return Err(Short);
+        }
+        if let Node::Number(primitive, _) = element {
+            let bytes = primitive.bytes();
+            cursor.align(bytes)?;
+            for (picked, node) in picks {
+                if let Some(place) = found.place(*picked).filter(|place| *place < count) {
+                    let mut there = *cursor;
+                    there.skip(place.checked_mul(bytes).ok_or(Short)?)?;
+                    node.walk(&mut there, found)?;
+                }
+            }
+            return cursor.skip(count.checked_mul(bytes).ok_or(Short)?);
+        }
+        for place in 0..count {
+            if found.wanted == 0 {
+                return Ok(());
+            }
+            if let (Node::Text, false) = (element, keys.is_empty()) {
+                let text = cursor.text()?;
+                for (_, key) in keys.iter().filter(|(looked_for, _)| looked_for.as_bytes() == text) {
+                    found.keys[*key] = Some(place);
+                }
+                continue;
+            }
+            let before = *cursor;
+            element.walk(cursor, found)?;
+            for (picked, node) in picks {
+                if found.place(*picked) == Some(place) {
+                    node.walk(&mut before.clone(), found)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether it takes no bytes at all.
+    fn is_empty(&self) -> bool {
+        match self {
+            Node::Message(nodes) => nodes.iter().all(Node::is_empty),
+            Node::Array { count, element, .. } => {
+                *count == Some(0) || (count.is_some() && element.is_empty())
+            }
+            Node::Number(..) | Node::Text | Node::Time(_) => false,
+        }
+    }
+}
+
+impl Found {
+    fn keep(&mut self, slot: usize, value: f64) {
+        self.slots[slot] = value;
+        self.wanted = self.wanted.saturating_sub(1);
+    }
+
+    fn place(&self, picked: Picked) -> Option<usize> {
+        match picked {
+            Picked::At(place) => Some(place),
+            Picked::Key(key) => self.keys.get(key).copied().flatten(),
+        }
+    }
+}
+
+impl Primitive {
+    fn read(self, cursor: &mut Cursor<'_>) -> Result<f64, Short> {
+        Ok(match self {
+            Primitive::I8 => f64::from(i8::from_le_bytes(cursor.number()?)),
+            Primitive::U8 => f64::from(u8::from_le_bytes(cursor.number()?)),
+            Primitive::I16 => f64::from(i16::from_le_bytes(cursor.number()?)),
+            Primitive::U16 => f64::from(u16::from_le_bytes(cursor.number()?)),
+            Primitive::I32 => f64::from(i32::from_le_bytes(cursor.number()?)),
+            Primitive::U32 => f64::from(u32::from_le_bytes(cursor.number()?)),
+            Primitive::I64 => i64::from_le_bytes(cursor.number()?) as f64,
+            Primitive::U64 => u64::from_le_bytes(cursor.number()?) as f64,
+            Primitive::F32 => f64::from(f32::from_le_bytes(cursor.number()?)),
+            Primitive::F64 => f64::from_le_bytes(cursor.number()?),
+        })
+    }
+}

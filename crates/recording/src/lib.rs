@@ -1,0 +1,41 @@
+//! Drive logs of a robot as one table of channels on one clock.
+//!
+//! CSV and Parquet hold rows already; ROS 2 MCAP files and ROS 1 bags hold streams, which a [`Map`] names and [`align`]
+//! brings onto one clock. Every reading comes with a [`ReadingReport`]: what was found, used, left aside, repaired, missing
+//! and suspicious. Axes and signs, for the whole program: heading counter-clockwise from +x (east), pitch positive nose-up,
+//! roll positive left side up, yaw rate positive turning left, power positive when drawn from the battery. A gap is NaN and
+//! stays a gap; nothing is extrapolated. This crate knows nothing of models.
+
+pub mod align;
+mod bag;
+mod channel;
+mod column;
+mod compression;
+mod csv;
+mod cursor;
+mod definition;
+mod error;
+mod field;
+mod gap;
+mod layout;
+mod map;
+mod mcap;
+mod parquet;
+mod reading;
+mod recording;
+mod report;
+mod stream;
+mod suspicion;
+mod topic;
+mod units;
+
+pub use channel::{Channel, Quantity};
+pub use error::Error;
+pub use map::{Combine, Map, Place, Source, Stamp, Target};
+pub use reading::{Format, Reading, read, read_path, read_paths};
+pub use recording::{Labels, PowerForm, Recording, Run};
+pub use report::{
+    AlignmentReport, ChannelReport, Ignored, ReadingReport, Repair, RunReport, StreamReport, Suspicion,
+    SuspicionKind,
+};
+pub use units::{Conversion, unit_names};

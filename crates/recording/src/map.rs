@@ -1,0 +1,298 @@
+//! Which column, or which field of which topic, holds which channel in which unit.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Channel, Conversion, Error, Quantity, units};
+
+/// A checked map. Read from JSON:
+///
+/// ```json
+/// {
+///   "name": "my-robot",
+///   "wheel_radius_m": 0.165,
+///   "sources": [
+///     {"channel": "v_left_mps", "topic": "/joint_states",
+///      "fields": ["velocity[name=front_left_wheel]", "velocity[name=rear_left_wheel]"], "unit": "rad/s"},
+///     {"channel": "pitch_rad", "topic": "*/imu/data", "fields": ["orientation.pitch"]},
+///     {"channel": "power_w", "column": "P_bat", "unit": "kW"}
+///   ]
+/// }
+/// ```
+///
+/// A source names a `channel` (also `t_s`, `run` or `surface`), or with `aside` a column of its own name, and takes it from
+/// `column` (or `columns`) of a table or from `fields` of a `topic`; several are combined by `combine`: `mean` (default),
+/// `sum` or `product`. `unit` is that of the result, by default the channel's own; `scale` multiplies it. A topic
+/// beginning with `*` stands for any namespace before the rest. Where several sources give one channel, the first that
+/// the file holds is taken.
+///
+/// A field path is names with dots; `[2]` picks an element of an array and `[name=front_left_wheel]` that element whose
+/// place in the text array `name` of the same message holds the given text. Behind a quaternion, `roll`, `pitch` and
+/// `heading` give the angles in this program's signs: left side up, nose up, counter-clockwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// What reports call it.
+    pub name: String,
+    /// The topic whose stamps become the rows; by default the slowest of those that tell power.
+    pub base: Option<String>,
+    /// Which of a message's times counts.
+    pub stamp: Stamp,
+    /// Longest distance between neighbours that is interpolated across \[s\]; by default three median steps of the
+    /// stream.
+    pub max_gap_s: Option<f64>,
+    /// The surface of the whole drive, where the file does not tell.
+    pub surface: Option<String>,
+    /// Where each channel comes from.
+    pub sources: Vec<Source>,
+}
+
+/// Where one channel comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// What it becomes.
+    pub target: Target,
+    /// Where it lies.
+    pub place: Place,
+    /// How several columns or fields become one value.
+    pub combine: Combine,
+    /// What brings it into SI.
+    pub conversion: Conversion,
+    /// The unit it comes in, for the report.
+    pub unit: String,
+}
+
+/// What a column or field becomes.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// The time of the row.
+    Time,
+    /// The name of the run.
+    Run,
+    /// The name of the surface.
+    Surface,
+    /// A channel.
+    Channel(Channel),
+    /// A column that is no channel, kept under its own name.
+    Aside(String),
+}
+
+/// Where a source lies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// In columns of a table.
+    Columns(Vec<String>),
+    /// In fields of a topic's messages.
+    Topic {
+        /// The topic; a leading `*` stands for any namespace.
+        topic: String,
+        /// Field paths.
+        fields: Vec<String>,
+    },
+}
+
+/// How several columns or fields become one value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Combine {
+    /// Their mean, as of the wheels of a side.
+    #[default]
+    Mean,
+    /// Their sum, as of currents.
+    Sum,
+    /// Their product, as of current and voltage.
+    Product,
+}
+
+/// Which of a message's times counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stamp {
+    /// `header.stamp` where every message of the topic has one, else the time it was logged.
+    #[default]
+    Header,
+    /// The time at which it was logged.
+    Log,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    name: String,
+    wheel_radius_m: Option<f64>,
+    base: Option<String>,
+    #[serde(default)]
+    stamp: Stamp,
+    max_gap_s: Option<f64>,
+    surface: Option<String>,
+    sources: Vec<SourceFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SourceFile {
+    channel: Option<String>,
+    aside: Option<String>,
+    column: Option<String>,
+    #[serde(default)]
+    columns: Vec<String>,
+    topic: Option<String>,
+    #[serde(default)]
+    fields: Vec<String>,
+    #[serde(default)]
+    combine: Combine,
+    unit: Option<String>,
+    scale: Option<f64>,
+}
+
+impl Map {
+    /// Names of the built-in maps.
+    pub const BUILT_IN: [&'static str; 2] = ["husky", "borealtc"];
+
+    /// A built-in map: `husky` for the usual topics of a Clearpath Husky under ROS 1 and ROS 2, `borealtc` for the columns
+    /// of the recordings made from the BorealTC data set.
+    pub fn built_in(name: &str) -> Option<Map> {
+        let text = match name {
+            "husky" => include_str!("../maps/husky.json"),
+            "borealtc" => include_str!("../maps/borealtc.json"),
+            _ => return None,
+        };
+        Map::from_json(text).ok()
+    }
+
+    /// Reads and checks a map.
+    ///
+    /// # Errors
+    /// The place of whatever is missing, unknown, contradictory or in a unit that its channel cannot have.
+    pub fn from_json(text: &str) -> Result<Map, Error> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let file: MapFile = serde_path_to_error::deserialize(&mut deserializer)
+            .map_err(|e| Error::Map { path: e.path().to_string(), message: e.inner().to_string() })?;
+        deserializer.end().map_err(|e| Error::Map { path: ".".into(), message: e.to_string() })?;
+        for (path, value) in [("wheel_radius_m", file.wheel_radius_m), ("max_gap_s", file.max_gap_s)] {
+            if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
+                return Err(Error::Map { path: path.into(), message: "must be positive".into() });
+            }
+        }
+        let radius_m = file.wheel_radius_m;
+        let sources = file.sources.into_iter().enumerate().map(|(i, source)| source.check(i, radius_m));
+        Ok(Map {
+            name: file.name,
+            base: file.base,
+            stamp: file.stamp,
+            max_gap_s: file.max_gap_s,
+            surface: file.surface,
+            sources: sources.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Whether a topic's name is what a source means by `pattern`.
+    pub(crate) fn topic_matches(pattern: &str, topic: &str) -> bool {
+        match pattern.strip_prefix('*') {
+            Some(rest) => topic.ends_with(rest),
+            None => topic == pattern,
+        }
+    }
+}
+
+impl SourceFile {
+    fn check(self, index: usize, wheel_radius_m: Option<f64>) -> Result<Source, Error> {
+        let wrong = |field: &str, message: &str| Error::Map {
+            path: format!("sources[{index}]{field}"),
+            message: message.into(),
+        };
+        let target = match (self.channel, self.aside) {
+            (Some(channel), None) => match channel.as_str() {
+                "t_s" => Target::Time,
+                "run" => Target::Run,
+                "surface" => Target::Surface,
+                _ => Target::Channel(Channel::try_from(channel).map_err(|e| wrong(".channel", &e))?),
+            },
+            (None, Some(name)) => Target::Aside(name),
+            _ => return Err(wrong("", "needs either `channel` or `aside`")),
+        };
+        let columns: Vec<String> = self.column.into_iter().chain(self.columns).collect();
+        let place = match (self.topic, columns.is_empty(), self.fields.is_empty()) {
+            (None, false, true) => Place::Columns(columns),
+            (Some(topic), true, false) => Place::Topic { topic, fields: self.fields },
+            _ => return Err(wrong("", "needs either `column` or `columns`, or `topic` with `fields`")),
+        };
+        if matches!(target, Target::Time | Target::Run | Target::Surface) {
+            match &place {
+                Place::Columns(names) if names.len() == 1 => {}
+                _ => return Err(wrong("", "t_s, run and surface come from one column each")),
+            }
+        }
+        let scale = self.scale.unwrap_or(1.0);
+        if !scale.is_finite() || scale == 0.0 {
+            return Err(wrong(".scale", "must be finite and not 0"));
+        }
+        let (conversion, unit) = conversion(index, &target, self.unit, wheel_radius_m)?;
+        Ok(Source { target, place, combine: self.combine, conversion: conversion.scaled(scale), unit })
+    }
+}
+
+fn conversion(
+    index: usize,
+    target: &Target,
+    unit: Option<String>,
+    wheel_radius_m: Option<f64>,
+) -> Result<(Conversion, String), Error> {
+    let (quantity, name) = match target {
+        Target::Channel(channel) => (channel.quantity(), channel.name()),
+        Target::Time => (Quantity::Time, "t_s"),
+        // What is kept aside is kept in the unit that it comes in.
+        _ => return Ok((Conversion::IDENTITY, unit.unwrap_or_default())),
+    };
+    let unit = unit.unwrap_or_else(|| units::si_unit(quantity).to_owned());
+    match Conversion::from_unit(quantity, &unit, wheel_radius_m) {
+        Some(conversion) => Ok((conversion, unit)),
+        None => Err(Error::Unit {
+            index,
+            needs_radius: Conversion::from_unit(quantity, &unit, Some(1.0)).is_some(),
+            unit,
+            channel: name.to_owned(),
+            known: units::unit_names(quantity),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_maps_are_valid() {
+        for name in Map::BUILT_IN {
+            assert_eq!(Map::built_in(name).unwrap().name, name);
+        }
+        assert_eq!(Map::built_in("rover"), None);
+    }
+
+    #[test]
+    fn a_star_stands_for_any_namespace() {
+        assert!(Map::topic_matches("*/imu/data", "/a200_0001/imu/data"));
+        assert!(Map::topic_matches("*/imu/data", "/imu/data"));
+        assert!(!Map::topic_matches("/imu/data", "/a200_0001/imu/data"));
+    }
+
+    #[test]
+    fn bad_maps_are_refused_by_place() {
+        let with = |source: &str| format!(r#"{{"name": "m", "sources": [{source}]}}"#);
+        for (text, said) in [
+            (with(r#"{"channel": "power_w", "column": "p", "unit": "A"}"#), "sources[0].unit: `A`"),
+            (with(r#"{"channel": "power_w", "column": "p", "unit": "A"}"#), "W, kW"),
+            (with(r#"{"channel": "v_left_mps", "column": "l", "unit": "rad/s"}"#), "wheel_radius_m"),
+            (with(r#"{"channel": "v_lefft_mps", "column": "l"}"#), "v_left_mps, v_right_mps"),
+            (with(r#"{"channel": "power_w"}"#), "sources[0]: needs either"),
+            (with(r#"{"channel": "power_w", "aside": "p", "column": "p"}"#), "`channel` or `aside`"),
+            (with(r#"{"channel": "power_w", "column": "p", "topic": "/p", "fields": ["data"]}"#), "needs"),
+            (with(r#"{"channel": "power_w", "column": "p", "scale": 0}"#), "scale"),
+            (with(r#"{"channel": "t_s", "topic": "/p", "fields": ["t"]}"#), "one column"),
+            (with(r#"{"channel": "power_w", "colum": "p"}"#), "sources[0].colum"),
+            (r#"{"name": "m", "wheel_radius_m": -1, "sources": []}"#.into(), "wheel_radius_m"),
+            (r#"{"name": "m"}"#.into(), "sources"),
+        ] {
+            let message = Map::from_json(&text).unwrap_err().to_string();
+            assert!(message.contains(said), "{text}\n  said: {message}");
+        }
+    }
+}

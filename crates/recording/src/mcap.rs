@@ -1,0 +1,203 @@
+//! ROS 2 MCAP files, by the format's specification (<https://mcap.dev/spec>).
+//!
+//! The records are framed here rather than by the `mcap` crate: its readers give up a chunk that is cut off, and subtract
+//! lengths unchecked in chunks that are not compressed.
+
+use std::{
+    collections::BTreeMap,
+    io::{BufReader, Read},
+};
+
+use crate::{
+    Error, Map, Repair,
+    compression::{LONGEST_BYTES, decompress},
+    cursor::{Cursor, Encoding, Short},
+    reading::{Reading, read_up_to},
+    topic::{Schema, Topics},
+};
+
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// Opcodes of the records that matter here.
+const SCHEMA: u8 = 0x03;
+const CHANNEL: u8 = 0x04;
+const MESSAGE: u8 = 0x05;
+const CHUNK: u8 = 0x06;
+const DATA_END: u8 = 0x0F;
+
+/// A record's opcode and length.
+const FRAME_BYTES: u64 = 9;
+
+/// Name, encoding and text of a schema.
+struct StoredSchema {
+    name: String,
+    encoding: String,
+    text: Vec<u8>,
+}
+
+struct Reader<'m> {
+    schemas: BTreeMap<u16, StoredSchema>,
+    topics: Topics<'m>,
+    plain: Vec<u8>,
+}
+
+/// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
+pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+    let mut source = BufReader::with_capacity(1 << 20, source);
+    let mut bytes = Vec::new();
+    read_up_to(&mut source, MAGIC.len() as u64, &mut bytes)?;
+    if bytes != MAGIC {
+        let reason = "it does not begin with the MCAP magic".into();
+        return Err(Error::NotTheFormat { format: "MCAP", reason });
+    }
+    let husky = Map::built_in("husky");
+    let map = map.or(husky.as_ref()).ok_or(Error::Empty { found: "no map".into() })?;
+    let mut reader = Reader { schemas: BTreeMap::new(), topics: Topics::new(map), plain: Vec::new() };
+    let mut at = MAGIC.len() as u64;
+    loop {
+        let framed = read_up_to(&mut source, FRAME_BYTES, &mut bytes)?;
+        let mut frame = Cursor::packed(&bytes);
+        let Some((opcode, length)) = framed.then(|| frame_of(&mut frame)).and_then(Result::ok) else {
+            reader.tell(at, "the file breaks off; everything before was read");
+            break;
+        };
+        if opcode == DATA_END {
+            break;
+        }
+        let wanted = matches!(opcode, SCHEMA | CHANNEL | MESSAGE | CHUNK);
+        let whole = if wanted && length <= LONGEST_BYTES {
+            read_up_to(&mut source, length, &mut bytes)?
+        } else {
+            if wanted {
+                reader.tell(at, &format!("a record claims {length} bytes; it was stepped over"));
+            }
+            bytes.clear();
+            std::io::copy(&mut source.by_ref().take(length), &mut std::io::sink())? == length
+        };
+        if wanted && !bytes.is_empty() {
+            reader.record(opcode, &bytes, at, whole)?;
+        }
+        if !whole {
+            reader.tell(at, "the file breaks off in this record; what is whole was read");
+            break;
+        }
+        at = at.saturating_add(FRAME_BYTES).saturating_add(length);
+    }
+    reader.topics.finish(name, "MCAP")
+}
+
+fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
+    let [opcode] = cursor.number::<1>()?;
+    Ok((opcode, cursor.u64()?))
+}
+
+impl Reader<'_> {
+    fn tell(&mut self, at: u64, what: &str) {
+        self.topics.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
+    }
+
+    /// Reads a record. What a broken one says is told, not trusted.
+    fn record(&mut self, opcode: u8, body: &[u8], at: u64, whole: bool) -> Result<(), Error> {
+        if opcode == CHUNK {
+            return self.chunk(body, at, whole);
+        }
+        let read = match opcode {
+            _ if !whole => return Ok(()),
+            SCHEMA => self.schema(body),
+            CHANNEL => return self.channel(body, at),
+            MESSAGE => self.message(body),
+            _ => return Ok(()),
+        };
+        if read.is_err() {
+            self.tell(at, "a record is shorter than its kind; it was left out");
+        }
+        Ok(())
+    }
+
+    fn schema(&mut self, body: &[u8]) -> Result<(), Short> {
+        let mut cursor = Cursor::packed(body);
+        let id = cursor.u16()?;
+        let [name, encoding] =
+            [cursor.text()?, cursor.text()?].map(|t| String::from_utf8_lossy(t).into_owned());
+        let text = cursor.counted()?.to_vec();
+        self.schemas.entry(id).or_insert(StoredSchema { name, encoding, text });
+        Ok(())
+    }
+
+    fn channel(&mut self, body: &[u8], at: u64) -> Result<(), Error> {
+        let mut cursor = Cursor::packed(body);
+        let mut parts = || Ok::<_, Short>((cursor.u16()?, cursor.u16()?, cursor.text()?, cursor.text()?));
+        let Ok((id, schema_id, topic, encoding)) = parts() else {
+            self.tell(at, "a channel record is too short; it was left out");
+            return Ok(());
+        };
+        let (topic, encoding) = (String::from_utf8_lossy(topic), String::from_utf8_lossy(encoding));
+        let schema = self.schemas.get(&schema_id);
+        let text =
+            schema.map(|schema| std::str::from_utf8(&schema.text).unwrap_or_default()).unwrap_or_default();
+        let schema_encoding = schema.map_or("none", |schema| schema.encoding.as_str());
+        let (encoding, definition) = match (encoding.as_ref(), schema_encoding) {
+            ("cdr", "ros2msg") => (Encoding::Cdr, Ok(text)),
+            ("ros1", "ros1msg") => (Encoding::Ros1, Ok(text)),
+            (message, schema) => {
+                let reason = format!(
+                    "its messages are `{message}` by a `{schema}` schema; cdr by ros2msg can be read"
+                );
+                (Encoding::Cdr, Err(reason))
+            }
+        };
+        let type_name = schema.map_or("message without a type", |schema| schema.name.as_str());
+        self.topics.connect(u32::from(id), &topic, &Schema { type_name, definition, encoding })
+    }
+
+    fn message(&mut self, body: &[u8]) -> Result<(), Short> {
+        let mut cursor = Cursor::packed(body);
+        let (channel, _sequence, log_ns, _publish_ns) =
+            (cursor.u16()?, cursor.u32()?, cursor.u64()?, cursor.u64()?);
+        let log_ns = i64::try_from(log_ns).unwrap_or(i64::MAX);
+        self.topics.message(u32::from(channel), log_ns, cursor.rest());
+        Ok(())
+    }
+
+    /// Reads the records of a chunk: all of them when its checksum holds, those before the break when it is the one that
+    /// the file ends in, else none.
+    fn chunk(&mut self, body: &[u8], at: u64, whole: bool) -> Result<(), Error> {
+        let mut cursor = Cursor::packed(body);
+        let mut header = || {
+            cursor.skip(16)?;
+            let (claimed_bytes, checksum) = (cursor.u64()?, cursor.number::<4>().map(u32::from_le_bytes)?);
+            let compression = cursor.text()?;
+            let packed_bytes = cursor.u64()?;
+            Ok::<_, Short>((claimed_bytes, checksum, compression, packed_bytes))
+        };
+        let Ok((claimed_bytes, checksum, compression, packed_bytes)) = header() else {
+            self.tell(at, "a chunk is shorter than its header; it was left out");
+            return Ok(());
+        };
+        let packed_bytes = usize::try_from(packed_bytes).unwrap_or(usize::MAX);
+        let packed = cursor.rest();
+        let packed = packed.get(..packed_bytes).unwrap_or(packed);
+        let mut plain = std::mem::take(&mut self.plain);
+        match decompress(compression, packed, claimed_bytes, &mut plain) {
+            Err(reason) => self.tell(at, &format!("{reason}; the chunk was left out")),
+            Ok(true) if checksum != 0 && crc32fast::hash(&plain) != checksum => {
+                self.tell(at, "a chunk fails its checksum; it was left out");
+            }
+            Ok(false) if whole => self.tell(at, "a chunk cannot be decompressed; it was left out"),
+            Ok(_) => self.records(&plain, at)?,
+        }
+        self.plain = plain;
+        Ok(())
+    }
+
+    fn records(&mut self, plain: &[u8], at: u64) -> Result<(), Error> {
+        let mut cursor = Cursor::packed(plain);
+        while let Ok((opcode, length)) = frame_of(&mut cursor) {
+            let Ok(body) = cursor.take(usize::try_from(length).unwrap_or(usize::MAX)) else { break };
+            if opcode != CHUNK {
+                self.record(opcode, body, at, true)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,245 @@
+//! The table that every format is read into.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use serde::Serialize;
+
+use crate::{Channel, gap};
+
+/// Drives of a robot as rows of channels in SI units. Made by the readers, which check it: every column has as many
+/// values as there are times, runs cover the rows in order, times are finite and increase within a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// Time of each row \[s\], increasing within a run.
+    pub t_s: Vec<f64>,
+    /// Channels by row; NaN is a gap.
+    pub channels: BTreeMap<Channel, Vec<f64>>,
+    /// Columns that are no channel, by their own names and in their own units; NaN is a gap.
+    pub aside: BTreeMap<String, Vec<f64>>,
+    /// The surface driven on, by row.
+    pub surface: Option<Labels>,
+    /// The drives, in order.
+    pub runs: Vec<Run>,
+}
+
+/// One drive: consecutive rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its name, unique in the recording.
+    pub name: String,
+    /// Its rows.
+    pub rows: Range<usize>,
+    /// Steps of time longer than this are gaps, over which nothing may be integrated or interpolated \[s\].
+    pub gap_s: f64,
+    /// Unix time of `t_s = 0`, where the source tells \[s\].
+    pub start_unix_s: Option<f64>,
+}
+
+/// A text column: names and which of them each row has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Labels {
+    /// The distinct names, in order of appearance.
+    pub names: Vec<String>,
+    /// By row, the index of its name; [`Labels::NONE`] where there is none.
+    pub index: Vec<u32>,
+}
+
+/// In which of the contract's forms a recording tells power.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PowerForm {
+    /// `power_left_w` and `power_right_w`.
+    Sides,
+    /// `power_w`.
+    Battery,
+    /// `current_a` and `voltage_v`.
+    CurrentAndVoltage,
+    /// `motor_current_left_a` and `motor_current_right_a`.
+    MotorCurrents,
+}
+
+impl PowerForm {
+    /// The forms, the most telling first, with the channels that each needs.
+    pub const ALL: [(PowerForm, [Channel; 2]); 4] = [
+        (PowerForm::Sides, [Channel::LeftPower, Channel::RightPower]),
+        (PowerForm::Battery, [Channel::Power, Channel::Power]),
+        (PowerForm::CurrentAndVoltage, [Channel::Current, Channel::Voltage]),
+        (PowerForm::MotorCurrents, [Channel::LeftMotorCurrent, Channel::RightMotorCurrent]),
+    ];
+}
+
+impl Recording {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.t_s.len()
+    }
+
+    /// A channel by row, NaN in gaps; `None` where the recording lacks it.
+    pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        self.channels.get(&channel).map(Vec::as_slice)
+    }
+
+    /// The most telling form of power that the recording holds.
+    pub fn power_form(&self) -> Option<PowerForm> {
+        let holds = |channel: &Channel| self.channels.contains_key(channel);
+        PowerForm::ALL.iter().find(|(_, needs)| needs.iter().all(holds)).map(|(form, _)| *form)
+    }
+
+    /// The time from a row of a run to the next \[s\]; `None` for its last row and before a gap.
+    pub fn step_s(&self, run: &Run, row: usize) -> Option<f64> {
+        if row + 1 >= run.rows.end || row < run.rows.start {
+            return None;
+        }
+        let step_s = self.t_s.get(row + 1)? - self.t_s.get(row)?;
+        (step_s <= run.gap_s).then_some(step_s)
+    }
+
+    /// The runs of several recordings behind one another. A channel that one of them lacks is a gap there; a run whose
+    /// name is taken gets a number behind it.
+    pub fn join(parts: impl IntoIterator<Item = Recording>) -> Recording {
+        let mut joined = Recording::default();
+        for part in parts {
+            joined.append(part);
+        }
+        joined
+    }
+
+    fn append(&mut self, part: Recording) {
+        let (before, added) = (self.rows(), part.rows());
+        self.t_s.extend(part.t_s);
+        append_columns(&mut self.channels, part.channels, before, added);
+        append_columns(&mut self.aside, part.aside, before, added);
+        if self.surface.is_some() || part.surface.is_some() {
+            let surface = self.surface.get_or_insert_with(|| Labels::unnamed(before));
+            surface.append(&part.surface.unwrap_or_else(|| Labels::unnamed(added)));
+        }
+        for mut run in part.runs {
+            let taken = |name: &str, runs: &[Run]| runs.iter().any(|other| other.name == name);
+            let mut number = 2;
+            let plain = run.name.clone();
+            while taken(&run.name, &self.runs) {
+                run.name = format!("{plain}-{number}");
+                number += 1;
+            }
+            run.rows = run.rows.start + before..run.rows.end + before;
+            self.runs.push(run);
+        }
+    }
+}
+
+fn append_columns<K: Ord>(
+    columns: &mut BTreeMap<K, Vec<f64>>,
+    part: BTreeMap<K, Vec<f64>>,
+    before: usize,
+    added: usize,
+) {
+    for (key, values) in part {
+        columns.entry(key).or_insert_with(|| vec![f64::NAN; before]).extend(values);
+    }
+    for values in columns.values_mut() {
+        values.resize(before + added, f64::NAN);
+    }
+}
+
+impl Run {
+    /// A run over rows of a recording, its gaps told by its own rhythm.
+    pub(crate) fn new(name: String, rows: Range<usize>, t_s: &[f64], start_unix_s: Option<f64>) -> Run {
+        let gap_s = gap::threshold_s(t_s.get(rows.clone()).unwrap_or_default());
+        Run { name, rows, gap_s, start_unix_s }
+    }
+}
+
+impl Labels {
+    /// The index of a row without a name.
+    pub const NONE: u32 = u32::MAX;
+
+    /// The name of a row.
+    pub fn get(&self, row: usize) -> Option<&str> {
+        let index = *self.index.get(row)?;
+        self.names.get(index as usize).map(String::as_str)
+    }
+
+    /// The same name for every row.
+    pub(crate) fn constant(name: &str, rows: usize) -> Labels {
+        Labels { names: vec![name.to_owned()], index: vec![0; rows] }
+    }
+
+    pub(crate) fn unnamed(rows: usize) -> Labels {
+        Labels { names: Vec::new(), index: vec![Labels::NONE; rows] }
+    }
+
+    /// Adds a row; an empty name is none.
+    pub(crate) fn push(&mut self, name: &str) {
+        let index = match self.index.last() {
+            // Names come in long stretches, so the last one is looked at first.
+            Some(&last) if self.names.get(last as usize).is_some_and(|known| known == name) => last,
+            _ => self.index_of(name),
+        };
+        self.index.push(index);
+    }
+
+    fn index_of(&mut self, name: &str) -> u32 {
+        if name.is_empty() {
+            return Labels::NONE;
+        }
+        let known = self.names.iter().position(|known| known == name);
+        let position = known.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        });
+        u32::try_from(position).unwrap_or(Labels::NONE)
+    }
+
+    fn append(&mut self, part: &Labels) {
+        let renamed: Vec<u32> = part.names.iter().map(|name| self.index_of(name)).collect();
+        let new = |index: &u32| renamed.get(*index as usize).copied().unwrap_or(Labels::NONE);
+        self.index.extend(part.index.iter().map(new));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(channel: Channel, surface: Option<&str>) -> Recording {
+        let t_s = vec![0.0, 0.1, 0.2, 0.9];
+        Recording {
+            channels: BTreeMap::from([(channel, vec![1.0, 2.0, 3.0, 4.0])]),
+            surface: surface.map(|name| Labels::constant(name, 4)),
+            runs: vec![Run::new("drive".into(), 0..4, &t_s, None)],
+            t_s,
+            ..Recording::default()
+        }
+    }
+
+    #[test]
+    fn joined_recordings_keep_their_runs_apart_and_lacking_channels_as_gaps() {
+        let joined = Recording::join([part(Channel::Power, None), part(Channel::Current, Some("ice"))]);
+        assert_eq!(joined.rows(), 8);
+        assert_eq!(joined.runs[1].name, "drive-2");
+        assert_eq!(joined.runs[1].rows, 4..8);
+        let power_w = joined.channel(Channel::Power).unwrap();
+        assert!(power_w[..4] == [1.0, 2.0, 3.0, 4.0] && power_w[4..].iter().all(|p| p.is_nan()));
+        assert!(joined.channel(Channel::Current).unwrap()[..4].iter().all(|i| i.is_nan()));
+        let surface = joined.surface.unwrap();
+        assert_eq!((surface.get(0), surface.get(7)), (None, Some("ice")));
+    }
+
+    #[test]
+    fn a_step_over_a_gap_or_out_of_the_run_is_none() {
+        let recording = part(Channel::Power, None);
+        let run = &recording.runs[0];
+        let steps: Vec<bool> = (0..4).map(|row| recording.step_s(run, row).is_some()).collect();
+        assert_eq!(steps, [true, true, false, false]);
+    }
+
+    #[test]
+    fn the_most_telling_form_of_power_is_taken() {
+        let mut recording = part(Channel::Current, None);
+        assert_eq!(recording.power_form(), None);
+        recording.channels.insert(Channel::Voltage, vec![24.0; 4]);
+        assert_eq!(recording.power_form(), Some(PowerForm::CurrentAndVoltage));
+        recording.channels.insert(Channel::Power, vec![24.0; 4]);
+        assert_eq!(recording.power_form(), Some(PowerForm::Battery));
+    }
+}

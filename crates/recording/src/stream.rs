@@ -1,0 +1,154 @@
+//! The samples of one topic, in the order of one clock.
+
+use crate::{Error, Repair, Stamp};
+
+/// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
+/// messages are delayed by fractions of a second on a robot's own network.
+const CLOCK_JUMP_S: f64 = 2.0;
+
+const NS_PER_S: f64 = 1e9;
+
+/// Samples as they were logged.
+#[derive(Debug, Default)]
+pub(crate) struct Samples {
+    pub(crate) log_ns: Vec<i64>,
+    /// The header's stamp; zero where it was not set.
+    pub(crate) stamp_ns: Vec<i64>,
+    /// By source, then by message.
+    pub(crate) columns: Vec<Vec<f64>>,
+}
+
+/// Samples in increasing order of time.
+#[derive(Debug)]
+pub(crate) struct Stream {
+    pub(crate) t_ns: Vec<i64>,
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) clock: &'static str,
+}
+
+impl Samples {
+    /// Chooses the clock, refuses one that was set on the way, sorts late messages in and drops repeated stamps.
+    pub(crate) fn into_stream(
+        self,
+        topic: &str,
+        stamp: Stamp,
+        repairs: &mut Vec<Repair>,
+    ) -> Result<Stream, Error> {
+        let has_stamps = self.stamp_ns.len() == self.log_ns.len() && self.stamp_ns.iter().all(|ns| *ns != 0);
+        let by_header = stamp == Stamp::Header && has_stamps;
+        let (t_ns, clock) =
+            if by_header { (self.stamp_ns, "header stamp") } else { (self.log_ns.clone(), "log time") };
+        let other = if by_header { "log" } else { "header" };
+        refuse_jumps(topic, &t_ns, &self.log_ns, other)?;
+        let mut stream = Stream { t_ns, columns: self.columns, clock };
+        let mut repair = |count: usize, what: &str| {
+            if count > 0 {
+                repairs.push(Repair { place: format!("topic {topic}"), what: format!("{count} {what}") });
+            }
+        };
+        repair(stream.sort(), "messages came later than their successors; they were sorted by time");
+        repair(stream.drop_repeats(), "messages repeat the stamp before them; the first of each was kept");
+        Ok(stream)
+    }
+}
+
+fn refuse_jumps(topic: &str, t_ns: &[i64], log_ns: &[i64], other: &'static str) -> Result<(), Error> {
+    let jump = |message: usize, by_ns: i64| {
+        let by_s = by_ns as f64 / NS_PER_S;
+        let topic = topic.to_owned();
+        (by_s.abs() > CLOCK_JUMP_S).then_some(Error::ClockJump { topic, message, by_s, other })
+    };
+    let mut latest_ns = i64::MIN;
+    for (at, (&t, &log)) in t_ns.iter().zip(log_ns).enumerate() {
+        if at > 0 {
+            let before = (t_ns[at - 1], log_ns[at - 1]);
+            let offset = |t: i64, log: i64| t.saturating_sub(log);
+            let moved = offset(t, log).saturating_sub(offset(before.0, before.1));
+            let back = t.saturating_sub(latest_ns).min(0);
+            if let Some(error) = jump(at + 1, moved).or_else(|| jump(at + 1, back)) {
+                return Err(error);
+            }
+        }
+        latest_ns = latest_ns.max(t);
+    }
+    Ok(())
+}
+
+impl Stream {
+    fn sort(&mut self) -> usize {
+        let mut latest = i64::MIN;
+        let late = self.t_ns.iter().filter(|t| {
+            let late = **t < latest;
+            latest = latest.max(**t);
+            late
+        });
+        let late = late.count();
+        if late > 0 {
+            let mut order: Vec<usize> = (0..self.t_ns.len()).collect();
+            order.sort_by_key(|&at| self.t_ns[at]);
+            self.pick(&order);
+        }
+        late
+    }
+
+    fn drop_repeats(&mut self) -> usize {
+        if self.t_ns.windows(2).all(|pair| pair[0] != pair[1]) {
+            return 0;
+        }
+        let new = |at: &usize| *at == 0 || self.t_ns[*at] != self.t_ns[at - 1];
+        let kept: Vec<usize> = (0..self.t_ns.len()).filter(new).collect();
+        let dropped = self.t_ns.len() - kept.len();
+        if dropped > 0 {
+            self.pick(&kept);
+        }
+        dropped
+    }
+
+    fn pick(&mut self, order: &[usize]) {
+        self.t_ns = order.iter().map(|&at| self.t_ns[at]).collect();
+        for column in &mut self.columns {
+            *column = order.iter().map(|&at| column[at]).collect();
+        }
+    }
+
+    /// Times in seconds after an origin.
+    pub(crate) fn t_s(&self, origin_ns: i64) -> Vec<f64> {
+        self.t_ns.iter().map(|t| t.saturating_sub(origin_ns) as f64 / NS_PER_S).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(t_s: &[f64]) -> Samples {
+        let ns: Vec<i64> = t_s.iter().map(|t| (t * NS_PER_S) as i64).collect();
+        let columns = vec![(0..t_s.len()).map(|at| at as f64).collect()];
+        Samples { log_ns: (0..ns.len() as i64).map(|i| i * 100_000_000).collect(), stamp_ns: ns, columns }
+    }
+
+    #[test]
+    fn late_and_repeated_messages_are_mended_and_told() {
+        let mut repairs = Vec::new();
+        let stream =
+            samples(&[1.0, 1.2, 1.1, 1.2, 1.3]).into_stream("/t", Stamp::Header, &mut repairs).unwrap();
+        assert_eq!(stream.columns[0], [0.0, 2.0, 1.0, 4.0]);
+        assert!(repairs[0].what.starts_with("1 messages came later"), "{repairs:?}");
+        assert!(repairs[1].what.starts_with("1 messages repeat"), "{repairs:?}");
+    }
+
+    #[test]
+    fn a_clock_that_is_set_on_the_way_is_refused_by_message() {
+        for times in [[1.0, 1.1, 500.0, 500.1], [500.0, 500.1, 1.0, 1.1]] {
+            let error = samples(&times).into_stream("/t", Stamp::Header, &mut Vec::new()).unwrap_err();
+            assert!(error.to_string().contains("topic /t, message 3: its clock jumps by"), "{error}");
+        }
+        assert!(samples(&[1.0, 1.1, 500.0]).into_stream("/t", Stamp::Log, &mut Vec::new()).is_ok());
+    }
+
+    #[test]
+    fn a_topic_with_an_unset_stamp_goes_by_the_log() {
+        let stream = samples(&[0.0, 1.1, 1.2]).into_stream("/t", Stamp::Header, &mut Vec::new()).unwrap();
+        assert_eq!((stream.clock, stream.t_ns[1]), ("log time", 100_000_000));
+    }
+}

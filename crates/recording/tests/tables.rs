@@ -1,0 +1,279 @@
+//! CSV and Parquet tables: what is read, what is refused and in which words, what is repaired and told.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
+
+use std::{path::PathBuf, sync::Arc};
+
+use ::parquet::{
+    data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type},
+    file::{properties::WriterProperties, writer::SerializedFileWriter},
+    schema::parser::parse_message_type,
+};
+use proptest::prelude::*;
+use recording::{Channel, Format, Map, PowerForm, Reading, SuspicionKind, read, read_paths};
+
+fn csv(text: &str) -> Result<Reading, recording::Error> {
+    read(text.as_bytes().to_vec(), Format::Csv, "drive", None)
+}
+
+const SMALL: &str = "t_s,v_left_mps,v_right_mps,power_w,note,gear\n\
+                     0.0,0.1,0.2,50,start,1\n0.1,0.2,,51,,2\n0.2,0.3,nan,52,turn,3\n";
+
+#[test]
+fn a_small_table_is_read_with_gaps_and_unknown_columns_aside() {
+    let Reading { recording, report } = csv(SMALL).unwrap();
+    assert_eq!(recording.t_s, [0.0, 0.1, 0.2]);
+    let right = recording.channel(Channel::RightSpeed).unwrap();
+    assert!(right[0] == 0.2 && right[1].is_nan() && right[2].is_nan());
+    assert_eq!(recording.aside["gear"], [1.0, 2.0, 3.0]);
+    assert_eq!(recording.runs[0].name, "drive");
+    assert_eq!(report.power_form, Some(PowerForm::Battery));
+    let note = report.ignored.iter().find(|ignored| ignored.name == "note").unwrap();
+    assert!(note.reason.contains("line 2"), "{note:?}");
+    let used = report.channels.iter().find(|used| used.channel == Channel::RightSpeed).unwrap();
+    assert_eq!((used.present, used.gaps), (1, 1));
+    assert!((report.runs[0].rate_hz.unwrap() - 10.0).abs() < 1e-9);
+}
+
+#[test]
+fn semicolons_tabs_a_byte_order_mark_quotes_and_blank_lines_are_read() {
+    for text in [
+        SMALL.replace(',', ";"),
+        SMALL.replace(',', "\t"),
+        format!("\u{feff}{SMALL}"),
+        SMALL.replace("start", "\"start, then\ngo\""),
+        SMALL.replace("\n0.1", "\n\n0.1"),
+        SMALL.replace('\n', "\r\n"),
+    ] {
+        assert_eq!(csv(&text).unwrap().recording.rows(), 3, "{text}");
+    }
+}
+
+#[test]
+fn bad_tables_are_refused_by_place_and_remedy() {
+    for (text, said) in [
+        (SMALL.replace("0.1,0.2,,51", "0.1,fast,,51"), "line 3, column `v_left_mps`: `fast`"),
+        (SMALL.replace("0.1,0.2,,51", "0.1,inf,,51"), "line 3, column `v_left_mps`: `inf`"),
+        (SMALL.replace("\n0.2,0.3", "\n0.1,0.3"), "line 4: time repeats"),
+        (SMALL.replace("\n0.2,0.3", "\n0.05,0.3"), "line 4: time goes back from 0.1 s to 0.05 s"),
+        (SMALL.replace("\n0.2,0.3", "\n,0.3"), "line 4: there is no time in column `t_s`"),
+        (SMALL.replace("\n0.2,0.3", "\n\n0.1,0.3"), "line 5: time repeats"),
+        (SMALL.replace("\n0.2,0.3", "\n0.1,0.3").replace('\n', "\r\n"), "line 4: time repeats"),
+        (SMALL.replace("start", "\"a\nb\"").replace("\n0.2,0.3", "\n0.1,0.3"), "line 5: time repeats"),
+        (SMALL.replace("51,,2", "51,2"), "line 3: 5 cells, but the header has 6"),
+        (SMALL.replace("power_w", "power_kw"), "did you mean `power_kw` for power_w"),
+        (SMALL.replace("t_s", "time"), "t_s is missing; found: time, v_left_mps"),
+        (SMALL.replace("v_left_mps", "v_left_kmph"), "`v_left_kmph` for v_left_mps"),
+        (SMALL.replace("power_w", "power_left_w"), "power_right_w is missing"),
+        (SMALL.replace("gear", "note"), "two columns give note"),
+        (SMALL.replace("50", "").replace("51", "nan").replace("52", "NaN"), "power_w (without a number)"),
+        ("t_s,v_left_mps,v_right_mps,power_w\n".into(), "no row"),
+        (String::new(), "empty file"),
+        ("\u{1}\u{2}\n".into(), "t_s is missing"),
+    ] {
+        let message = csv(&text).unwrap_err().to_string();
+        assert!(message.contains(said), "{text}\n  said: {message}");
+    }
+}
+
+#[test]
+fn a_last_line_that_breaks_off_is_left_out_and_told() {
+    let Reading { recording, report } = csv(SMALL.trim_end_matches("an,52,turn,3\n")).unwrap();
+    assert_eq!(recording.rows(), 2);
+    assert!(report.repairs[0].what.contains("breaks off after 3 of 6"), "{report}");
+}
+
+#[test]
+fn runs_that_lie_apart_are_brought_together_and_keep_their_own_time() {
+    let text = "run,t_s,v_left_mps,v_right_mps,power_w,surface\n\
+                a,0,1,1,1,ice\nb,0,2,2,2,mud\na,1,3,3,3,ice\nb,1,4,4,4,mud\n";
+    let Reading { recording, report } = csv(text).unwrap();
+    assert_eq!(recording.channel(Channel::Power).unwrap(), [1.0, 3.0, 2.0, 4.0]);
+    assert_eq!((recording.runs[1].name.as_str(), recording.runs[1].rows.clone()), ("b", 2..4));
+    assert_eq!(recording.surface.as_ref().unwrap().get(1), Some("ice"));
+    assert_eq!(report.repairs.len(), 1);
+    let wrong = text.replace("b,1,4", "b,0,4");
+    assert!(
+        csv(&wrong).unwrap_err().to_string().starts_with("line 5: time repeats"),
+        "its own line is named"
+    );
+}
+
+#[test]
+fn a_map_names_columns_units_and_signs() {
+    let text = "stamp,L,R,fl,P,nose_down_deg\n0,3.6,7.2,1,0.05,-90\n500,3.6,7.2,3,0.06,0\n";
+    let map = r#"{"name": "lab", "wheel_radius_m": 0.1, "surface": "tiles", "sources": [
+        {"channel": "t_s", "column": "stamp", "unit": "ms"},
+        {"channel": "v_left_mps", "columns": ["L", "fl"], "combine": "product", "unit": "km/h"},
+        {"channel": "v_right_mps", "column": "R", "unit": "rad/s"},
+        {"channel": "power_w", "column": "P", "unit": "kW"},
+        {"channel": "pitch_rad", "column": "nose_down_deg", "unit": "deg", "scale": -1},
+        {"channel": "roll_rad", "column": "absent"}]}"#;
+    let map = Map::from_json(map).unwrap();
+    let Reading { recording, report } = read(text.into(), Format::Csv, "lab", Some(&map)).unwrap();
+    assert_eq!(recording.t_s, [0.0, 0.5]);
+    assert!((recording.channel(Channel::LeftSpeed).unwrap()[1] - 3.0).abs() < 1e-12);
+    assert!((recording.channel(Channel::RightSpeed).unwrap()[0] - 0.72).abs() < 1e-12);
+    assert!((recording.channel(Channel::Power).unwrap()[0] - 50.0).abs() < 1e-12);
+    let pitch = recording.channel(Channel::Pitch).unwrap()[0];
+    assert!((pitch - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    assert_eq!(recording.surface.unwrap().names, ["tiles"]);
+    assert!(report.ignored.iter().any(|ignored| ignored.name == "absent"));
+}
+
+/// Parquet of three rows in two row groups, of the types that writers use.
+fn parquet_file() -> Vec<u8> {
+    let schema = "message drive { required int64 t_s (TIMESTAMP(MICROS, true)); required double v_left_mps;
+        optional float v_right_mps; optional int64 power_w; optional binary surface (UTF8); optional binary note (UTF8); }";
+    let schema = Arc::new(parse_message_type(schema).unwrap());
+    let mut bytes = Vec::new();
+    let mut writer =
+        SerializedFileWriter::new(&mut bytes, schema, Arc::new(WriterProperties::default())).unwrap();
+    for (t, left, right, power, surface) in [
+        (
+            vec![0, 500_000],
+            vec![0.5, 0.25],
+            (vec![0.5f32], vec![1, 0]),
+            (vec![40, 50], vec![1, 1]),
+            ("ice", vec![1, 1]),
+        ),
+        (vec![1_000_000], vec![0.125], (vec![0.25f32], vec![1]), (vec![], vec![0]), ("mud", vec![0])),
+    ] {
+        let mut group = writer.next_row_group().unwrap();
+        let texts: Vec<ByteArray> =
+            surface.1.iter().filter(|l| **l == 1).map(|_| ByteArray::from(surface.0)).collect();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int64Type>().write_batch(&t, None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<DoubleType>().write_batch(&left, None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<FloatType>().write_batch(&right.0, Some(&right.1), None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int64Type>().write_batch(&power.0, Some(&power.1), None).unwrap();
+        column.close().unwrap();
+        for _ in 0..2 {
+            let mut column = group.next_column().unwrap().unwrap();
+            column.typed::<ByteArrayType>().write_batch(&texts, Some(&surface.1), None).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+    }
+    writer.close().unwrap();
+    bytes
+}
+
+#[test]
+fn parquet_of_several_types_and_row_groups_is_read_with_its_nulls_as_gaps() {
+    let Reading { recording, report } = read(parquet_file(), Format::Parquet, "drive", None).unwrap();
+    assert_eq!(recording.t_s, [0.0, 0.5, 1.0]);
+    assert_eq!(recording.channel(Channel::LeftSpeed).unwrap(), [0.5, 0.25, 0.125]);
+    let right = recording.channel(Channel::RightSpeed).unwrap();
+    assert!(right[0] == 0.5 && right[1].is_nan() && right[2] == 0.25, "{right:?}");
+    let power_w = recording.channel(Channel::Power).unwrap();
+    assert!(power_w[..2] == [40.0, 50.0] && power_w[2].is_nan());
+    let surface = recording.surface.unwrap();
+    assert_eq!([surface.get(0), surface.get(2)], [Some("ice"), None]);
+    assert!(report.ignored.iter().any(|i| i.name == "note" && i.reason.contains("text")), "{report}");
+}
+
+#[test]
+fn parquet_with_text_for_numbers_or_cut_off_is_refused() {
+    let schema = "message drive { required binary t_s (UTF8); required double v_left_mps; }";
+    let mut bytes = Vec::new();
+    let schema = Arc::new(parse_message_type(schema).unwrap());
+    SerializedFileWriter::new(&mut bytes, schema, Arc::default()).unwrap().close().unwrap();
+    let message = read(bytes, Format::Parquet, "drive", None).unwrap_err().to_string();
+    assert!(message.contains("field `t_s`: it holds text; write it as a double"), "{message}");
+    let whole = parquet_file();
+    let cut = whole[..whole.len() / 2].to_vec();
+    let message = read(cut, Format::Parquet, "drive", None).unwrap_err().to_string();
+    assert!(message.contains("not a readable Parquet file"), "{message}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn damaged_parquet_never_panics(
+        flips in proptest::collection::vec((0.0..1.0f64, 0u8..8), 1..6),
+        length in 0.5..1.5f64,
+    ) {
+        let mut bytes = parquet_file();
+        bytes.truncate((bytes.len() as f64 * length) as usize);
+        for (place, bit) in flips {
+            let at = (bytes.len() as f64 * place) as usize;
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte ^= 1 << bit;
+            }
+        }
+        let _ = read(bytes, Format::Parquet, "damaged", None);
+    }
+
+    #[test]
+    fn any_text_is_read_or_refused(text in "(t_s,v_left_mps,v_right_mps,power_w\n)?([-0-9.,;\"a\n\r]{0,200})") {
+        let _ = csv(&text);
+    }
+
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        for format in [Format::Csv, Format::Parquet, Format::Mcap, Format::Bag] {
+            let _ = read(bytes.clone(), format, "noise", None);
+        }
+    }
+}
+
+/// The real recordings: beside the workspace, or where `JOULEPATH_RECORDINGS` says.
+fn real_files() -> Option<Vec<PathBuf>> {
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings");
+    let folder = std::env::var_os("JOULEPATH_RECORDINGS").map_or(beside, PathBuf::from);
+    let names = ["asphalt", "flooring", "ice", "sandy-loam", "snow"];
+    let files: Vec<PathBuf> = names.iter().map(|name| folder.join(format!("husky-{name}.csv"))).collect();
+    if files.iter().all(|file| file.exists()) {
+        return Some(files);
+    }
+    eprintln!("SKIPPED: the real recordings are not in {}", folder.display());
+    None
+}
+
+#[test]
+fn a_run_in_kilowatts_among_others_in_watts_is_suspicious() {
+    let mut text = "run,t_s,v_left_mps,v_right_mps,power_w\n".to_owned();
+    for (run, scale) in [("a", 1.0), ("b", 1.0), ("c", 0.001)] {
+        for row in 0..60 {
+            text += &format!("{run},{row},1,0.9,{}\n", scale * f64::from(100 + row));
+        }
+    }
+    let report = csv(&text).unwrap().report;
+    let mixed =
+        report.suspicions.iter().filter(|d| d.kind == SuspicionKind::Unit && d.channel == Channel::Power);
+    let runs: Vec<&str> = mixed.filter_map(|doubt| doubt.run.as_deref()).collect();
+    assert_eq!(runs, ["c"], "{report}");
+}
+
+#[test]
+fn the_real_recordings_are_read_whole_and_their_oddities_told() {
+    let Some(files) = real_files() else { return };
+    for map in [None, Map::built_in("borealtc")] {
+        let (recording, reports) = read_paths(&files, map.as_ref()).unwrap();
+        assert_eq!(recording.rows(), 2790 + 4780 + 3716 + 2233 + 4481);
+        assert_eq!(recording.runs.len(), 4 + 5 + 5 + 8 + 14);
+        assert_eq!(recording.power_form(), Some(PowerForm::MotorCurrents));
+        for report in &reports {
+            assert!(report.ignored.is_empty() && report.repairs.is_empty(), "{report}");
+            assert!(report.runs.iter().all(|run| (run.rate_hz.unwrap() - 6.5).abs() < 0.1), "{report}");
+            let of = |kind| report.suspicions.iter().filter(move |doubt| doubt.kind == kind);
+            assert_eq!(of(SuspicionKind::Unsigned).count(), 2, "{report}");
+            assert_eq!(of(SuspicionKind::Unit).count(), 0, "{report}");
+        }
+        if map.is_none() {
+            reports.iter().for_each(|report| eprintln!("{report}"));
+        }
+        // On snow the wheels turn and the robot does not; on flooring it does.
+        let slips =
+            |at: usize| reports[at].suspicions.iter().filter(|d| d.kind == SuspicionKind::Slip).count();
+        assert!(slips(4) > 0 && slips(1) == 0, "{} on snow, {} on flooring", slips(4), slips(1));
+    }
+}
