@@ -53,12 +53,13 @@ fn measure(tile: &terrain::Terrain, side: usize) -> Result<(), Box<dyn Error + S
     println!("towards: {tt:?}");
     let mut workspace = planner::Workspace::of(&lattice);
     for (f, name) in [(&field, "whole"), (&t, "towards")] {
-    for bound in [1.2, 1.05, 1.0, 1.2, 1.05, 1.0] {
-        let question = Search { starts: &starts, goals: &goals, besides: 0.0, bound, patience: &patience };
-        let (outcome, st) = timed(|| search(&table, f, &question, &mut workspace));
-        let Outcome::Found(found) = outcome else { return Err("no path".into()) };
-        println!("{name} bound {bound}: {st:?} {} expanded, proven {:?}", found.expanded, found.bound);
-    }
+        for bound in [1.2, 1.05, 1.0, 1.2, 1.05, 1.0] {
+            let question =
+                Search { starts: &starts, goals: &goals, besides: 0.0, bound, patience: &patience };
+            let (outcome, st) = timed(|| search(&table, f, &question, &mut workspace));
+            let Outcome::Found(found) = outcome else { return Err("no path".into()) };
+            println!("{name} bound {bound}: {st:?} {} expanded, proven {:?}", found.expanded, found.bound);
+        }
     }
     let question = Search { starts: &starts, goals: &goals, besides: 0.0, bound: 1.0, patience: &patience };
     let (outcome, search_time) = timed(|| search(&table, &field, &question, &mut workspace));
@@ -67,7 +68,11 @@ fn measure(tile: &terrain::Terrain, side: usize) -> Result<(), Box<dyn Error + S
     let (exact, et) = timed(|| planner::ExactField::new(&table, &goals, &patience));
     let exact = exact.ok_or("late")?;
     let (w, wt) = timed(|| exact.walk(&table, &starts));
-    println!("exact {:.1} ns/state, walk {wt:?} {}", nanoseconds_each(et, (side*side*16) as u64), w.map_or(0, |w| w.1.len()));
+    println!(
+        "exact {:.1} ns/state, walk {wt:?} {}",
+        nanoseconds_each(et, (side * side * 16) as u64),
+        w.map_or(0, |w| w.1.len())
+    );
     let edges = side * side * HEADINGS * lattice.motions_per_state();
     println!(
         "{side:>6} {:>14.1} {:>15.1} {expanded:>11} {:>17.1} {:>10.1}",

@@ -88,10 +88,11 @@ fn looser_bounds_expand_fewer_states() {
 fn whenever_patience_ends_there_is_either_a_path_with_its_bound_or_none_yet() {
     let terrain = hills(200, 6);
     let robot = builtin::husky_a200();
-    let best = plan(&terrain, &robot, &across(&terrain, Patience::default(), 1.0), Objective::Energy).unwrap();
+    let best =
+        plan(&terrain, &robot, &across(&terrain, Patience::default(), 1.0), Objective::Energy).unwrap();
     let least_j = best.route.total.energy_j;
     let (mut none, mut late, mut whole) = (0, 0, 0);
-    for looks in (0..40).map(|i| i * i * 2) {
+    for looks in (0..40).map(|i| i * 9) {
         let query = across(&terrain, Patience::for_looks(looks), 1.0);
         match plan(&terrain, &robot, &query, Objective::Energy) {
             Err(Error::Timeout { .. }) => none += 1,
@@ -136,7 +137,8 @@ fn a_bound_below_one_and_a_tolerance_that_snapping_defeats_are_named() {
         change(&mut query);
         plan(&terrain, &robot, &query, Objective::Energy).unwrap_err().to_string()
     };
-    for bound in [|q: &mut Query| q.bound = 0.9, |q: &mut Query| q.bound = f64::NAN, |q: &mut Query| q.bound = 99.0]
+    for bound in
+        [|q: &mut Query| q.bound = 0.9, |q: &mut Query| q.bound = f64::NAN, |q: &mut Query| q.bound = 99.0]
     {
         assert!(refused(bound).starts_with("bound is "), "{}", refused(bound));
     }

@@ -18,7 +18,8 @@ fn room_j(energy_j: f64) -> f64 {
 
 fn to_goal(random: &mut impl Rng, query: &Query, terrain: &Terrain) -> Query {
     let mut next = query.clone();
-    let [x_m, y_m] = terrain.grid.at_fraction_m(random.random_range(0.05..0.95), random.random_range(0.05..0.95));
+    let [x_m, y_m] =
+        terrain.grid.at_fraction_m(random.random_range(0.05..0.95), random.random_range(0.05..0.95));
     (next.start.x_m, next.start.y_m) = (x_m, y_m);
     next
 }
