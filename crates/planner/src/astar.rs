@@ -4,13 +4,14 @@ use std::collections::HashMap;
 
 use crate::{
     cost::{FORBIDDEN, decode},
+    field::{GoalField, UNREACHED},
     heading::{HEADINGS, Heading},
-    heuristic::{BUCKET_SHIFT, GoalField, UNREACHED},
     labels::{Labels, Workspace},
     lattice::{Lattice, State},
     layout::{Layout, Shift},
     patience::Patience,
     prefetch::prefetch,
+    queue::BUCKET_SHIFT,
     table::CostTable,
 };
 
@@ -72,7 +73,12 @@ const CODES_AHEAD: usize = 3;
 ///
 /// Passes with smaller and smaller weights follow each other until the bound is proven; each but the first looks only at
 /// what can still beat the best path so far.
-pub fn search(table: &CostTable, field: &GoalField, query: &Search<'_>, workspace: &mut Workspace) -> Outcome {
+pub fn search(
+    table: &CostTable,
+    field: &GoalField,
+    query: &Search<'_>,
+    workspace: &mut Workspace,
+) -> Outcome {
     let lattice = table.lattice();
     let units = |amount: f64| (amount * table.units()) as u32;
     let goals: HashMap<u32, u32> =

@@ -123,12 +123,7 @@ impl Chain {
     }
 
     /// Visits every step of driving this from a cell; `None`, possibly after some visits, where it is forbidden.
-    pub(crate) fn drive(
-        &self,
-        lattice: &Lattice,
-        cell: Cell,
-        mut visit: impl FnMut(&Step),
-    ) -> Option<()> {
+    pub(crate) fn drive(&self, lattice: &Lattice, cell: Cell, mut visit: impl FnMut(&Step)) -> Option<()> {
         let terrain = &lattice.terrain;
         let index = terrain.grid.index(cell);
         shifted(terrain, cell, self.read_from)?;

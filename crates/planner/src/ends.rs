@@ -26,7 +26,9 @@ impl Ends {
         let tolerance_m = query.goal.tolerance_m;
         within("goal.tolerance_m", tolerance_m, 0.0, 10_000.0)?;
         within("bound", query.bound, 1.0, Query::LOOSEST_BOUND)?;
-        if let Some(snap_radius_m) = query.snap_radius_m.filter(|radius_m| tolerance_m > 0.0 && *radius_m > tolerance_m) {
+        if let Some(snap_radius_m) =
+            query.snap_radius_m.filter(|radius_m| tolerance_m > 0.0 && *radius_m > tolerance_m)
+        {
             return Err(Error::ConflictingTolerance { tolerance_m, snap_radius_m });
         }
         let start = snap(

@@ -2,13 +2,13 @@
 
 use crate::{
     cost::{FORBIDDEN, decode},
+    field::UNREACHED,
     heading::HEADINGS,
-    heuristic::{BUCKET_SHIFT, UNREACHED},
     labels::Labels,
     lattice::State,
     layout::{Layout, Shift},
     patience::Patience,
-    queue::BucketQueue,
+    queue::{BUCKET_SHIFT, BucketQueue},
     table::CostTable,
 };
 

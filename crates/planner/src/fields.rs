@@ -6,7 +6,7 @@ use terrain::Cell;
 
 use crate::{
     exact::ExactField,
-    heuristic::{FieldEnds, GoalField},
+    field::{FieldEnds, GoalField},
     lattice::State,
     patience::Patience,
     table::{CostTable, Objective},
@@ -58,7 +58,9 @@ impl FieldCache {
     ) -> Option<Arc<GoalField>> {
         let mut towards = Some(start);
         if let Some(entry) = self.latest(&key) {
-            if let Some(field) = entry.field.as_ref().filter(|_| entry.towards.is_none_or(|cell| cell == start)) {
+            if let Some(field) =
+                entry.field.as_ref().filter(|_| entry.towards.is_none_or(|cell| cell == start))
+            {
                 return Some(Arc::clone(field));
             }
             let asked_before = entry.field.is_some();

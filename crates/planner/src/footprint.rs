@@ -89,7 +89,11 @@ impl Clearance {
     pub fn new(terrain: &Terrain) -> Self {
         let tile_columns = terrain.grid.columns.div_ceil(Self::TILE);
         let tiles = tile_columns * terrain.grid.rows.div_ceil(Self::TILE);
-        Clearance { terrain: terrain.clone(), tile_columns, tiles: (0..tiles).map(|_| OnceLock::new()).collect() }
+        Clearance {
+            terrain: terrain.clone(),
+            tile_columns,
+            tiles: (0..tiles).map(|_| OnceLock::new()).collect(),
+        }
     }
 
     /// Clearance of the cell at a row-major position: 0 on blocked ground.
@@ -108,12 +112,12 @@ impl Clearance {
         let origin = (tile / self.tile_columns * Self::TILE, tile % self.tile_columns * Self::TILE);
         let blocked = |y: usize, x: usize| {
             let row = (origin.0 + y).checked_sub(halo).filter(|row| *row < self.terrain.grid.rows);
-            let column = (origin.1 + x).checked_sub(halo).filter(|column| *column < self.terrain.grid.columns);
+            let column =
+                (origin.1 + x).checked_sub(halo).filter(|column| *column < self.terrain.grid.columns);
             row.zip(column).is_none_or(|(row, column)| self.terrain.is_blocked(Cell { row, column }))
         };
-        let mut distance: Vec<u8> = (0..side * side)
-            .map(|i| if blocked(i / side, i % side) { 0 } else { Self::FARTHEST })
-            .collect();
+        let mut distance: Vec<u8> =
+            (0..side * side).map(|i| if blocked(i / side, i % side) { 0 } else { Self::FARTHEST }).collect();
         let neighbours = [(-1, -1), (-1, 0), (-1, 1), (0, -1)];
         let mut sweep = |i: usize, sign: isize| {
             let mut best = distance[i];

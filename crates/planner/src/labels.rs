@@ -1,11 +1,6 @@
 //! Least cost found so far of every state a search has reached, in memory that is kept from one search to the next.
 
-use crate::{
-    layout::Layout,
-    prefetch::prefetch,
-    queue::BucketQueue,
-    table::TILE_STATES,
-};
+use crate::{layout::Layout, prefetch::prefetch, queue::BucketQueue, tile_builder::TILE_STATES};
 
 /// What a search works with; keep it for the next search over the same lattice, which then starts at once.
 pub struct Workspace {
@@ -63,7 +58,8 @@ impl Labels {
     /// Lowers a state's cost; `false` when it was as low before.
     #[inline(always)]
     pub(crate) fn lower(&mut self, state: u32, cost: u32) -> bool {
-        let tile = self.tiles[Layout::tile(state)].get_or_insert_with(|| vec![0; TILE_STATES].into_boxed_slice());
+        let tile =
+            self.tiles[Layout::tile(state)].get_or_insert_with(|| vec![0; TILE_STATES].into_boxed_slice());
         let label = &mut tile[Layout::within(state)];
         if !cost <= *label {
             return false;

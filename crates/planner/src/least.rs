@@ -2,12 +2,7 @@
 
 use model::{Manoeuvre, PowerModel};
 
-use crate::{
-    edge::Chain,
-    lattice::Lattice,
-    step::PreparedStep,
-    table::Weights,
-};
+use crate::{edge::Chain, lattice::Lattice, step::PreparedStep, table::Weights};
 
 /// What single precision may take off a cost of the table, as a share.
 const SINGLE_PRECISION: f64 = 1e-4;
@@ -41,7 +36,10 @@ pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
 }
 
 fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
-    chain.steps_with_manoeuvres().map(|(step, manoeuvres, _)| least_of_step(lattice, weights, step, manoeuvres)).sum()
+    chain
+        .steps_with_manoeuvres()
+        .map(|(step, manoeuvres, _)| least_of_step(lattice, weights, step, manoeuvres))
+        .sum()
 }
 
 fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, manoeuvres: &[Manoeuvre]) -> f64 {

@@ -1,5 +1,8 @@
 //! A priority queue of integer keys that rarely fall: a ring of buckets.
 
+/// Buckets of 2048 units, a thirtieth of a step on level ground.
+pub(crate) const BUCKET_SHIFT: u32 = 11;
+
 /// Keys are grouped into buckets of 2^`shift`; within a bucket the last in is the first out.
 ///
 /// Whoever pops must tolerate that order: a state reached twice in one bucket is simply expanded again.
@@ -63,7 +66,8 @@ impl BucketQueue {
     /// Items in no particular order.
     pub(crate) fn items(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         let filled = if self.len == 0 { 0 } else { self.highest - self.current + 1 };
-        let buckets = (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
+        let buckets =
+            (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
         buckets.flat_map(|slot| self.ring[slot].iter().copied())
     }
 

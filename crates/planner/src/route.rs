@@ -53,12 +53,7 @@ pub struct Route {
 
 impl Route {
     /// Drives a chain of motions from a state.
-    pub(crate) fn drive(
-        lattice: &Lattice,
-        objective: Objective,
-        start: State,
-        motions: &[usize],
-    ) -> Self {
+    pub(crate) fn drive(lattice: &Lattice, objective: Objective, start: State, motions: &[usize]) -> Self {
         let mut route = Route {
             total: Edge::default(),
             poses: vec![first_pose(lattice, start)],

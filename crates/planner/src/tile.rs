@@ -6,13 +6,15 @@ use terrain::{Cell, Terrain, slope};
 
 use crate::{
     cost::{FORBIDDEN, encode},
+    displacement::Displacement,
     edge::Chain,
     footprint::first_blocked,
     heading::HEADINGS,
     lattice::Lattice,
     layout::TILE,
     patience::Patience,
-    table::{Codes, Displacement, TileBuilder, Weights, lower},
+    table::Weights,
+    tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
 };
 
 /// Everything about the lattice that the evaluation of a tile needs, prepared once for all tiles.
@@ -72,8 +74,6 @@ pub(crate) struct Window {
 }
 
 type Lanes = [f32; TILE];
-/// Codes of one motion from a row of cells.
-pub(crate) type RowCodes = [u16; TILE];
 
 impl TileKernel {
     pub(crate) fn new(lattice: &Lattice, weights: Weights, units: f64) -> Self {
@@ -118,7 +118,7 @@ impl TileKernel {
         (tile_row, tile_column): (usize, usize),
         displacements: &[Displacement],
         patience: &Patience,
-    ) -> Option<(Codes, Codes)> {
+    ) -> Option<(Codes, Least)> {
         let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
         let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
@@ -251,7 +251,12 @@ impl RowStep {
     #[inline(always)]
     fn ground(&self, rise_m: &Lanes, east: &Lanes, north: &Lanes) -> Ground {
         let (cos, sin) = self.travel;
-        let mut ground = Ground { grade: [0.0; TILE], side_grade: [0.0; TILE], cos_pitch: [0.0; TILE], cos_roll: [0.0; TILE] };
+        let mut ground = Ground {
+            grade: [0.0; TILE],
+            side_grade: [0.0; TILE],
+            cos_pitch: [0.0; TILE],
+            cos_roll: [0.0; TILE],
+        };
         for x in 0..TILE {
             ground.side_grade[x] = north[x] * cos - east[x] * sin;
         }
