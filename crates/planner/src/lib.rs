@@ -39,6 +39,7 @@ mod queue;
 mod rates;
 mod refine;
 mod route;
+mod row_step;
 mod shortcut;
 mod snap;
 mod stencil;
@@ -48,6 +49,7 @@ mod table;
 mod tile;
 mod tile_builder;
 mod uncertainty;
+mod window;
 
 pub use astar::{Found, Outcome, Search, search};
 pub use edge::Edge;
