@@ -73,6 +73,12 @@ impl Server {
         self.post(path, "application/json", body.to_string().as_bytes())
     }
 
+    /// Sends a JSON document that changes something.
+    pub fn patch_json(&self, path: &str, body: &Value) -> Answer {
+        let request = agent().patch(format!("{}{path}", self.url)).content_type("application/json");
+        Answer::from(request.send(body.to_string().as_bytes()))
+    }
+
     /// Gets a path.
     pub fn get(&self, path: &str) -> Answer {
         Answer::from(agent().get(format!("{}{path}", self.url)).call())

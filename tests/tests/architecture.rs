@@ -28,6 +28,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-model",
         "joulepath-terrain",
         "joulepath-planner",
+        "joulepath-bench",
         "joulepath-recording",
         "joulepath-calibration",
         "joulepath-service",
@@ -63,6 +64,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
             "joulepath-planner",
             "joulepath-recording",
             "joulepath-calibration",
+            "joulepath-bench",
         ]
         .contains(&package.name.as_str());
         let banned = ["tokio", "axum", "hyper", "tower", "reqwest", "ureq"];

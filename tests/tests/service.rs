@@ -345,3 +345,87 @@ fn the_description_lists_what_the_service_does() {
     let server = Server::start();
     insta::assert_json_snapshot!("openapi", server.get("/openapi.json").json());
 }
+
+#[test]
+fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
+    let server = Server::start();
+    let map =
+        server.post("/v1/maps", "image/tiff", &std::fs::read(file("maps/minnesota.tif")).unwrap()).json();
+    let ask = |extra: Value| {
+        let mut question = json!({
+            "map_id": map["id"], "robot": "husky-a200",
+            "start": null, "goal": null
+        });
+        let origin = [map["origin_m"][0].as_f64().unwrap(), map["origin_m"][1].as_f64().unwrap()];
+        question["start"] = json!({ "x_m": origin[0] + 60.0, "y_m": origin[1] + 70.0 });
+        question["goal"] = json!({ "x_m": origin[0] + 240.0, "y_m": origin[1] + 210.0 });
+        question.as_object_mut().unwrap().extend(extra.as_object().unwrap().clone());
+        let answer = server.post_json("/v1/plan", &question);
+        assert_eq!(answer.status, 200, "{}", answer.text);
+        answer.json()
+    };
+    let best = ask(json!({}));
+    assert_eq!((&best["search"]["optimal"], &best["search"]["bound"]), (&json!(true), &json!(1.0)));
+    let energy = |plan: &Value| plan["energy_j"].as_f64().unwrap();
+    assert!(best["refined_energy_j"].as_f64().unwrap() <= energy(&best));
+    let (lattice, refined) =
+        (best["poses"].as_array().unwrap(), best["refined"]["poses"].as_array().unwrap());
+    for field in ["x_m", "y_m", "heading_rad"] {
+        assert_eq!(lattice[0][field], refined[0][field], "both begin in one pose");
+    }
+    let loose = ask(json!({ "bound": 1.2, "refine": false }));
+    let bound = loose["search"]["bound"].as_f64().unwrap();
+    assert!((1.0..=1.2).contains(&bound) && energy(&loose) <= energy(&best) * bound * 1.001);
+    assert!(loose.get("refined").is_none());
+    let held = ask(json!({ "hold_goal": true, "refine": false }));
+    assert_eq!(held["search"]["expanded"], 0, "a held goal needs no search");
+    assert!((energy(&held) - energy(&best)).abs() < 1e-3 * energy(&best));
+}
+
+#[test]
+fn unusable_bounds_times_and_tolerances_are_named() {
+    let server = Server::start();
+    for (pointer, value, at) in [
+        ("/bound", json!(0.5), "/bound"),
+        ("/timeout_s", json!(0), "/timeout_s"),
+        ("/timeout_s", json!(-3), "/timeout_s"),
+        ("/timeout_s", json!(1e300), "/timeout_s"),
+    ] {
+        let problem = assert_problem(
+            &server.post_json("/v1/plan", &question_with(pointer, value)),
+            400,
+            "invalid-request",
+        );
+        assert_eq!(problem["errors"][0]["pointer"], at, "{problem}");
+    }
+    let mut question = question_with("/snap_radius_m", json!(5.0));
+    question["goal"]["tolerance_m"] = json!(1.0);
+    let problem = assert_problem(&server.post_json("/v1/plan", &question), 400, "invalid-request");
+    assert_eq!(problem["errors"][0]["pointer"], "/goal/tolerance_m");
+}
+
+#[test]
+fn a_patch_makes_a_new_map_beside_the_old_one() {
+    let server = Server::start();
+    let map = server.post_json("/v1/maps", &slope_map(30, 30)).json();
+    let path = format!("/v1/maps/{}", map["id"].as_str().unwrap());
+    let wall = json!({ "row": 0, "column": 15, "obstacle": vec![vec![true]; 30] });
+    let plan = |id: &Value| {
+        let ends = (json!({ "x_m": 4.5, "y_m": 15.5 }), json!({ "x_m": 26.5, "y_m": 15.5 }));
+        server.post_json(
+            "/v1/plan",
+            &json!({ "map_id": id, "robot": "husky-a200", "start": ends.0, "goal": ends.1 }),
+        )
+    };
+    assert_eq!(plan(&map["id"]).status, 200);
+    let answer = server.patch_json(&path, &wall);
+    assert_eq!(answer.status, 201, "{}", answer.text);
+    let changed = answer.json();
+    assert_ne!(changed["id"], map["id"]);
+    assert_problem(&plan(&changed["id"]), 422, "no-path");
+    assert_eq!(plan(&map["id"]).status, 200, "the map before is still there");
+    let beyond = json!({ "row": 29, "column": 0, "obstacle": [[true], [true]] });
+    let problem = assert_problem(&server.patch_json(&path, &beyond), 400, "invalid-map");
+    assert_eq!(problem["errors"][0]["pointer"], "/row");
+    assert_problem(&server.patch_json("/v1/maps/0123456789abcdef", &wall), 404, "unknown-map");
+}

@@ -1,5 +1,6 @@
 //! One file for each command: its arguments and what it does with them.
 
+pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod demo;

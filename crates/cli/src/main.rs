@@ -29,6 +29,8 @@ enum Command {
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
     Calibrate(commands::calibrate::Arguments),
+    /// Print what plans take, beside general-purpose searches on the same graphs
+    Bench(commands::bench::Arguments),
     /// Serve the HTTP API
     Serve(commands::serve::Arguments),
     /// Start the service, compare paths over real terrain, and draw them
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Demo(arguments) => commands::demo::run(&arguments),
     };

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 
 use crate::{
     cost::{FORBIDDEN, decode},
+    field::{GoalField, UNREACHED},
     heading::{HEADINGS, Heading},
-    heuristic::{BUCKET_SHIFT, GoalField, UNREACHED},
     labels::{Labels, Workspace},
     lattice::{Lattice, State},
     layout::{Layout, Shift},
     patience::Patience,
     prefetch::prefetch,
+    queue::BUCKET_SHIFT,
     table::CostTable,
 };
 
@@ -157,14 +158,15 @@ impl Passes<'_> {
             let packed = layout.pack(start);
             let ahead = self.field.units_at(packed);
             if ahead != UNREACHED && labels.lower(packed, 0) {
-                queue.push(weighted.key(0, ahead), (0, packed));
+                queue.push(weighted.key(0, ahead), packed);
             }
         }
         let limit = self.best.as_ref().map_or(UNREACHED, |best| best.total);
         let (found, ended) = self.expand(&weighted, limit, workspace);
         // A state that is on the best path and was not expanded at its cost is still in the queue.
-        let open = workspace.queue.items().filter(|(cost, state)| *cost == workspace.labels.cost(*state));
-        let open = open.map(|(cost, state)| cost.saturating_add(self.field.units_at(state)));
+        let key = |state| weighted.key(workspace.labels.cost(state), self.field.units_at(state));
+        let open = workspace.queue.items(key);
+        let open = open.map(|state| workspace.labels.cost(state).saturating_add(self.field.units_at(state)));
         let total = found.map_or(limit, |(total, _)| total.min(limit));
         self.least = self.least.max(open.min().unwrap_or(UNREACHED).min(total));
         if let Some((total, goal)) = found.filter(|(total, _)| *total < limit) {
@@ -186,40 +188,42 @@ impl Passes<'_> {
         let stride = table.stride();
         let mut best: Option<(u32, u32)> = None;
         let mut least_total = limit;
-        while let Some((cost, state)) = queue.pop() {
-            if queue.least_key() >= weighted.key(0, least_total) {
-                // Put back what proves the bound.
-                queue.push(queue.least_key(), (cost, state));
-                break;
-            }
-            if cost > labels.cost(state) {
+        while let Some(state) = queue.pop() {
+            let (cost, ahead) = (labels.cost(state), field.units_at(state));
+            let key = weighted.key(cost, ahead);
+            if !queue.is_current(key) {
                 continue;
             }
+            if queue.least_key() >= weighted.key(0, least_total) {
+                // Put back what proves the bound.
+                queue.push(key, state);
+                break;
+            }
             if self.expanded.is_multiple_of(CLOCK_EVERY) && patience.is_over() {
-                queue.push(queue.least_key(), (cost, state));
+                queue.push(key, state);
                 return (best, Ended::Late);
             }
             self.expanded += 1;
             // Only where the field is as low as at a goal is it worth looking the state up.
-            if field.units_at(state) <= self.highest_after
+            if ahead <= self.highest_after
                 && let Some(&after) = self.goals.get(&state)
                 && cost + after < least_total
             {
                 least_total = cost + after;
                 best = Some((least_total, state));
                 if !weighted.is_exact() {
-                    queue.push(queue.least_key(), (cost, state));
+                    queue.push(key, state);
                     break;
                 }
             }
-            if let Some((_, soon)) = queue.peek(CODES_AHEAD) {
+            if let Some(soon) = queue.peek(CODES_AHEAD) {
                 if let Some(codes) = table.codes_at_hand(Layout::tile(soon)) {
                     prefetch(codes, Layout::within(soon) * stride);
                 }
                 labels.prefetch(soon);
             }
             let Some(codes) = table.codes(Layout::tile(state), patience) else {
-                queue.push(queue.least_key(), (cost, state));
+                queue.push(key, state);
                 return (best, Ended::Late);
             };
             let codes = &codes[Layout::within(state) * stride..][..stride];
@@ -234,7 +238,7 @@ impl Passes<'_> {
                     let ahead = field.units_at(next);
                     // What cannot beat the best path need not be looked at; nor can what does not lead to the goal.
                     if total.saturating_add(ahead) < least_total {
-                        queue.push(weighted.key(total, ahead), (total, next));
+                        queue.push(weighted.key(total, ahead), next);
                     }
                 }
             }

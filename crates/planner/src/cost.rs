@@ -17,8 +17,12 @@ const IMPLICIT: u32 = 1 << FRACTION_BITS;
 const DROPPED_BITS: u32 = 23 - FRACTION_BITS;
 /// What an f32's exponent has more than the code's, which is 1 from 2048 units on.
 const EXPONENT_BIAS: i32 = (126 + FRACTION_BITS as i32) << FRACTION_BITS;
-/// Largest code: below 2^31 units.
-const LARGEST: i32 = (21 << FRACTION_BITS) - 1;
+/// Largest exponent of a code.
+const LARGEST_EXPONENT: u16 = 20;
+/// Largest code, of just less than [`ENDLESS`].
+const LARGEST: i32 = ((LARGEST_EXPONENT as i32 + 1) << FRACTION_BITS) - 2;
+/// What [`decode_lanes`] makes of [`FORBIDDEN`]: more than any other code, and twice as much still fits 32 bits.
+pub(crate) const ENDLESS: u32 = (2 * IMPLICIT - 1) << (LARGEST_EXPONENT - 1);
 
 /// Encodes a cost in units; infinity and beyond the range is forbidden.
 #[inline(always)]
@@ -42,6 +46,22 @@ pub(crate) fn decode(code: u16) -> u32 {
     ((code & (IMPLICIT - 1)) | (normal << FRACTION_BITS)) << (exponent - normal)
 }
 
+/// The costs in units of codes side by side; [`ENDLESS`] for [`FORBIDDEN`].
+#[inline(always)]
+pub(crate) fn decode_lanes<const N: usize>(codes: &[u16; N]) -> [u32; N] {
+    let (mut fractions, mut shifts, mut costs) = ([0u16; N], [0u16; N], [0u32; N]);
+    for x in 0..N {
+        // An exponent of 1 shifts by nothing, as 0 does, but has the implicit bit.
+        let shift = (codes[x] >> FRACTION_BITS).saturating_sub(1);
+        fractions[x] = codes[x].wrapping_sub(shift << FRACTION_BITS);
+        shifts[x] = shift.min(LARGEST_EXPONENT - 1);
+    }
+    for x in 0..N {
+        costs[x] = u32::from(fractions[x]) << shifts[x];
+    }
+    costs
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -61,6 +81,16 @@ mod tests {
             let (low, high) = if a < b { (a, b) } else { (b, a) };
             prop_assert!(encode(low) <= encode(high));
         }
+    }
+
+    #[test]
+    fn codes_side_by_side_are_decoded_as_alone_and_none_costs_as_much_as_a_forbidden_motion() {
+        for code in 0..=LARGEST as u16 {
+            let costs = decode_lanes(&[code; 4]);
+            assert_eq!(costs, [decode(code); 4]);
+            assert!(costs[0] < ENDLESS);
+        }
+        assert_eq!(decode_lanes(&[FORBIDDEN; 4]), [ENDLESS; 4]);
     }
 
     #[test]

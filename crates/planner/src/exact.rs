@@ -2,13 +2,13 @@
 
 use crate::{
     cost::{FORBIDDEN, decode},
+    field::UNREACHED,
     heading::HEADINGS,
-    heuristic::{BUCKET_SHIFT, UNREACHED},
     labels::Labels,
     lattice::State,
     layout::{Layout, Shift},
     patience::Patience,
-    queue::BucketQueue,
+    queue::{BUCKET_SHIFT, BucketQueue},
     table::CostTable,
 };
 
@@ -41,12 +41,13 @@ impl ExactField {
         for &(goal, after) in goals {
             let after = (after * table.units()) as u32;
             if labels.lower(layout.pack(goal), after) {
-                queue.push(after, (after, layout.pack(goal)));
+                queue.push(after, layout.pack(goal));
             }
         }
         let mut settled = 0u64;
-        while let Some((cost, state)) = queue.pop() {
-            if cost > labels.cost(state) {
+        while let Some(state) = queue.pop() {
+            let cost = labels.cost(state);
+            if !queue.is_current(cost) {
                 continue;
             }
             if settled.is_multiple_of(CLOCK_EVERY) && patience.is_over() {
@@ -64,7 +65,7 @@ impl ExactField {
                 let code = codes.get(place).copied().unwrap_or(FORBIDDEN);
                 let total = cost.saturating_add(decode(code));
                 if code != FORBIDDEN && labels.lower(before, total) {
-                    queue.push(total, (total, before));
+                    queue.push(total, before);
                 }
             }
         }

@@ -6,7 +6,7 @@ use terrain::Cell;
 
 use crate::{
     exact::ExactField,
-    heuristic::{FieldEnds, GoalField},
+    field::{FieldEnds, GoalField},
     lattice::State,
     patience::Patience,
     table::{CostTable, Objective},

@@ -1,6 +1,6 @@
 //! Least cost found so far of every state a search has reached, in memory that is kept from one search to the next.
 
-use crate::{layout::Layout, prefetch::prefetch, queue::BucketQueue, table::TILE_STATES};
+use crate::{layout::Layout, prefetch::prefetch, queue::BucketQueue, tile_builder::TILE_STATES};
 
 /// What a search works with; keep it for the next search over the same lattice, which then starts at once.
 pub struct Workspace {
@@ -16,6 +16,12 @@ impl Workspace {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.labels.bytes() + self.queue.bytes()
+    }
+
+    /// Bytes held for each state of the tiles that the last search touched.
+    pub fn bytes_per_state(&self) -> f64 {
+        let states = self.labels.tiles.iter().flatten().count() * TILE_STATES;
+        self.bytes() as f64 / states.max(1) as f64
     }
 
     /// Forgets the last search.
@@ -37,7 +43,7 @@ pub(crate) struct Labels {
 }
 
 /// Up to so many labels are taken back one by one; beyond, their tiles are given back, which costs less.
-const LOG_LIMIT: usize = 1 << 17;
+const LOG_LIMIT: usize = 1 << 14;
 
 impl Labels {
     fn new(layout: &Layout) -> Self {

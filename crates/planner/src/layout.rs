@@ -77,12 +77,6 @@ impl Layout {
         (state >> HEADING_BITS) as usize
     }
 
-    /// The packed state of a cell's position and a heading of zero.
-    #[inline(always)]
-    pub(crate) fn state_of_cell(cell: u32) -> u32 {
-        cell << HEADING_BITS
-    }
-
     /// Number of cells in all tiles that the packing distinguishes.
     pub(crate) fn cells(&self) -> usize {
         self.tiles() * TILE_CELLS

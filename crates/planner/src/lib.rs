@@ -7,19 +7,23 @@
 //!
 //! Deterministic for any number of threads. No I/O, no async.
 
+mod along;
 mod astar;
 mod connection;
 mod cost;
 mod course;
+mod displacement;
 mod edge;
 mod ends;
 mod error;
 mod exact;
+mod field;
 mod fields;
 mod footprint;
 mod free;
+mod front;
+mod growth;
 mod heading;
-mod heuristic;
 mod labels;
 mod lattice;
 mod layout;
@@ -35,20 +39,25 @@ mod queue;
 mod rates;
 mod refine;
 mod route;
+mod row_step;
 mod shortcut;
 mod snap;
+mod stencil;
 mod step;
+mod sweep;
 mod table;
 mod tile;
+mod tile_builder;
 mod uncertainty;
+mod window;
 
 pub use astar::{Found, Outcome, Search, search};
 pub use edge::Edge;
 pub use error::{Blocked, Error, Place};
 pub use exact::ExactField;
+pub use field::{FieldEnds, GoalField};
 pub use footprint::{Clearance, Footprint};
 pub use heading::{HEADINGS, Heading};
-pub use heuristic::{FieldEnds, GoalField};
 pub use labels::Workspace;
 pub use lattice::{Lattice, Settings, State};
 pub use patience::Patience;

@@ -14,8 +14,8 @@ use crate::{
     ends::Ends,
     error::Error,
     exact::ExactField,
+    field::GoalField,
     fields::{FieldCache, FieldKey},
-    heuristic::GoalField,
     labels::Workspace,
     lattice::{Lattice, Settings},
     query::{Comparison, Plan, Query, SearchReport, Snap},
@@ -99,19 +99,19 @@ impl Planner {
         self.plan_between(&ends, query, objective, began)
     }
 
-    /// Finds the energy-minimal, shortest and fastest paths.
+    /// Finds the energy-minimal, shortest and fastest paths, side by side where there are cores.
     ///
     /// # Errors
     /// As [`Planner::plan`].
     pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
         let began = Instant::now();
         let ends = Ends::find(&self.lattice, query)?;
-        let one = |objective, began| self.plan_between(&ends, query, objective, began);
-        Ok(Comparison {
-            energy: one(Objective::Energy, began)?,
-            distance: one(Objective::Distance, Instant::now())?,
-            time: one(Objective::Time, Instant::now())?,
-        })
+        let one = |objective| self.plan_between(&ends, query, objective, began);
+        let (energy, (distance, time)) = rayon::join(
+            || one(Objective::Energy),
+            || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
+        );
+        Ok(Comparison { energy: energy?, distance: distance?, time: time? })
     }
 
     /// Answers many questions on all cores, in their order.

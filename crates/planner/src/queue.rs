@@ -1,10 +1,15 @@
 //! A priority queue of integer keys that rarely fall: a ring of buckets.
 
+/// Buckets of 2048 units, a thirtieth of a step on level ground.
+pub(crate) const BUCKET_SHIFT: u32 = 11;
+
 /// Keys are grouped into buckets of 2^`shift`; within a bucket the last in is the first out.
 ///
-/// Whoever pops must tolerate that order: a state reached twice in one bucket is simply expanded again.
+/// An item is a state alone, whose key its label tells. Where that is no longer in the bucket an item was popped from, the
+/// item is stale: the state was reached at less cost, lies in an earlier bucket too, and has had its turn. A state reached
+/// twice in one bucket is simply expanded again.
 pub(crate) struct BucketQueue {
-    ring: Vec<Vec<(u32, u32)>>,
+    ring: Vec<Vec<u32>>,
     shift: u32,
     /// Number of the bucket that is being emptied.
     current: u32,
@@ -20,7 +25,7 @@ impl BucketQueue {
 
     /// Adds an item under a key; one below the current bucket takes the queue back to it.
     #[inline(always)]
-    pub(crate) fn push(&mut self, key: u32, item: (u32, u32)) {
+    pub(crate) fn push(&mut self, key: u32, item: u32) {
         let bucket = key >> self.shift;
         if self.len == 0 {
             (self.current, self.highest) = (bucket, bucket);
@@ -34,7 +39,7 @@ impl BucketQueue {
 
     /// Takes an item of the lowest bucket.
     #[inline(always)]
-    pub(crate) fn pop(&mut self) -> Option<(u32, u32)> {
+    pub(crate) fn pop(&mut self) -> Option<u32> {
         if self.len == 0 {
             return None;
         }
@@ -50,9 +55,15 @@ impl BucketQueue {
 
     /// The item that will be popped next but for `further` others, if it is in the current bucket.
     #[inline(always)]
-    pub(crate) fn peek(&self, further: usize) -> Option<(u32, u32)> {
+    pub(crate) fn peek(&self, further: usize) -> Option<u32> {
         let bucket = &self.ring[self.current as usize & (self.ring.len() - 1)];
         bucket.get(bucket.len().wrapping_sub(1 + further)).copied()
+    }
+
+    /// Whether a key belongs to the bucket that is being emptied.
+    #[inline(always)]
+    pub(crate) fn is_current(&self, key: u32) -> bool {
+        key >> self.shift == self.current
     }
 
     /// Every key still in the queue is at least this.
@@ -60,12 +71,16 @@ impl BucketQueue {
         self.current << self.shift
     }
 
-    /// Items in no particular order.
-    pub(crate) fn items(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+    /// Items whose key, as `key` tells it, is in the bucket that holds them, in no particular order.
+    pub(crate) fn items<'q>(
+        &'q self,
+        key: impl Fn(u32) -> u32 + Copy + 'q,
+    ) -> impl Iterator<Item = u32> + 'q {
         let filled = if self.len == 0 { 0 } else { self.highest - self.current + 1 };
-        let buckets =
-            (self.current..self.current + filled).map(|bucket| bucket as usize & (self.ring.len() - 1));
-        buckets.flat_map(|slot| self.ring[slot].iter().copied())
+        (self.current..self.current + filled).flat_map(move |bucket| {
+            let items = &self.ring[bucket as usize & (self.ring.len() - 1)];
+            items.iter().copied().filter(move |item| key(*item) >> self.shift == bucket)
+        })
     }
 
     /// Forgets all items and starts anew; memory is kept.
@@ -78,7 +93,7 @@ impl BucketQueue {
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        self.ring.iter().map(|bucket| bucket.capacity() * size_of::<(u32, u32)>()).sum()
+        self.ring.iter().map(|bucket| bucket.capacity() * size_of::<u32>()).sum()
     }
 
     /// Takes a bucket beyond those from the current to the highest into the ring.
@@ -116,18 +131,18 @@ mod tests {
         let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(1);
         let mut queue = BucketQueue::new(4);
         let mut last = 0;
-        queue.push(0, (0, 0));
+        queue.push(0, 0);
         let mut pushed = 1;
         let mut popped = 0;
-        while let Some((key, _)) = queue.pop() {
+        while let Some(key) = queue.pop() {
             popped += 1;
             assert!(key >> 4 >= last >> 4, "{key} after {last}");
-            assert!(queue.least_key() <= key);
+            assert!(queue.least_key() <= key && queue.is_current(key));
             last = last.max(key);
             if pushed < 20_000 {
                 for _ in 0..2 {
                     let far = random.random_range(0..if pushed % 100 == 0 { 200_000 } else { 500 });
-                    queue.push(last + far, (last + far, 0));
+                    queue.push(last + far, last + far);
                     pushed += 1;
                 }
             }

@@ -1,7 +1,6 @@
 //! Cost of every motion from every state, for one objective, evaluated tile by tile as it is asked for.
 
 use std::{
-    collections::BTreeMap,
     ops::Range,
     sync::{
         Arc, Mutex, OnceLock, PoisonError,
@@ -14,13 +13,14 @@ use terrain::CellRange;
 
 use crate::{
     cost::{FORBIDDEN, LARGEST_ROUNDING, UNITS_OF_REFERENCE, decode},
+    displacement::Displacement,
     edge::Edge,
-    heading::HEADINGS,
     lattice::{Lattice, State},
-    layout::{Layout, TILE, TILE_CELLS},
+    layout::{Layout, TILE},
     least::least_cost_per_m,
     patience::Patience,
-    tile::{RowCodes, TileKernel},
+    tile::TileKernel,
+    tile_builder::{Codes, Lanes, Least},
 };
 
 /// What a path is to have least of.
@@ -85,8 +85,8 @@ pub struct CostTable {
     units: f64,
     /// Codes of all motions of each tile's states, by cell, heading and motion.
     codes: Vec<OnceLock<Codes>>,
-    /// Least codes of each tile's cells, by displacement and cell, over headings and motions.
-    least: Vec<OnceLock<Codes>>,
+    /// Least codes of each tile's cells, by row, group of lanes, displacement and lane, over headings and motions.
+    least: Vec<OnceLock<Least>>,
     /// Tiles whose codes are held.
     held: AtomicUsize,
     /// Held while a tile is evaluated, so that two threads that need it do not both do the work.
@@ -179,13 +179,13 @@ impl CostTable {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let least = self.least.iter().filter_map(OnceLock::get).map(|codes| codes.len()).sum::<usize>();
-        let codes = self.codes.iter().filter_map(OnceLock::get).map(|codes| codes.len()).sum::<usize>();
-        (least + codes) * size_of::<u16>()
+        let least = self.least.iter().filter_map(OnceLock::get).map(|least| size_of_val(&least[..]));
+        let codes = self.codes.iter().filter_map(OnceLock::get).map(|codes| size_of_val(&codes[..]));
+        least.chain(codes).sum()
     }
 
     /// Units per joule, metre or second.
-    pub(crate) fn units(&self) -> f64 {
+    pub fn units(&self) -> f64 {
         self.units
     }
 
@@ -211,9 +211,9 @@ impl CostTable {
         }
     }
 
-    /// The least code by displacement and cell of a tile, evaluated when first asked for; `None` when patience ends first.
+    /// The least codes of a tile, evaluated when first asked for; `None` when patience ends first.
     #[inline(always)]
-    pub(crate) fn least(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
+    pub(crate) fn least(&self, tile: usize, patience: &Patience) -> Option<&[Lanes]> {
         match self.least[tile].get() {
             Some(least) => Some(least),
             None => {
@@ -259,7 +259,7 @@ impl CostTable {
             let place = self.lattice.layout.tile_place(tile);
             self.kernel.evaluate(&self.lattice, place, &self.displacements, patience)?
         } else {
-            (Codes::default(), Codes::default())
+            (Codes::default(), Least::default())
         };
         if keep_codes && self.codes[tile].set(codes).is_ok() {
             self.held.fetch_add(1, Ordering::Relaxed);
@@ -280,6 +280,16 @@ impl CostTable {
         codes.and_then(|codes| codes.get(place).copied()).unwrap_or(FORBIDDEN)
     }
 
+    /// Where the motions from a state lead and what they cost in the table's units, for other searches over the same graph.
+    pub fn successors(&self, state: State) -> impl Iterator<Item = (State, u32)> + '_ {
+        let packed = self.lattice.layout.pack(state);
+        (0..self.lattice.motions_per_state()).filter_map(move |motion| {
+            let code = self.code(packed, motion);
+            let next = self.lattice.successor(state, motion).filter(|_| code != FORBIDDEN)?;
+            Some((next, decode(code)))
+        })
+    }
+
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
     pub fn cost(&self, state: State, motion: usize) -> f64 {
         let code = self.code(self.lattice.layout.pack(state), motion);
@@ -287,91 +297,9 @@ impl CostTable {
     }
 }
 
-/// Place of a displacement from a packed state's cell among a tile's least codes.
-#[inline(always)]
-pub(crate) fn place_of_least(state: u32, displacement: usize) -> usize {
-    displacement * TILE_CELLS + Layout::within(state) / HEADINGS
-}
-
-/// Codes of a tile; clones share them.
-pub(crate) type Codes = Arc<[u16]>;
-
 /// Tiles whose codes a field, which needs only the least of them, keeps for the search that follows: a gigabyte. On larger
 /// ground the search evaluates again what it comes across, which is little of what a field covers.
 const HELD_FOR_FIELDS: usize = 1024;
-
-/// A tile in the making.
-pub(crate) struct TileBuilder<'d> {
-    displacements: &'d [Displacement],
-    codes: Vec<u16>,
-    least: Vec<u16>,
-}
-
-impl<'d> TileBuilder<'d> {
-    /// A tile without any motion.
-    pub(crate) fn new(stride: usize, displacements: &'d [Displacement]) -> Self {
-        TileBuilder {
-            displacements,
-            codes: vec![FORBIDDEN; TILE_STATES * stride],
-            least: vec![FORBIDDEN; TILE_CELLS * displacements.len()],
-        }
-    }
-
-    /// Stores the codes of a row of cells, given slot by slot.
-    pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
-        let codes = &mut self.codes[row * TILE * slots.len()..][..TILE * slots.len()];
-        // Eight slots at a time, so that neighbouring codes are written together.
-        for (at, eight) in slots.chunks(8).enumerate() {
-            for (x, cell) in codes.chunks_exact_mut(slots.len()).enumerate() {
-                for (code, slot) in cell[8 * at..].iter_mut().zip(eight) {
-                    *code = slot[x];
-                }
-            }
-        }
-        for (d, displacement) in self.displacements.iter().enumerate() {
-            let least = &mut self.least[d * TILE_CELLS + row * TILE..][..TILE];
-            for &slot in &displacement.slots {
-                lower(least, &slots[slot]);
-            }
-        }
-    }
-
-    /// Codes by cell, heading and motion, and the least by displacement and cell.
-    pub(crate) fn finish(self) -> (Codes, Codes) {
-        (self.codes.into(), self.least.into())
-    }
-}
-
-/// Lowers codes to others where those are lower.
-#[inline(always)]
-pub(crate) fn lower(codes: &mut [u16], others: &[u16]) {
-    for (code, other) in codes.iter_mut().zip(others) {
-        *code = (*code).min(*other);
-    }
-}
-
-/// A step between cells and the motions that make it, as slots among the codes of a cell.
-pub(crate) struct Displacement {
-    pub(crate) columns: i32,
-    pub(crate) rows: i32,
-    slots: Vec<usize>,
-}
-
-impl Displacement {
-    /// All steps of a lattice's motions; turning on the spot is none.
-    pub(crate) fn of(lattice: &Lattice) -> Vec<Self> {
-        let stride = lattice.motions_per_state().next_multiple_of(4);
-        let mut steps = BTreeMap::<(i32, i32), Vec<usize>>::new();
-        for (heading, motions) in lattice.motions.iter().enumerate() {
-            for (index, motion) in motions.iter().enumerate() {
-                if (motion.columns, motion.rows) != (0, 0) {
-                    steps.entry((motion.columns, motion.rows)).or_default().push(heading * stride + index);
-                }
-            }
-        }
-        steps.into_iter().map(|((columns, rows), slots)| Displacement { columns, rows, slots }).collect()
-    }
-}
 
 /// Units per joule, metre or second: one step east on level ground sets the scale.
 fn units_per_cost(lattice: &Lattice, weights: &Weights) -> f64 {
@@ -402,6 +330,3 @@ pub(crate) fn cheapest(
         .filter_map(|(variant, edge)| Some((variant, weights.cost(&edge?, lifted_j))))
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
-
-/// States of a tile.
-pub(crate) const TILE_STATES: usize = TILE_CELLS * HEADINGS;

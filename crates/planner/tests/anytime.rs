@@ -92,7 +92,7 @@ fn whenever_patience_ends_there_is_either_a_path_with_its_bound_or_none_yet() {
         plan(&terrain, &robot, &across(&terrain, Patience::default(), 1.0), Objective::Energy).unwrap();
     let least_j = best.route.total.energy_j;
     let (mut none, mut late, mut whole) = (0, 0, 0);
-    for looks in (0..40).map(|i| i * i * 2) {
+    for looks in (0..40).map(|i| i * 9) {
         let query = across(&terrain, Patience::for_looks(looks), 1.0);
         match plan(&terrain, &robot, &query, Objective::Energy) {
             Err(Error::Timeout { .. }) => none += 1,

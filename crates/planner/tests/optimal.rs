@@ -131,7 +131,7 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
     let mut random = ground::random(22);
     let mut ended_early = 0;
     for case in 0..12 {
-        let terrain = ground::small_terrain(&mut random, if case % 2 == 1 { 40 } else { 8 });
+        let terrain = ground::small_terrain(&mut random, if case % 2 == 1 { 100 } else { 8 });
         let robot = ground::some_robot(&mut random, [0.0, 0.5, 1.0][case % 3]);
         let mut settings = planner::Settings::of(&robot);
         settings.speed_mps = random.random_range(0.1..1.0);
@@ -169,6 +169,36 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
         }
     }
     assert!(ended_early >= 2, "fields must end early in some cases, {ended_early} did");
+}
+
+#[test]
+fn the_whole_field_is_everywhere_the_least_of_a_motion_and_the_field_at_its_end() {
+    let mut random = ground::random(24);
+    for case in 0..6 {
+        let terrain = ground::small_terrain(&mut random, 150);
+        let mut robot = ground::some_robot(&mut random, [0.0, 0.5, 1.0][case % 3]);
+        // Arcs that lead into the next tile but one.
+        if case % 2 == 1 {
+            robot.slip_track_m = 100.0;
+        }
+        let lattice = Lattice::new(&terrain, &robot, Settings::of(&robot)).unwrap();
+        let table = CostTable::new(&lattice, Objective::Energy, &Patience::default()).unwrap();
+        let goal = terrain.grid.cell(random.random_range(0..terrain.grid.cells()));
+        let ends = FieldEnds { goals: &[(goal, 0.0)], start: None };
+        let field = GoalField::new(&table, ends, &Patience::default()).unwrap();
+        for cell in (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i)).filter(|cell| *cell != goal) {
+            let ways = Heading::all().flat_map(|heading| {
+                let state = State { cell, heading };
+                let (lattice, table, field) = (&lattice, &table, &field);
+                (0..lattice.motions_per_state()).filter_map(move |motion| {
+                    let next = lattice.successor(state, motion).filter(|next| next.cell != cell)?;
+                    Some(table.cost(state, motion) + field.at(next.cell))
+                })
+            });
+            let (least, held) = (ways.fold(f64::INFINITY, f64::min), field.at(cell));
+            assert!(held == least || (held - least).abs() < 1e-6 * least, "{cell:?}: {held}, not {least}");
+        }
+    }
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn a_refined_route_touches_no_obstacle_and_no_unknown_ground() {
                 continue;
             }
             for pose in between(&pair[0], &pair[1]) {
-                assert_eq!(touched(lattice.terrain, lattice.robot, pose), None);
+                assert_eq!(touched(&lattice.terrain, &lattice.robot, pose), None);
             }
         }
     });
@@ -141,7 +141,7 @@ fn limits_hold_along_a_refined_route() {
         let largest = |of: fn(&Pose) -> f64| route.poses.iter().map(|p| of(p).abs()).fold(0.0, f64::max);
         robot.limits.max_pitch_rad = (largest(|p| p.pitch_rad) + 1e-6).max(0.01);
         robot.limits.max_roll_rad = (largest(|p| p.roll_rad) + 1e-6).max(0.01);
-        let bound = Lattice::new(lattice.terrain, &robot, query.settings).unwrap();
+        let bound = Lattice::new(&lattice.terrain, &robot, query.settings).unwrap();
         let refined = refine(&bound, Objective::Distance, route, &Patience::default()).route;
         for (pair, step) in refined.poses.windows(2).zip(&refined.steps) {
             let run_m =
@@ -154,7 +154,7 @@ fn limits_hold_along_a_refined_route() {
             // Within rounding of a cell's edge either neighbour may be meant.
             let [cx, cy] = bound.terrain.grid.center_m(cell);
             if (x - cx).abs().max((y - cy).abs()) < 0.49 && dense.len() % 2 == 1 {
-                let (east, north) = slope::gradient_at(bound.terrain, cell);
+                let (east, north) = slope::gradient_at(&bound.terrain, cell);
                 let side = north * heading.cos() - east * heading.sin();
                 assert!(side.abs() <= robot.limits.max_roll_rad.tan() + 1e-3, "{side} across");
             }
@@ -169,7 +169,7 @@ fn limits_hold_along_a_refined_route() {
 
 /// Integrates the power model over nothing but poses and the map.
 fn reintegrated_j(lattice: &Lattice, settings: &Settings, route: &Route) -> f64 {
-    let robot = lattice.robot;
+    let robot = &lattice.robot;
     let stretch_j = |(i, pair): (usize, &[Pose])| {
         let (a, b) = (&pair[0], &pair[1]);
         let dt = b.t_s - a.t_s;
@@ -251,6 +251,8 @@ fn between_states(terrain: &Terrain, robot: &Robot, [from, to]: [State; 2]) -> Q
         goal: planner::Goal { x_m: gx, y_m: gy, heading_rad: Some(to.heading.angle_rad()), tolerance_m: 0.0 },
         settings: Settings::of(robot),
         snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
         patience: Patience::default(),
     }
 }

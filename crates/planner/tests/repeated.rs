@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use model::{Robot, builtin};
-use planner::{Heading, Objective, Patience, Planner, Query, Settings, plan};
+use planner::{Heading, Objective, Patience, Planner, Query, plan};
 use rand::{Rng, RngExt};
 use terrain::{Cell, Patch, Terrain, synthetic};
 

@@ -21,7 +21,7 @@ pub enum Error {
         value: u64,
     },
     /// More cells than this program keeps in memory.
-    #[error("{rows} × {columns} cells are more than the {limit} a map may have: crop it or use larger cells")]
+    #[error("{rows} × {columns} cells are more than the {limit} a map may have: crop it to {0} × {0} cells or use larger ones", limit.isqrt())]
     TooManyCells {
         /// Rows declared.
         rows: u64,

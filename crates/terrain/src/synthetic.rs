@@ -1,5 +1,7 @@
 //! Ground made from a seed, for trials at sizes and shapes that no survey covers.
 
+use rayon::prelude::*;
+
 use crate::{Cell, Error, Grid, Surfaces, Terrain};
 
 /// Natural-looking relief: value noise in octaves, each half as long and `ROUGHNESS` as high as the one before.
@@ -8,6 +10,7 @@ use crate::{Cell, Error, Grid, Surfaces, Terrain};
 /// the same ground on every machine. Elevations are whole millimetres.
 pub fn relief(grid: Grid, seed: u64, longest_m: f64, height_m: f64) -> Vec<f64> {
     (0..grid.cells())
+        .into_par_iter()
         .map(|index| {
             let cell = grid.cell(index);
             let (x_m, y_m) =

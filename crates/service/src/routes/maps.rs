@@ -133,8 +133,10 @@ pub(crate) fn refuse_too_large(terrain: &Terrain, most_cells: u64) -> Result<(),
     if cells as u64 <= most_cells {
         return Ok(());
     }
+    let side = most_cells.isqrt();
+    let coarser_m = terrain.grid.cell_size_m * (cells as f64 / most_cells as f64).sqrt();
     let detail = format!(
-        "the map has {cells} cells, more than the {most_cells} that can be planned over: crop it or use larger cells"
+        "the map has {cells} cells, more than the {most_cells} that can be planned over: crop it to {side} × {side} cells or resample it to cells of {coarser_m:.2} m"
     );
     Err(Problem::new(ProblemType::TooLarge, detail))
 }

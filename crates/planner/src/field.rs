@@ -3,13 +3,12 @@
 use terrain::Cell;
 
 use crate::{
-    cost::{FORBIDDEN, decode},
+    growth::Home,
     heading::Heading,
     lattice::State,
-    layout::{Layout, Shift, TILE, TILE_CELLS},
+    layout::{Layout, TILE, TILE_CELLS},
     patience::Patience,
-    queue::BucketQueue,
-    table::{CostTable, place_of_least},
+    table::CostTable,
 };
 
 /// A lower bound of the cost to the goal, cell by cell.
@@ -20,10 +19,10 @@ use crate::{
 pub struct GoalField {
     /// Ones' complement of the bound in the table's units, by cell of the layout; 0, as fresh memory is, where the field
     /// did not come or no chain of motions leads to the goal. Memory that the field does not reach is never touched.
-    complement: Vec<u32>,
+    pub(crate) complement: Vec<u32>,
     beyond: Beyond,
     units: f64,
-    layout: Layout,
+    pub(crate) layout: Layout,
 }
 
 /// Where a field begins and how far it has to reach.
@@ -45,37 +44,7 @@ enum Beyond {
     Towards { floor: u32, home: Home },
 }
 
-/// A start and the least cost of getting away from it.
-#[derive(Clone, Copy, Debug)]
-struct Home {
-    row: f32,
-    column: f32,
-    /// Units per cell of distance.
-    rate: f32,
-}
-
-impl Home {
-    /// Nowhere in particular: everything is reached for nothing.
-    const ANYWHERE: Home = Home { row: 0.0, column: 0.0, rate: 0.0 };
-
-    /// Least cost from the start to a cell.
-    #[inline(always)]
-    fn away(&self, row: usize, column: usize) -> u32 {
-        let (rows, columns) = (row as f32 - self.row, column as f32 - self.column);
-        ((rows * rows + columns * columns).sqrt() * self.rate) as u32
-    }
-}
-
 pub(crate) const UNREACHED: u32 = u32::MAX;
-
-/// Cells between two looks at the clock.
-const CLOCK_EVERY: u32 = 256;
-
-/// A field goes on beyond the start by a share of 1/`MARGIN` of its cost, which is about what turning adds to it.
-const MARGIN: u32 = 32;
-
-/// Buckets of 2048 units, a thirtieth of a step on level ground.
-pub(crate) const BUCKET_SHIFT: u32 = 11;
 
 impl GoalField {
     /// Backward search from the goal cells, towards the start if there is one; `None` when patience ends first.
@@ -98,7 +67,7 @@ impl GoalField {
             rate: table.least_units_per_cell(),
         });
         let mut touched = vec![false; layout.tiles()];
-        if let Some(floor) = field.settle(table, &ends, &home, &mut touched, patience)? {
+        if let Some(floor) = field.grow(table, &ends, &home, &mut touched, patience)? {
             field.bound_rest(floor, home, &touched);
         }
         Some(field)
@@ -120,73 +89,6 @@ impl GoalField {
         self.beyond = Beyond::Towards { floor, home };
     }
 
-    /// Settles cells; `Some(None)` when all were, `Some(floor)` when it ended before.
-    fn settle(
-        &mut self,
-        table: &CostTable,
-        ends: &FieldEnds<'_>,
-        home: &Home,
-        touched: &mut [bool],
-        patience: &Patience,
-    ) -> Option<Option<u32>> {
-        let layout = self.layout;
-        let backward: Vec<Shift> =
-            table.displacements().iter().map(|d| layout.prepare(-d.columns, -d.rows)).collect();
-        let mut queue = BucketQueue::new(BUCKET_SHIFT);
-        let position = |cell: Cell| Layout::cell(layout.pack(State { cell, heading: Heading::new(0) }));
-        let start = ends.start.map(position);
-        let key = |cost: u32, state: u32| {
-            let (row, column) = layout.place(state);
-            cost.saturating_add(home.away(row, column))
-        };
-        for &(cell, after) in ends.goals {
-            let at = position(cell);
-            let after = (after * table.units()) as u32;
-            if !after > self.complement[at] {
-                self.complement[at] = !after;
-                touched[Layout::tile(Layout::state_of_cell(at as u32))] = true;
-                queue.push(key(after, Layout::state_of_cell(at as u32)), (after, at as u32));
-            }
-        }
-        let mut settled = 0u32;
-        while let Some((reached, cell)) = queue.pop() {
-            if !reached < self.complement[cell as usize] {
-                continue;
-            }
-            if settled.is_multiple_of(CLOCK_EVERY) {
-                if patience.is_over() {
-                    return None;
-                }
-                let farthest = start.map_or(UNREACHED, |at| !self.complement[at]);
-                if queue.least_key() > farthest.saturating_add(farthest / MARGIN) {
-                    return Some(Some(queue.least_key()));
-                }
-            }
-            settled += 1;
-            let state = Layout::state_of_cell(cell);
-            for (i, shift) in backward.iter().enumerate() {
-                // Beyond the map the packing wraps round; from there no motion of this displacement stays on it.
-                let before = layout.shift(state, *shift);
-                let Some(known) = self.complement.get_mut(Layout::cell(before)) else { continue };
-                if *known >= !reached {
-                    continue;
-                }
-                let least = table.least(Layout::tile(before), patience)?;
-                let code = least.get(place_of_least(before, i)).copied().unwrap_or(FORBIDDEN);
-                if code == FORBIDDEN {
-                    continue;
-                }
-                let total = reached.saturating_add(decode(code));
-                if !total > *known {
-                    touched[Layout::tile(before)] = true;
-                    *known = !total;
-                    queue.push(key(total, before), (total, Layout::cell(before) as u32));
-                }
-            }
-        }
-        Some(None)
-    }
-
     /// Bytes held, memory that was never touched included.
     pub fn bytes(&self) -> usize {
         self.complement.len() * size_of::<u32>()
@@ -199,6 +101,11 @@ impl GoalField {
             UNREACHED => f64::INFINITY,
             units => f64::from(units) / self.units,
         }
+    }
+
+    /// The same in the table's units; the largest number where no chain of motions leads there.
+    pub fn units(&self, cell: Cell) -> u32 {
+        self.units_at(self.layout.pack(State { cell, heading: Heading::new(0) }))
     }
 
     /// The same in the table's units, for a packed state.

@@ -1,0 +1,186 @@
+//! How a goal field grows: tile by tile, in the order of the least cost at which anything in them may still fall.
+
+use terrain::Cell;
+
+use crate::{
+    cost::ENDLESS,
+    field::{FieldEnds, GoalField, UNREACHED},
+    front::Front,
+    heading::Heading,
+    lattice::State,
+    layout::{Layout, TILE, TILE_CELLS},
+    patience::Patience,
+    stencil::Stencil,
+    sweep::Sweep,
+    table::CostTable,
+};
+
+/// A start and the least cost of getting away from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Home {
+    pub(crate) row: f32,
+    pub(crate) column: f32,
+    /// Units per cell of distance.
+    pub(crate) rate: f32,
+}
+
+impl Home {
+    /// Nowhere in particular: everything is reached for nothing.
+    pub(crate) const ANYWHERE: Home = Home { row: 0.0, column: 0.0, rate: 0.0 };
+
+    /// Least cost from the start to a cell.
+    #[inline(always)]
+    pub(crate) fn away(&self, row: usize, column: usize) -> u32 {
+        let (rows, columns) = (row as f32 - self.row, column as f32 - self.column);
+        ((rows * rows + columns * columns).sqrt() * self.rate) as u32
+    }
+}
+
+/// A field goes on beyond the start by a share of 1/`MARGIN` of its cost, which is about what turning adds to it.
+const MARGIN: u32 = 32;
+
+impl GoalField {
+    /// Settles tiles; `Some(None)` when all were, `Some(floor)` when it ended before.
+    pub(crate) fn grow(
+        &mut self,
+        table: &CostTable,
+        ends: &FieldEnds<'_>,
+        home: &Home,
+        touched: &mut [bool],
+        patience: &Patience,
+    ) -> Option<Option<u32>> {
+        let position = |cell: Cell| Layout::cell(self.layout.pack(State { cell, heading: Heading::new(0) }));
+        let start = ends.start.map(position);
+        let mut front = Front::new(self.layout.tiles());
+        let mut goals = Vec::new();
+        for &(cell, after) in ends.goals {
+            let (at, after) = (position(cell), (after * table.units()) as u32);
+            if after < ENDLESS && !after > self.complement[at] {
+                self.complement[at] = !after;
+                goals.push(at);
+                let key = after.saturating_add(home.away(cell.row, cell.column));
+                front.note(at / TILE_CELLS, key, |change| change.seeded = true);
+            }
+        }
+        let mut sweep = Sweep::new(Stencil::new(table.displacements()));
+        while let Some((key, tile, change)) = front.pop() {
+            let farthest = start.map_or(UNREACHED, |at| !self.complement[at]);
+            if key > farthest.saturating_add(farthest / MARGIN) {
+                return Some(Some(key));
+            }
+            if patience.is_over() {
+                return None;
+            }
+            let least = table.least(tile, patience)?;
+            self.load(tile, &mut sweep);
+            sweep.take_up(&change);
+            let seeds = goals.iter().filter(|at| change.seeded && **at / TILE_CELLS == tile);
+            seeds.for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
+            sweep.settle(least);
+            touched[tile] = true;
+            self.store(tile, &sweep);
+            self.pass_on(tile, &sweep, home, &mut front);
+            sweep.fallen = [0; TILE];
+        }
+        Some(None)
+    }
+
+    /// Copies the costs of a tile and around it.
+    fn load(&self, tile: usize, sweep: &mut Sweep) {
+        let (tile_row, tile_column) = self.layout.tile_place(tile);
+        let (reach, width) = (sweep.reach(), sweep.width());
+        sweep.costs.fill(ENDLESS);
+        let (first_row, first_column) = (tile_row * TILE, tile_column * TILE);
+        let columns = first_column.saturating_sub(reach)
+            ..(first_column + TILE + reach).min(self.layout.tile_columns * TILE);
+        for row in
+            first_row.saturating_sub(reach)..(first_row + TILE + reach).min(self.layout.tile_rows * TILE)
+        {
+            let mut column = columns.start;
+            while column < columns.end {
+                let end = (column / TILE + 1) * TILE;
+                let count = end.min(columns.end) - column;
+                let from = self.layout.tile_at(row / TILE, column / TILE) * TILE_CELLS
+                    + row % TILE * TILE
+                    + column % TILE;
+                let to = (row + reach - first_row) * width + column + reach - first_column;
+                let (known, costs) = (&self.complement[from..from + count], &mut sweep.costs[to..to + count]);
+                for (cost, known) in costs.iter_mut().zip(known) {
+                    *cost = (!known).min(ENDLESS);
+                }
+                column += count;
+            }
+        }
+    }
+
+    /// Copies back what has fallen.
+    fn store(&mut self, tile: usize, sweep: &Sweep) {
+        let cells = &mut self.complement[tile * TILE_CELLS..][..TILE_CELLS];
+        for (row, cells) in
+            cells.chunks_exact_mut(TILE).enumerate().filter(|(row, _)| sweep.fallen[*row] != 0)
+        {
+            let costs = &sweep.costs[sweep.place(row)..][..TILE];
+            for (cell, cost) in cells.iter_mut().zip(costs) {
+                *cell = if *cost < ENDLESS { !cost } else { *cell };
+            }
+        }
+    }
+
+    /// Has tiles around looked at as far as they depend on what has fallen.
+    fn pass_on(&self, tile: usize, sweep: &Sweep, home: &Home, front: &mut Front) {
+        let layout = &self.layout;
+        let place = layout.tile_place(tile);
+        let far = sweep.reach().div_ceil(TILE) as isize;
+        for (rows, columns) in (-far..=far).flat_map(|rows| (-far..=far).map(move |columns| (rows, columns)))
+        {
+            let row = place.0.checked_add_signed(rows).filter(|row| *row < layout.tile_rows);
+            let column = place.1.checked_add_signed(columns).filter(|column| *column < layout.tile_columns);
+            let (Some(row), Some(column)) = (row, column) else { continue };
+            if (rows, columns) == (0, 0) {
+                continue;
+            }
+            let (changed, key) = fallen_towards((rows, columns), place, sweep, home);
+            if changed != 0 {
+                front.note(layout.tile_at(row, column), key, |change| {
+                    if far > 1 {
+                        change.whole = true;
+                    } else {
+                        // Seen from there, this tile lies the other way.
+                        change.around[(4 - 3 * rows - columns) as usize] |= changed;
+                    }
+                });
+            }
+        }
+    }
+}
+
+/// Rows or, towards another row of tiles, columns of a tile that have fallen within reach of a neighbour, and their least key.
+fn fallen_towards(
+    (rows, columns): (isize, isize),
+    (tile_row, tile_column): (usize, usize),
+    sweep: &Sweep,
+    home: &Home,
+) -> (u64, u32) {
+    let reach = sweep.reach().min(TILE);
+    let near_rows = [0..reach, 0..TILE, TILE - reach..TILE][(rows.signum() + 1) as usize].clone();
+    let cells = u64::MAX;
+    let near_columns = match columns.signum() {
+        -1 => cells.checked_shr((TILE - reach) as u32),
+        0 => Some(cells),
+        _ => cells.checked_shl((TILE - reach) as u32),
+    }
+    .unwrap_or(0);
+    let (mut changed, mut key) = (0, UNREACHED);
+    for row in near_rows {
+        let mut fallen = sweep.fallen[row] & near_columns;
+        changed |= if rows == 0 { u64::from(fallen != 0) << row } else { fallen };
+        let costs = &sweep.costs[sweep.place(row)..][..TILE];
+        while fallen != 0 {
+            let column = fallen.trailing_zeros() as usize;
+            fallen &= fallen - 1;
+            let away = home.away(tile_row * TILE + row, tile_column * TILE + column);
+            key = key.min(costs[column].saturating_add(away));
+        }
+    }
+    (changed, key)
+}

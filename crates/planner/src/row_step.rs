@@ -1,0 +1,184 @@
+//! One step of a motion from a row of cells side by side, in single precision.
+
+use model::PowerKernel;
+
+use crate::{edge::Chain, layout::TILE, window::Window};
+
+/// What steps are measured by.
+#[derive(Clone, Copy)]
+pub(crate) struct Pricing {
+    pub(crate) pitch_grade: f32,
+    pub(crate) roll_grade: f32,
+    pub(crate) side_force_n: f32,
+    pub(crate) per_j: f32,
+    pub(crate) per_m: f32,
+    pub(crate) per_s: f32,
+    pub(crate) lift_j_per_m: f32,
+}
+
+/// Values of a row of cells.
+pub(crate) type Lanes = [f32; TILE];
+
+/// A step of a motion from a row of cells side by side.
+pub(crate) struct RowStep {
+    /// Cells that interpolation reads, relative to the start cell, and their weights.
+    taps: Vec<((i32, i32), f32)>,
+    middle: (i32, i32),
+    horizontal_m: f32,
+    per_horizontal_m: f32,
+    travel: (f32, f32),
+    facing: f32,
+    s_per_m: f32,
+    on_the_spot_s: f32,
+    kernels: Vec<PowerKernel<f32>>,
+}
+
+impl RowStep {
+    pub(crate) fn reads(&self) -> impl Iterator<Item = (i32, i32)> + '_ {
+        self.taps.iter().map(|(offset, _)| *offset).chain([self.middle])
+    }
+
+    /// Adds the step's costs for a row of start cells and moves on to the height at its end.
+    #[inline(always)]
+    pub(crate) fn evaluate(
+        &self,
+        pricing: &Pricing,
+        window: &Window,
+        row: usize,
+        height_m: &mut Lanes,
+        costs: &mut Lanes,
+    ) {
+        let mut rise_m = [0.0f32; TILE];
+        if !self.taps.is_empty() {
+            let mut end_m = [0.0f32; TILE];
+            for (offset, weight) in &self.taps {
+                let z = window.lanes(&window.height_m, row, *offset);
+                for x in 0..TILE {
+                    end_m[x] += weight * z[x];
+                }
+            }
+            for ((rise_m, end_m), height_m) in rise_m.iter_mut().zip(&end_m).zip(height_m.iter()) {
+                *rise_m = end_m - height_m;
+            }
+            *height_m = end_m;
+        }
+        let east = window.lanes(&window.east, row, self.middle);
+        let north = window.lanes(&window.north, row, self.middle);
+        let ground = self.ground(&rise_m, east, north);
+        if let [only] = window.present[..] {
+            let step = self.costs(pricing, &self.kernels[usize::from(only)], &ground, &rise_m);
+            for x in 0..TILE {
+                costs[x] += step[x];
+            }
+            return;
+        }
+        let surface = window.lanes(&window.surface, row, self.middle);
+        for &class in &window.present {
+            let step = self.costs(pricing, &self.kernels[usize::from(class)], &ground, &rise_m);
+            for x in 0..TILE {
+                costs[x] += if surface[x] == class { step[x] } else { 0.0 };
+            }
+        }
+    }
+
+    /// Grades along and across the heading, and their cosines; see `PreparedStep::drive` for the same in double.
+    #[inline(always)]
+    fn ground(&self, rise_m: &Lanes, east: &Lanes, north: &Lanes) -> Ground {
+        let (cos, sin) = self.travel;
+        let mut ground = Ground {
+            grade: [0.0; TILE],
+            side_grade: [0.0; TILE],
+            cos_pitch: [0.0; TILE],
+            cos_roll: [0.0; TILE],
+        };
+        for x in 0..TILE {
+            ground.side_grade[x] = north[x] * cos - east[x] * sin;
+        }
+        if self.horizontal_m == 0.0 {
+            for x in 0..TILE {
+                ground.grade[x] = east[x] * cos + north[x] * sin;
+            }
+        } else {
+            for (grade, rise_m) in ground.grade.iter_mut().zip(rise_m) {
+                *grade = rise_m * self.per_horizontal_m;
+            }
+        }
+        for x in 0..TILE {
+            ground.cos_pitch[x] = inverse_sqrt(1.0 + ground.grade[x] * ground.grade[x]);
+            ground.cos_roll[x] = inverse_sqrt(1.0 + ground.side_grade[x] * ground.side_grade[x]);
+        }
+        ground
+    }
+
+    /// The cost of the step on one surface, infinite where limits forbid it.
+    #[inline(always)]
+    fn costs(&self, pricing: &Pricing, power: &PowerKernel<f32>, ground: &Ground, rise_m: &Lanes) -> Lanes {
+        // Copies that the compiler can keep in registers.
+        let (power, limits) = (*power, *pricing);
+        let (per_j, per_m, per_s) = (pricing.per_j, pricing.per_m, pricing.per_s);
+        let lift_j_per_m = if self.horizontal_m == 0.0 { 0.0 } else { pricing.lift_j_per_m };
+        let mut costs = [0.0; TILE];
+        for x in 0..TILE {
+            let (grade, cos_pitch) = (ground.grade[x], ground.cos_pitch[x]);
+            let (normal, along) = (cos_pitch * ground.cos_roll[x], self.facing * grade * cos_pitch);
+            let length_m = self.horizontal_m * (1.0 + grade * grade) * cos_pitch;
+            let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
+            let force_n = power.forces_n(normal, along);
+            let bus_w = power.bus_w(power.side_w(force_n), along);
+            let friction_j = bus_w * duration_s - lift_j_per_m * rise_m[x];
+            let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
+            let cost = per_j * friction_j + per_m * length_m + per_s * duration_s;
+            // Written so that a NaN of unknown ground fails too.
+            let allowed = (grade.abs() <= limits.pitch_grade)
+                & (ground.side_grade[x].abs() <= limits.roll_grade)
+                & (force_n.left.abs() <= limits.side_force_n)
+                & (force_n.right.abs() <= limits.side_force_n);
+            costs[x] = if allowed { cost } else { f32::INFINITY };
+        }
+        costs
+    }
+}
+
+/// The ground under a step for one row of start cells.
+struct Ground {
+    grade: Lanes,
+    side_grade: Lanes,
+    cos_pitch: Lanes,
+    cos_roll: Lanes,
+}
+
+/// 1/√x to single precision for positive x, by Newton's method: several times the speed of a square root and a division,
+/// which registers share.
+#[inline(always)]
+fn inverse_sqrt(x: f32) -> f32 {
+    // Halving and negating the exponent is a first guess within 3.5 %; each step squares the error.
+    const GUESS: u32 = 0x5f37_59df;
+    let half = 0.5 * x;
+    let mut y = f32::from_bits(GUESS.wrapping_sub(x.to_bits() >> 1));
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y * (1.5 - half * y * y)
+}
+
+impl Chain {
+    /// Its steps in the form that rows are evaluated with.
+    pub(crate) fn row_steps(&self) -> impl Iterator<Item = RowStep> + '_ {
+        self.steps_with_manoeuvres().map(|(step, manoeuvres, reverse)| {
+            let motion = manoeuvres.first().map(|m| *m.motion());
+            let speed_mps = motion.map_or(1.0, |m| m.speed_mps.abs());
+            let yaw_radps = motion.map_or(1.0, |m| m.yaw_rate_radps);
+            let turning = step.horizontal_m == 0.0;
+            RowStep {
+                taps: if turning { Vec::new() } else { step.end.taps().collect() },
+                middle: step.middle,
+                horizontal_m: step.horizontal_m as f32,
+                per_horizontal_m: if turning { 0.0 } else { (1.0 / step.horizontal_m) as f32 },
+                travel: (step.travel.0 as f32, step.travel.1 as f32),
+                facing: if reverse { -1.0 } else { 1.0 },
+                s_per_m: if turning { 0.0 } else { (1.0 / speed_mps) as f32 },
+                on_the_spot_s: if turning { (step.turn_rad / yaw_radps) as f32 } else { 0.0 },
+                kernels: manoeuvres.iter().map(|m| m.kernel().single()).collect(),
+            }
+        })
+    }
+}
