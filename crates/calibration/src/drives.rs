@@ -35,7 +35,7 @@ pub struct Row {
     pub motor_c: Sides<f64>,
     /// Enters averages: everything needed is there and the wheels hold the ground.
     pub used: bool,
-    /// The wheels turn against each other and the robot does not ([`stuck`]).
+    /// The wheels turn against each other and the robot does not (`stuck`).
     pub stuck: bool,
 }
 

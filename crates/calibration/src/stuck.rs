@@ -90,7 +90,7 @@ pub struct SlipTrack {
 }
 
 /// The slip track at which wheels and gyroscope agree, root mean square over 2 s against root mean square, over the rows that
-/// turn and are not stuck; `None` where the robot turned in fewer than [`LEAST_BLOCKS`] stretches with a measured yaw rate.
+/// turn and are not stuck; `None` where the robot turned in fewer than four stretches with a measured yaw rate.
 ///
 /// ```text
 /// b² = Σ⟨u_r − u_l⟩² / Σ⟨ω⟩²
