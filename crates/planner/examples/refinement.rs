@@ -5,16 +5,15 @@
 use std::{error::Error, path::PathBuf, time::Instant};
 
 use model::builtin;
-use planner::{Goal, Lattice, Objective, Patience, Query, Refined, Route, Settings, Start, plan, refine};
-use rand::{RngExt, SeedableRng};
+use planner::{Lattice, Objective, Patience, Refined, Route, Settings, plan, refine};
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use terrain::{Terrain, io};
-
-/// Pairs nearer than this share of the map's width have little to refine between them.
-const LEAST_SHARE: f64 = 0.4;
+use terrain::io;
 
 /// Times each route is refined.
 const RUNS: usize = 5;
+
+mod pairs;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -33,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let (mut gains, mut times_ms) = (Vec::new(), Vec::new());
     while gains.len() < pairs {
-        let query = random_query(&mut random, &terrain, settings);
+        let query = pairs::random_query(&mut random, &terrain, settings);
         let Ok(found) = plan(&terrain, &robot, &query, Objective::Energy) else { continue };
         let (route, time_ms) =
             timed(|| refine(&lattice, Objective::Energy, &found.route, &Patience::default()));
@@ -81,27 +80,4 @@ fn turned_rad(route: &Route) -> f64 {
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     (values[(values.len() - 1) / 2] + values[values.len() / 2]) / 2.0
-}
-
-fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) -> Query {
-    let grid = &terrain.grid;
-    loop {
-        let mut place =
-            || grid.at_fraction_m(random.random_range(0.03..0.97), random.random_range(0.03..0.97));
-        let (start, goal) = (place(), place());
-        if (start[0] - goal[0]).hypot(start[1] - goal[1])
-            < LEAST_SHARE * grid.columns as f64 * grid.cell_size_m
-        {
-            continue;
-        }
-        return Query {
-            start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
-            settings,
-            snap_radius_m: None,
-            bound: 1.0,
-            refine: false,
-            patience: Patience::default(),
-        };
-    }
 }

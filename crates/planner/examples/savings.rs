@@ -5,13 +5,12 @@
 use std::{error::Error, path::PathBuf, time::Instant};
 
 use model::builtin;
-use planner::{Comparison, Goal, Patience, Query, Settings, Start, compare};
-use rand::{RngExt, SeedableRng};
+use planner::{Comparison, Settings, compare};
+use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
-use terrain::{Terrain, io};
+use terrain::io;
 
-/// Pairs nearer than this share of the map's width have little relief between them.
-const LEAST_SHARE: f64 = 0.4;
+mod pairs;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -30,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut asked = 0;
     while savings.len() < pairs {
         asked += 1;
-        let query = random_query(&mut random, &terrain, Settings::of(&robot));
+        let query = pairs::random_query(&mut random, &terrain, Settings::of(&robot));
         let began = Instant::now();
         let Ok(both) = compare(&terrain, &robot, &query) else { continue };
         savings.push(both.saving_fraction());
@@ -45,29 +44,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         asked - pairs
     );
     Ok(())
-}
-
-fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: Settings) -> Query {
-    let grid = &terrain.grid;
-    loop {
-        let mut place =
-            || grid.at_fraction_m(random.random_range(0.03..0.97), random.random_range(0.03..0.97));
-        let (start, goal) = (place(), place());
-        if (start[0] - goal[0]).hypot(start[1] - goal[1])
-            < LEAST_SHARE * grid.columns as f64 * grid.cell_size_m
-        {
-            continue;
-        }
-        return Query {
-            start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
-            settings,
-            snap_radius_m: None,
-            bound: 1.0,
-            refine: false,
-            patience: Patience::default(),
-        };
-    }
 }
 
 fn print_pair(number: usize, both: &Comparison, seconds: f64) {

@@ -2,7 +2,7 @@
 //!
 //! A search jumps along its wavefront, so nearly every state it takes up lies in memory that the processor does not hold.
 //! Asking for the states next in line while one is worked on takes an expansion on a 1000 × 1000 map to about a third of its
-//! time (`cargo run --release -p joulepath-planner --example search_speed`, with `CODES_AHEAD` as it is and out of reach).
+//! time (`joulepath bench --size 1000`, with `CODES_AHEAD` as it is and out of reach).
 
 /// Hints that an element of a slice will be read soon; does nothing where it does not exist.
 #[inline(always)]

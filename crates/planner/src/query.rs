@@ -68,8 +68,7 @@ pub struct SearchReport {
     pub expanded: u64,
     /// Time for preparing and searching.
     pub duration: Duration,
-    /// Proven: the lattice's best path has no less than this share of the objective, so that the answer is at most so many
-    /// times the least; 1 when it is the least. `None` where the least may be nothing or a gain, which no factor bounds.
+    /// Proven: the answer has at most so many times the least of the objective; 1 when it is the least. `None` where the least may be nothing or a gain, which no factor bounds.
     pub bound: Option<f64>,
     /// By how much the answer may exceed the least, in the objective's unit; 0 when it is the least.
     pub excess: f64,
