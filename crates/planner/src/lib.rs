@@ -9,6 +9,7 @@
 
 mod along;
 mod astar;
+mod blocked;
 mod connection;
 mod cost;
 mod course;
