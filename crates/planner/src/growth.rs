@@ -1,5 +1,6 @@
 //! How a goal field grows: tile by tile, in the order of the least cost at which anything in them may still fall.
 
+use rayon::prelude::*;
 use terrain::Cell;
 
 use crate::{
@@ -38,6 +39,9 @@ impl Home {
 
 /// A field goes on beyond the start by a share of 1/`MARGIN` of its cost, which is about what turning adds to it.
 const MARGIN: u32 = 32;
+/// Tiles that are settled at the same time, each as if the others stayed as they were; what they change is looked at again
+/// from tile to tile. The number is the same on every machine, so that a field is.
+const ABREAST: usize = 6;
 
 impl GoalField {
     /// Settles tiles; `Some(None)` when all were, `Some(floor)` when it ended before.
@@ -62,27 +66,35 @@ impl GoalField {
                 front.note(at / TILE_CELLS, key, |change| change.seeded = true);
             }
         }
-        let mut sweep = Sweep::new(Stencil::new(table.displacements()));
-        while let Some((key, tile, change)) = front.pop() {
+        let mut sweeps: Vec<Sweep> =
+            (0..ABREAST).map(|_| Sweep::new(Stencil::new(table.displacements()))).collect();
+        loop {
             let farthest = start.map_or(UNREACHED, |at| !self.complement[at]);
-            if key > farthest.saturating_add(farthest / MARGIN) {
-                return Some(Some(key));
-            }
+            let taken = match front.pop_within(farthest.saturating_add(farthest / MARGIN), ABREAST) {
+                Ok(taken) if taken.is_empty() => return Some(None),
+                Ok(taken) => taken,
+                Err(key) => return Some(Some(key)),
+            };
             if patience.is_over() {
                 return None;
             }
-            let least = table.least(tile, patience)?;
-            self.load(tile, &mut sweep);
-            sweep.take_up(&change);
-            let seeds = goals.iter().filter(|at| change.seeded && **at / TILE_CELLS == tile);
-            seeds.for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
-            sweep.settle(least);
-            touched[tile] = true;
-            self.store(tile, &sweep);
-            self.pass_on(tile, &sweep, home, &mut front);
-            sweep.fallen = [0; TILE];
+            let least =
+                taken.iter().map(|(tile, _)| table.least(*tile, patience)).collect::<Option<Vec<_>>>()?;
+            let field = &*self;
+            taken.par_iter().zip(&mut sweeps).zip(least).for_each(|(((tile, change), sweep), least)| {
+                field.load(*tile, sweep);
+                sweep.take_up(change);
+                let seeds = goals.iter().filter(|at| change.seeded && **at / TILE_CELLS == *tile);
+                seeds.for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
+                sweep.settle(least);
+            });
+            for ((tile, _), sweep) in taken.iter().zip(&mut sweeps) {
+                touched[*tile] = true;
+                self.store(*tile, sweep);
+                self.pass_on(*tile, sweep, home, &mut front);
+                sweep.fallen = [0; TILE];
+            }
         }
-        Some(None)
     }
 
     /// Copies the costs of a tile and around it.
