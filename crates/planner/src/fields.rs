@@ -52,7 +52,7 @@ impl FieldCache {
         &self,
         key: FieldKey,
         table: &CostTable,
-        goals: &[(Cell, f64)],
+        goals: &[(State, f64)],
         start: Cell,
         patience: &Patience,
     ) -> Option<Arc<GoalField>> {

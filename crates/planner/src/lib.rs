@@ -9,6 +9,7 @@
 
 mod along;
 mod astar;
+mod backward;
 mod blocked;
 mod connection;
 mod cost;
@@ -29,6 +30,7 @@ mod labels;
 mod lattice;
 mod layout;
 mod least;
+mod near;
 mod patience;
 mod plan;
 mod planner;
