@@ -8,8 +8,9 @@ use crate::{
     exact::ExactField,
     field::{FieldEnds, GoalField},
     lattice::State,
+    objective::Objective,
     patience::Patience,
-    table::{CostTable, Objective},
+    table::CostTable,
 };
 
 /// What a field is for.

@@ -18,10 +18,11 @@ use crate::{
     fields::{FieldCache, FieldKey},
     labels::Workspace,
     lattice::{Lattice, Settings},
+    objective::Objective,
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
     route::Route,
-    table::{CostTable, Objective},
+    table::CostTable,
     uncertainty::energy_interval_j,
 };
 

@@ -11,9 +11,9 @@ use crate::{
     heading::HEADINGS,
     lattice::Lattice,
     layout::TILE,
+    objective::Weights,
     patience::Patience,
     row_step::{Lanes, Pricing, RowStep},
-    table::Weights,
     tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
     window::Window,
 };
