@@ -20,8 +20,8 @@ impl Mechanism for DrivetrainDrag {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[
-            Parameter { name: "left_n", unit: "N", bounds: [-200.0, 300.0], probe: 1.0 },
-            Parameter { name: "right_n", unit: "N", bounds: [-200.0, 300.0], probe: 1.0 },
+            Parameter { name: "left_n", unit: "N", bounds: [-10.0, 300.0], probe: 1.0 },
+            Parameter { name: "right_n", unit: "N", bounds: [-10.0, 300.0], probe: 1.0 },
         ]
     }
 

@@ -18,7 +18,7 @@ impl Mechanism for Inertia {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter { name: "kg_per_side", unit: "kg", bounds: [-200.0, 400.0], probe: 1.0 }]
+        &[Parameter { name: "kg_per_side", unit: "kg", bounds: [0.0, 400.0], probe: 1.0 }]
     }
 
     fn equation(&self) -> &'static str {

@@ -19,7 +19,7 @@ impl Mechanism for MotorHeating {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[
-            Parameter { name: "rise_k_per_w", unit: "K/W", bounds: [-3.0, 10.0], probe: 0.05 },
+            Parameter { name: "rise_k_per_w", unit: "K/W", bounds: [0.0, 10.0], probe: 0.05 },
             Parameter { name: "time_constant_s", unit: "s", bounds: [20.0, 7200.0], probe: 10.0 },
         ]
     }

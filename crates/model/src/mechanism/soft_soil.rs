@@ -18,7 +18,7 @@ impl Mechanism for SoftSoil {
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &[Parameter { name: "sinking", unit: "1", bounds: [-1.0, 20.0], probe: 0.05 }]
+        &[Parameter { name: "sinking", unit: "1", bounds: [0.0, 20.0], probe: 0.05 }]
     }
 
     fn equation(&self) -> &'static str {

@@ -22,7 +22,7 @@ impl Mechanism for Wind {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[
-            Parameter { name: "drag_area_m2", unit: "m²", bounds: [-3.0, 8.0], probe: 0.05 },
+            Parameter { name: "drag_area_m2", unit: "m²", bounds: [0.0, 8.0], probe: 0.05 },
             Parameter { name: "east_mps", unit: "m/s", bounds: [-25.0, 25.0], probe: 0.1 },
             Parameter { name: "north_mps", unit: "m/s", bounds: [-25.0, 25.0], probe: 0.1 },
         ]
