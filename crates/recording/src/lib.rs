@@ -28,14 +28,18 @@ mod stream;
 mod suspicion;
 mod topic;
 mod units;
+mod watch;
 
 pub use channel::{Channel, Quantity};
 pub use error::Error;
 pub use map::{Combine, Map, Place, Source, Stamp, Target};
-pub use reading::{Format, Reading, read, read_path, read_paths};
+pub use reading::{
+    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
+};
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{
     AlignmentReport, ChannelReport, Ignored, ReadingReport, Repair, RunReport, StreamReport, Suspicion,
     SuspicionKind,
 };
 pub use units::{Conversion, unit_names};
+pub use watch::Watch;

@@ -46,6 +46,7 @@ pub struct Labels {
 
 /// In which of the contract's forms a recording tells power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PowerForm {
     /// `power_left_w` and `power_right_w`.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use calibration::{Calibration, Options, calibrate, lift};
+use calibration::{Calibration, Method, Options, lift};
 use clap::{Args, ValueEnum};
 
 use crate::{
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     lift: Option<PathBuf>,
     /// Which procedure: a fit of everything, or the paper's own
     #[arg(long, value_enum, default_value = "fit")]
-    method: Method,
+    method: MethodName,
     /// For motor currents: the surface that what belongs to the robot is fitted on
     #[arg(long)]
     reference_surface: Option<String>,
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Method {
+enum MethodName {
     Fit,
     DogruMarques,
 }
@@ -42,13 +42,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let lifts = lift::read(&text(&name)?).map_err(|error| BadInput(format!("{name}: {error}")))?;
         robot = lift::apply(&robot, &lifts).map_err(|error| BadInput(format!("{name}: {error}")))?;
     }
-    let found = match arguments.method {
-        Method::Fit => {
-            let options = Options { reference_surface: arguments.reference_surface.clone() };
-            calibrate(&robot, &recording, &options)
-        }
-        Method::DogruMarques => calibration::dogru_marques::calibrate(&robot, &recording),
+    let method = match arguments.method {
+        MethodName::Fit => Method::Fit,
+        MethodName::DogruMarques => Method::DogruMarques,
     };
+    let options = Options { reference_surface: arguments.reference_surface.clone() };
+    let found = method.calibrate(&robot, &recording, &options);
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;
     let out = &arguments.out;
