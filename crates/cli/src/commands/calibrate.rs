@@ -1,6 +1,6 @@
 //! `joulepath calibrate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use calibration::{Calibration, Method, Options, lift};
@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 
 use crate::{
     failure::BadInput,
+    progress,
     recorded::{Recorded, text},
 };
 
@@ -36,6 +37,7 @@ enum MethodName {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    refuse_unwritable(&arguments.out)?;
     let (mut robot, recording) = arguments.recorded.read()?;
     if let Some(path) = &arguments.lift {
         let name = path.display().to_string();
@@ -47,7 +49,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         MethodName::DogruMarques => Method::DogruMarques,
     };
     let options = Options { reference_surface: arguments.reference_surface.clone() };
+    let sign = progress::working("fitting");
     let found = method.calibrate(&robot, &recording, &options);
+    sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;
     let out = &arguments.out;
@@ -59,6 +63,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         println!("{}", summary(&found));
     }
     Ok(())
+}
+
+/// Refuses a place that cannot be written to before long work is done for it.
+fn refuse_unwritable(out: &Path) -> Result<(), BadInput> {
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() && !out.is_dir() {
+        return Ok(());
+    }
+    let fault = if out.is_dir() { "it is a folder" } else { "its folder does not exist" };
+    Err(BadInput(format!("--out {}: {fault}; name a file in a folder that does", out.display())))
 }
 
 fn summary(found: &Calibration) -> String {

@@ -6,7 +6,7 @@ use anyhow::Context;
 use calibration::{RunPrediction, predict};
 use clap::Args;
 
-use crate::recorded::Recorded;
+use crate::{progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -19,7 +19,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (robot, recording) = arguments.recorded.read()?;
-    let found = predict(&robot, &recording).map_err(|error| arguments.recorded.refuse(&error))?;
+    let sign = progress::working("predicting");
+    let found = predict(&robot, &recording);
+    sign.finish_and_clear();
+    let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     if let Some(path) = &arguments.html {
         let page = calibration::report::html(&robot, &found);
         std::fs::write(path, page)
