@@ -10,16 +10,20 @@ pub mod align;
 mod bag;
 mod channel;
 mod column;
+mod combine;
 mod compression;
+mod container;
 mod csv;
 mod cursor;
 mod definition;
+mod divide;
 mod error;
 mod field;
 mod gap;
 mod layout;
 mod map;
 mod mcap;
+mod merge;
 mod parquet;
 mod reading;
 mod recording;
@@ -28,11 +32,13 @@ mod stream;
 mod suspicion;
 mod topic;
 mod units;
+mod walk;
 mod watch;
 
 pub use channel::{Channel, Quantity};
+pub use combine::Combine;
 pub use error::Error;
-pub use map::{Combine, Map, Place, Source, Stamp, Target};
+pub use map::{Map, Place, Source, Stamp, Target};
 pub use reading::{
     Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
 };
