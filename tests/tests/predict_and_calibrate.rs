@@ -182,6 +182,40 @@ fn what_was_mended_left_out_or_looks_wrong_is_told_beside_the_answer() {
 }
 
 #[test]
+fn runs_that_tell_nothing_are_named_and_a_few_rows_leave_what_was_known_before() {
+    let folder = folder();
+    let row = |run: &str, t: usize, power: &str| format!("{run},{t},0.5,0.5,{power}\n");
+    let short: String = (0..4).map(|t| row("short", t, "100")).collect();
+    let table = format!(
+        "run,t_s,v_left_mps,v_right_mps,power_w\n{short}{}{}{}",
+        row("single", 0, "90"),
+        row("empty", 0, ""),
+        row("empty", 1, "nan")
+    );
+    std::fs::write(folder.path().join("few.csv"), table).unwrap();
+    let output = joulepath(folder.path(), &["predict", "--recording", "few.csv"]);
+    let (printed, told) = (text_of(&output), text(&output.stderr));
+    assert!(printed.contains("short") && printed.contains("single") && !printed.contains("NaN"), "{printed}");
+    assert!(told.contains("few.csv, run empty: power_w: it has no value in 2 rows"), "{told}");
+    let arguments = ["calibrate", "--recording", "few.csv", "--out", "robot.json", "--json"];
+    let found = document(&joulepath(folder.path(), &arguments));
+    let parameters = found["parameters"].as_array().unwrap();
+    assert!(parameters.iter().all(|parameter| parameter["determined"] == false), "{found}");
+    std::fs::write(
+        folder.path().join("flood.csv"),
+        drive_csv(2, 100).replace(",0.", ",nan").replace(",0,", ",nan,"),
+    )
+    .unwrap();
+    let flood = joulepath(folder.path(), &["calibrate", "--recording", "flood.csv", "--out", "o.json"]);
+    assert_eq!(flood.status.code(), Some(2), "{}", text(&flood.stderr));
+}
+
+fn text_of(output: &Output) -> String {
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+#[test]
 fn progress_is_shown_on_a_terminal_and_nothing_of_it_on_a_pipe() {
     let folder = folder();
     let arguments = ["calibrate", "--recording", "drive.csv", "--out", "robot.json"];
