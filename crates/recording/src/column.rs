@@ -6,6 +6,7 @@ use crate::{
     Channel, Combine, Conversion, Error, Ignored, Labels, Map, Recording,
     divide::{check_order, divide},
     error::Position,
+    label_column::LabelColumn,
     map::{Place, Target},
     report::{ChannelReport, ReadingReport},
     units,
@@ -26,7 +27,7 @@ pub(crate) enum Kind {
 #[derive(Debug)]
 pub(crate) enum Column {
     Numbers(Vec<f64>),
-    Labels(Labels),
+    Labels(LabelColumn),
     /// Nothing of use, and why.
     Unusable(String),
 }
@@ -151,8 +152,10 @@ impl Plan {
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             match self.combined(&entry, &mut columns) {
-                Ok(Column::Labels(labels)) if entry.target == Target::Run => runs = Some(labels),
-                Ok(Column::Labels(labels)) => recording.surface = Some(labels),
+                Ok(Column::Labels(labels)) if entry.target == Target::Run => {
+                    runs = Some(labels.into_labels())
+                }
+                Ok(Column::Labels(labels)) => recording.surface = Some(labels.into_labels()),
                 Ok(Column::Numbers(values)) => match entry.target {
                     Target::Channel(channel) => {
                         report.channels.push(ChannelReport::new(channel, self.names(&entry), entry.unit));

@@ -156,6 +156,18 @@ pub enum Error {
         /// What was wrong with the first.
         reason: String,
     },
+    /// A text column with so many names that it must be something else.
+    #[error(
+        "{position}, column `{column}`: more than {most} different names; is it a number? Rename the column"
+    )]
+    TooManyNames {
+        /// Line or row.
+        position: Position,
+        /// The column.
+        column: String,
+        /// The most that are read.
+        most: usize,
+    },
     /// More numbers than are held in memory.
     #[error(
         "the recording holds more than {most} numbers, which do not fit in memory together: cut it into several files, or name fewer columns or topics in a map"

@@ -6,6 +6,7 @@ use crate::{
     Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
     align::{Between, interpolate},
     gap,
+    limit::refuse_too_many,
     map::{Place, Target},
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
@@ -16,6 +17,7 @@ use crate::{
 impl Topics<'_> {
     /// Brings what was read onto one clock.
     pub(crate) fn finish(mut self, name: &str, format: &'static str) -> Result<Reading, Error> {
+        refuse_too_many(self.numbers, 1)?;
         let mut report = ReadingReport::default();
         let mut streams = Vec::new();
         for topic in std::mem::take(&mut self.topics) {

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout, map::Place,
-    stream::Samples, walk::Found,
+    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout,
+    limit::refuse_too_many, map::Place, stream::Samples, walk::Found,
 };
 
 /// The topics of a file while it is read.
@@ -17,6 +17,8 @@ pub(crate) struct Topics<'m> {
     pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
     found: Found,
+    /// Numbers held by all topics.
+    pub(crate) numbers: usize,
 }
 
 pub(crate) struct Topic {
@@ -49,6 +51,7 @@ impl<'m> Topics<'m> {
             ignored: Vec::new(),
             repairs: Vec::new(),
             found: Found::default(),
+            numbers: 0,
         }
     }
 
@@ -154,6 +157,11 @@ impl<'m> Topics<'m> {
                 return;
             }
         };
+        // Stamps count like values. What comes beyond the limit is counted, not kept, and then refused as a whole.
+        self.numbers = self.numbers.saturating_add(topic.samples.columns.len() + 2);
+        if refuse_too_many(self.numbers, 1).is_err() {
+            return;
+        }
         topic.samples.log_ns.push(log_ns);
         if let Some(stamp_ns) = stamp_ns {
             topic.samples.stamp_ns.push(stamp_ns);
