@@ -153,7 +153,7 @@ impl Plan {
         for entry in mem::take(&mut self.entries) {
             match self.combined(&entry, &mut columns) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
-                    runs = Some(labels.into_labels())
+                    runs = Some(labels.into_labels());
                 }
                 Ok(Column::Labels(labels)) => recording.surface = Some(labels.into_labels()),
                 Ok(Column::Numbers(values)) => match entry.target {

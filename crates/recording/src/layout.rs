@@ -119,7 +119,9 @@ impl Layout {
         // Seconds and nanoseconds are whole numbers below 2³², which doubles hold exactly.
         let [seconds, nanoseconds] = self.stamp.unwrap_or_default().map(|slot| found.slots.get(slot));
         let whole = |part: Option<&f64>| part.map(|part| *part as i64);
-        let stamp = whole(seconds).zip(whole(nanoseconds)).map(|(s, ns)| s * 1_000_000_000 + ns);
+        let stamp = whole(seconds)
+            .zip(whole(nanoseconds))
+            .and_then(|(s, ns)| s.checked_mul(1_000_000_000)?.checked_add(ns));
         Ok(stamp.filter(|_| self.stamp.is_some()))
     }
 }

@@ -15,9 +15,9 @@ fn record(opcode: u8, body: &[u8]) -> Vec<u8> {
 }
 
 /// An MCAP file of one topic, by its specification: magic, schema, channel, messages, end of data.
-fn mcap(messages: &[Vec<u8>]) -> Vec<u8> {
+fn mcap(definition: &str, messages: &[Vec<u8>]) -> Vec<u8> {
     let id = 1u16.to_le_bytes();
-    let schema = [&id[..], &text("my_msgs/Drive"), &text("ros2msg"), &text(DEFINITION)].concat();
+    let schema = [&id[..], &text("my_msgs/Drive"), &text("ros2msg"), &text(definition)].concat();
     let channel = [&id[..], &id, &text("/drive"), &text("cdr"), &0u32.to_le_bytes()].concat();
     let mut file = [b"\x89MCAP0\r\n".to_vec(), record(3, &schema), record(4, &channel)].concat();
     for (row, message) in (0u64..).zip(messages) {
@@ -35,12 +35,16 @@ fn cdr(header: [u8; 4], numbers: [f64; 3]) -> Vec<u8> {
 }
 
 fn reading(messages: &[Vec<u8>]) -> Result<Reading, Error> {
+    reading_by(DEFINITION, messages)
+}
+
+fn reading_by(definition: &str, messages: &[Vec<u8>]) -> Result<Reading, Error> {
     let source = |channel: &str, field: &str| {
         format!(r#"{{"channel": "{channel}", "topic": "/drive", "fields": ["{field}"]}}"#)
     };
     let sources = [source("v_left_mps", "left"), source("v_right_mps", "right"), source("power_w", "watts")];
     let map = Map::from_json(&format!(r#"{{"name": "own", "sources": [{}]}}"#, sources.join(","))).unwrap();
-    read(mcap(messages), Format::Mcap, "drive", Some(&map))
+    read(mcap(definition, messages), Format::Mcap, "drive", Some(&map))
 }
 
 #[test]
@@ -75,5 +79,22 @@ fn messages_that_are_wrong_among_others_are_left_out_and_told() {
     assert!(
         repair.what.contains("1 messages are not what") && repair.what.contains("message 2"),
         "{repair:?}"
+    );
+}
+
+#[test]
+fn a_definition_that_names_a_field_twice_is_refused() {
+    // Such a one could put any number into the stamp, and its seconds into nanoseconds overflow.
+    let definition = format!(
+        "my_msgs/Stamped header\nmy_msgs/Loose header\n{DEFINITION}{0}\nMSG: my_msgs/Stamped\ntime stamp\n{0}\n\
+         MSG: my_msgs/Loose\nfloat64 stamp\n",
+        "=".repeat(80)
+    );
+    let numbers = [1e300, 1.0, 2.0, 40.0].map(f64::to_le_bytes).concat();
+    let message = [vec![0, 1, 0, 0], 7u64.to_le_bytes().to_vec(), numbers].concat();
+    let error = reading_by(&definition, &[message.clone(), message]).unwrap_err().to_string();
+    assert!(
+        error.contains("topic /drive") && error.contains("two fields `header` in my_msgs/Drive"),
+        "{error}"
     );
 }
