@@ -10,6 +10,11 @@ const RESISTANCE_OHM: f64 = 0.045;
 /// Open voltage over the nominal one, empty and full; lead and lithium packs fall by about so much.
 const OPEN_VOLTAGE: [f64; 2] = [0.96, 1.06];
 
+/// Nominal voltage of a robot's battery [V].
+pub(crate) fn nominal_v(robot: &RobotFile) -> f64 {
+    robot.battery.map_or(NOMINAL_V, |battery| battery.nominal_voltage_v)
+}
+
 /// A battery in use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Battery {
@@ -27,8 +32,8 @@ pub(crate) struct Battery {
 impl Battery {
     /// A full battery.
     pub(crate) fn full(robot: &RobotFile) -> Self {
-        let (capacity_wh, nominal_v) =
-            robot.battery.map_or((CAPACITY_WH, NOMINAL_V), |b| (b.capacity_wh, b.nominal_voltage_v));
+        let capacity_wh = robot.battery.map_or(CAPACITY_WH, |battery| battery.capacity_wh);
+        let nominal_v = nominal_v(robot);
         Battery {
             capacity_j: capacity_wh * 3600.0,
             nominal_v,

@@ -1,17 +1,17 @@
 //! The drive train of one side: driver, winding, magnets, gears.
 
-use crate::robot::Motors;
+use crate::{RobotFile, battery::nominal_v};
 
 /// Share of the wheel's force that load presses into friction of gears and belt, driving. A part of what the robot
 /// file's k2 stands for; what is left of k2 is lost in the conversion between magnets and bus.
 const GEAR_FRICTION: f64 = 0.10;
-/// What magnets induce per rim speed, where the file does not tell the force per ampere [V s/m]: 9 V at 1 m/s lets a
-/// 24 V motor reach 2.5 m/s unloaded and spin a Husky with some 18 A a side, as recorded (BorealTC, LaRocque et al. 2024).
-const MAGNETS_VS_PER_M: f64 = 9.0;
+/// What magnets induce at top speed over the battery's voltage, where the file does not tell the force per ampere: for a
+/// Husky 9 V at 1 m/s, with which a spin takes some 18 A a side, as recorded (BorealTC, LaRocque et al. 2024).
+const INDUCED_AT_TOP: f64 = 0.375;
 /// Inductance of the winding over its resistance [s]; brushed motors of a few hundred watts have 1 to 5 ms.
 const ELECTRIC_TIME_S: f64 = 0.003;
 /// Voltage that switches and diodes of the driver take from every ampere [V].
-const DRIVER_DROP_V: f64 = 0.1;
+const DRIVER_DROP_V: f64 = 0.05;
 /// Rim speed over which dry friction turns round [m/s].
 pub(crate) const TURNAROUND_MPS: f64 = 0.008;
 
@@ -44,10 +44,12 @@ pub(crate) struct SidePower {
 
 impl DriveTrain {
     /// The circuit whose steady state is that of the file's k1 and k2 when it drives.
-    pub(crate) fn new(motors: &Motors, left: bool) -> Self {
+    pub(crate) fn new(robot: &RobotFile, left: bool) -> Self {
+        let motors = &robot.motors;
         let file = if left { motors.left } else { motors.right };
         let delivered = 1.0 - GEAR_FRICTION;
-        let magnets = file.force_n_per_a.unwrap_or(MAGNETS_VS_PER_M * delivered) / delivered;
+        let induced = INDUCED_AT_TOP * nominal_v(robot) / robot.max_wheel_speed_mps;
+        let magnets = file.force_n_per_a.map_or(induced, |force_n_per_a| force_n_per_a / delivered);
         DriveTrain {
             // P = R i² with i = F / (K (1 − c)).
             resistance_ohm: file.k1_w_per_n2 * (magnets * delivered).powi(2),
@@ -122,7 +124,7 @@ mod tests {
 
     /// Power and rim force in steady state at a current.
     fn steady(current_a: f64, rim_mps: f64, winding_c: f64) -> (f64, f64) {
-        let train = DriveTrain::new(&example_robot().motors, true);
+        let train = DriveTrain::new(&example_robot(), true);
         let (_, force_n) = train.force_n(current_a, rim_mps, winding_c);
         (train.power(current_a, rim_mps, winding_c, 1.0).drawn_w, force_n)
     }
@@ -148,7 +150,7 @@ mod tests {
     fn heat_raises_the_power_of_the_same_force_and_speed() {
         // 56 K raised the power of a spin by 42 and 66 % in Dogru & Marques (2018), §V-B.
         let cold = steady(16.0, 0.27, 20.0);
-        let train = DriveTrain::new(&example_robot().motors, true);
+        let train = DriveTrain::new(&example_robot(), true);
         let warm_a = 16.0 * train.warm(20.0).1 / train.warm(76.0).1;
         let warm = steady(warm_a, 0.27, 76.0);
         assert!((warm.1 / cold.1 - 1.0).abs() < 1e-9, "the same force");

@@ -7,9 +7,8 @@ use crate::{
     simulate::INSTANTS_PER_ROW,
 };
 
-/// Voltages are read to a hundredth of a volt, temperatures to half a kelvin, with as much noise.
-const VOLTAGE_NOISE_V: f64 = 0.01;
-const TEMPERATURE_STEP_C: f64 = 0.5;
+/// Rim speed from which on an encoder is as noisy as it gets [m/s].
+const FULL_JITTER_MPS: f64 = 0.05;
 /// How long the error of a position remembers itself [s].
 const POSITION_MEMORY_S: f64 = 30.0;
 
@@ -113,7 +112,7 @@ impl<'a> Observer<'a> {
             // What a gain and a step do to watts they do to amperes, at about the nominal voltage.
             (mean_a * (1.0 + self.sensors.power_gain_noise * noise[i]) * distortion.power_factor).max(0.0)
         });
-        let warm = |i: usize| (now.case_c[i] / TEMPERATURE_STEP_C).round() * TEMPERATURE_STEP_C;
+        let warm = |i: usize| quantised(now.case_c[i], self.sensors.temperature_step_k);
         let acceleration = (now.speed_mps - before.speed_mps) / self.row_s;
         Row {
             t_s: now.t_s,
@@ -121,7 +120,7 @@ impl<'a> Observer<'a> {
             rim_mps: rim_mps.map(|v| hide(no_rims, v)),
             side_w: [hide(no_power, watts[0]), hide(no_power, watts[1])],
             battery_w: hide(no_power, watts[2]),
-            voltage_v: hide(no_power, now.voltage_v + VOLTAGE_NOISE_V * noise[2]),
+            voltage_v: hide(no_power, now.voltage_v + self.sensors.voltage_noise_v * noise[2]),
             motor_a: amperes.map(|a| hide(no_power, a)),
             yaw_rate_radps: hide(no_tilt, yaw_rate_radps),
             pitch_rad: hide(no_tilt, pitch_rad),
@@ -150,7 +149,10 @@ impl<'a> Observer<'a> {
         let end = now.rim_m.map(count);
         self.rim_before = Some(end);
         [0, 1].map(|i| {
-            let noise_mps = self.sensors.speed_noise_mps * self.speed[i].normal();
+            let true_mps = (now.rim_m[i] - before.rim_m[i]) / self.row_s;
+            // The jitter of an encoder's edges stands still with the wheel.
+            let jitter = (true_mps.abs() / FULL_JITTER_MPS).min(1.0);
+            let noise_mps = self.sensors.speed_noise_mps * jitter * self.speed[i].normal();
             (end[i] - start[i]) / self.row_s * distortion.rim_factor + noise_mps
         })
     }

@@ -13,17 +13,19 @@ use crate::{
 pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
 /// Share of the file's rolling resistance that bearings and belts make, whatever the load.
 const BEARING_SHARE: f64 = 0.05;
-/// Inertia of one side's wheels at the rim [kg]: 2 wheels of 1 kg, half of it at the tread.
-const WHEELS_KG: f64 = 1.5;
-/// Stiffness of the frame against twisting by the ground [N/m] at one wheel.
-const TWIST_N_PER_M: f64 = 8_000.0;
+/// Inertia of one side's wheels at the rim over the robot's mass: 1.5 kg of a Husky's 90 kg.
+const WHEELS_SHARE: f64 = 1.0 / 60.0;
+/// Load that a wheel gains per metre of twist of the ground over a quarter of the weight [1/m]: 8 N/mm of a Husky.
+const TWIST_PER_M: f64 = 36.0;
 /// Steps between two looks at ground, loads and effects: 5 ms, in which a robot moves by millimetres.
 const LOOK_STEPS: u32 = 5;
 /// How long loads take to follow accelerations [s].
 const LOAD_FOLLOWS_S: f64 = 0.05;
-/// Gains of the speed controller [V s/m and V/m].
-const PROPORTIONAL_VS_PER_M: f64 = 12.0;
-const INTEGRAL_V_PER_M: f64 = 60.0;
+/// Gains of the speed controller over what the magnets induce [- and 1/s].
+const PROPORTIONAL: f64 = 2.2;
+const INTEGRAL_PER_S: f64 = 18.0;
+/// A side that is told to stand is held by its brake from this rim speed down [m/s].
+const BRAKE_HOLDS_MPS: f64 = 0.01;
 /// Rim speed from which on a side's driver is awake [m/s].
 const AWAKE_MPS: f64 = 0.004;
 
@@ -60,6 +62,8 @@ struct SideState {
     rim_mps: f64,
     rim_m: f64,
     rolling_n: f64,
+    /// The parking brake holds.
+    braked: bool,
 }
 
 /// The robot in its world.
@@ -96,7 +100,7 @@ impl<'a> Plant<'a> {
         let reference_c = robot.motors.reference_temperature_c;
         let ambient_c = world.ambient_temp_c.unwrap_or(reference_c);
         let side = |left| SideState {
-            train: DriveTrain::new(&robot.motors, left),
+            train: DriveTrain::new(robot, left),
             heat: Heat::at_rest(ambient_c),
             current_a: 0.0,
             integral_v: 0.0,
@@ -104,6 +108,7 @@ impl<'a> Plant<'a> {
             rim_mps: 0.0,
             rim_m: 0.0,
             rolling_n: 0.0,
+            braked: true,
         };
         let (a, b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
         let wheel =
@@ -213,7 +218,7 @@ impl<'a> Plant<'a> {
     }
 
     fn rim_kg(&self) -> f64 {
-        WHEELS_KG + self.conditions.rim_kg
+        WHEELS_SHARE * self.robot.mass_kg + self.conditions.rim_kg
     }
 
     /// Centre of mass from the geometric centre, forward and left [m].
@@ -324,7 +329,7 @@ impl<'a> Plant<'a> {
         for (i, wheel) in self.wheels.iter_mut().enumerate() {
             let (ahead, beside) = (wheel.at_m[0].signum(), wheel.at_m[1].signum());
             let share = (0.5 + ahead * front) * (0.5 + beside * left);
-            wheel.load_n = (normal_n * share + TWIST_N_PER_M * warp_m * ahead * beside).max(0.0);
+            wheel.load_n = (normal_n * share + TWIST_PER_M * nominal_n * warp_m * ahead * beside).max(0.0);
             let law = &self.ground.surfaces[surface[i]];
             let c = &self.conditions;
             wheel.brush =
@@ -338,12 +343,17 @@ impl<'a> Plant<'a> {
     /// Controller, winding and gears of one side; returns the force at the rim [N].
     fn drive(&mut self, side: usize, command_mps: f64) -> f64 {
         let s = &mut self.sides[side];
+        s.braked = command_mps == 0.0 && s.rim_mps.abs() < BRAKE_HOLDS_MPS;
+        if s.braked {
+            (s.current_a, s.integral_v, s.duty) = (0.0, 0.0, 0.0);
+            return 0.0;
+        }
         let error_mps = command_mps - s.rim_mps;
-        let wanted_v = s.train.open_voltage_v(command_mps) + PROPORTIONAL_VS_PER_M * error_mps + s.integral_v;
+        let wanted_v = s.train.open_voltage_v(command_mps + PROPORTIONAL * error_mps) + s.integral_v;
         let limit_v = self.battery.voltage_v;
         let applied_v = wanted_v.clamp(-limit_v, limit_v);
         if applied_v == wanted_v {
-            s.integral_v += INTEGRAL_V_PER_M * error_mps * self.step_s;
+            s.integral_v += s.train.open_voltage_v(INTEGRAL_PER_S * error_mps) * self.step_s;
         }
         s.duty = applied_v / limit_v;
         let winding_c = warmed(s, &self.conditions, self.robot);
@@ -406,6 +416,12 @@ impl<'a> Plant<'a> {
         for i in 0..2 {
             let s = &mut self.sides[i];
             let before_mps = s.rim_mps;
+            if s.braked {
+                self.ledger.gears_j +=
+                    0.5 * rim_kg * before_mps * before_mps - held_n[i] * before_mps * self.step_s;
+                s.rim_mps = 0.0;
+                continue;
+            }
             let direction = (before_mps / TURNAROUND_MPS).tanh();
             let gear_n = bearing_n * direction + self.conditions.drag_n[i];
             let rolling_n = s.rolling_n * direction;

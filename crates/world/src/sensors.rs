@@ -24,6 +24,10 @@ pub struct Sensors {
     pub power_noise_memory_s: f64,
     /// Step of a power reading [W]. Default 0.1.
     pub power_step_w: f64,
+    /// Noise of the battery's voltage [V]. Default 0.01.
+    pub voltage_noise_v: f64,
+    /// Step of a temperature reading [K]. Default 0.5.
+    pub temperature_step_k: f64,
     /// By how much power comes later than the wheels' speeds [s]. Default 0.
     pub power_delay_s: f64,
     /// Noise of the gyroscope [rad/s]. Default 0.003.
@@ -81,6 +85,8 @@ impl Default for Sensors {
             power_gain_noise: 0.01,
             power_noise_memory_s: 0.1,
             power_step_w: 0.1,
+            voltage_noise_v: 0.01,
+            temperature_step_k: 0.5,
             power_delay_s: 0.0,
             yaw_rate_noise_radps: 0.003,
             yaw_rate_bias_radps: 0.001,
@@ -108,6 +114,8 @@ impl Sensors {
             power_noise_w: 0.0,
             power_gain_noise: 0.0,
             power_step_w: 0.0,
+            voltage_noise_v: 0.0,
+            temperature_step_k: 0.0,
             yaw_rate_noise_radps: 0.0,
             yaw_rate_bias_radps: 0.0,
             yaw_rate_drift_radps: 0.0,
@@ -130,6 +138,8 @@ impl Sensors {
         check("power_gain_noise", self.power_gain_noise, [0.0, 1.0], "give a fraction")?;
         check("power_noise_memory_s", self.power_noise_memory_s, [0.0, 60.0], "give seconds")?;
         check("power_step_w", self.power_step_w, [0.0, 1e3], "give watts")?;
+        check("voltage_noise_v", self.voltage_noise_v, [0.0, 100.0], "give volts")?;
+        check("temperature_step_k", self.temperature_step_k, [0.0, 50.0], "give kelvins")?;
         check("power_delay_s", self.power_delay_s, [0.0, 5.0], "give seconds")?;
         check("yaw_rate_noise_radps", self.yaw_rate_noise_radps, [0.0, 1.0], "give radians per second")?;
         check("yaw_rate_bias_radps", self.yaw_rate_bias_radps, [0.0, 1.0], "give radians per second")?;

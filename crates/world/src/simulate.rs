@@ -63,7 +63,8 @@ fn one_run(
     drive: &Drive,
     run: usize,
 ) -> Result<Vec<Instant>, Error> {
-    let (mut pilot, place_m, heading_rad) = Pilot::new(drive, robot, ground, run);
+    let mut pilot = Pilot::new(drive, robot, ground, run);
+    let (place_m, heading_rad) = pilot.start();
     plant.place(place_m, heading_rad)?;
     let rows = (drive.duration_s * world.sensors.rate_hz).round() as usize;
     let instants = rows * INSTANTS_PER_ROW;
@@ -71,8 +72,10 @@ fn one_run(
     let pilot_steps = (PILOT_S / world.step_s).round().max(1.0) as u64;
     let mut truth = Vec::with_capacity(instants + 1);
     truth.push(plant.instant());
+    let instant_s = 1.0 / (world.sensors.rate_hz * INSTANTS_PER_ROW as f64);
+    let begin_s = run as f64 * drive.duration_s;
     let (mut command_mps, mut step) = ([0.0; 2], 0_u64);
-    for _ in 0..instants {
+    for k in 1..=instants {
         for _ in 0..steps {
             if step.is_multiple_of(pilot_steps) {
                 let (place_m, heading_rad) = plant.pose();
@@ -81,7 +84,8 @@ fn one_run(
             plant.step(command_mps)?;
             step += 1;
         }
-        truth.push(plant.instant());
+        // The clock of the recording does not add up rounding.
+        truth.push(Instant { t_s: begin_s + k as f64 * instant_s, ..plant.instant() });
     }
     Ok(truth)
 }

@@ -65,8 +65,8 @@ pub(super) struct Legs {
     count: usize,
 }
 
-/// Largest acceleration towards the inside of a curve [m/s²]; drivers of such robots stay below.
-const SIDEWAYS_MPS2: f64 = 0.25;
+/// Accelerations towards the inside of a curve [m/s²] that drivers of such robots allow themselves.
+const SIDEWAYS_MPS2: [f64; 2] = [0.04, 0.14];
 
 impl Legs {
     pub(super) fn new(
@@ -104,6 +104,10 @@ impl Legs {
         self.top_mps * self.random.between(0.2, 1.0)
     }
 
+    fn sideways_mps2(&mut self) -> f64 {
+        self.random.between(SIDEWAYS_MPS2[0], SIDEWAYS_MPS2[1])
+    }
+
     fn sign(&mut self) -> f64 {
         if self.random.chance(0.5) { 1.0 } else { -1.0 }
     }
@@ -134,7 +138,7 @@ impl Legs {
             x if x < 0.82 => {
                 // From tight to wide, evenly on a logarithmic scale [m].
                 let radius_m = self.random.log_between(0.25, 6.0);
-                let most_radps = (SIDEWAYS_MPS2 / radius_m).sqrt().min(1.1);
+                let most_radps = (self.sideways_mps2() / radius_m).sqrt().min(1.1);
                 let yaw_radps = (speed_mps.abs() / radius_m).min(most_radps);
                 let speed_mps = speed_mps.signum() * yaw_radps * radius_m;
                 Leg::Arc { speed_mps, yaw_radps: sign * yaw_radps, for_s: self.random.between(3.0, 8.0) }
@@ -154,8 +158,8 @@ impl Legs {
         let speed_mps = self.speed();
         if self.random.chance(0.35) {
             let yaw_radps = self.sign() * self.random.between(0.3, 1.0);
-            let speed_mps =
-                if self.random.chance(0.5) { 0.0 } else { (SIDEWAYS_MPS2 / yaw_radps.abs()).min(speed_mps) };
+            let fastest_mps = (self.sideways_mps2() / yaw_radps.abs()).min(speed_mps);
+            let speed_mps = if self.random.chance(0.5) { 0.0 } else { fastest_mps };
             return Leg::Arc { speed_mps, yaw_radps, for_s: self.random.between(1.0, 3.0) };
         }
         Leg::Straight { speed_mps, heading_rad: now_rad, for_m: self.random.between(0.5, 3.0) }
