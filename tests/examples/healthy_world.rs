@@ -79,6 +79,21 @@ fn regimes(drives: &Drives, predicted_w: &[f64], recorded_w: &[f64]) {
         let error = predicted_w[i] - recorded_w[i];
         *entry = [entry[0] + 1.0, entry[1] + recorded_w[i], entry[2] + error, entry[3] + error * error];
     }
+    let mut normal = [[0.0; 3]; 2];
+    for (i, row) in drives.rows.iter().enumerate().filter(|(_, row)| row.used) {
+        let a = row.acceleration(0.55);
+        let (v, d) = (row.speed_mps(), row.difference_mps() / 0.55);
+        let (x, y) = (90.0 * v * a.forward_mps2, 5.0 * d * a.yaw_radps2);
+        let e = recorded_w[i] - predicted_w[i];
+        normal[0] = [normal[0][0] + x * x, normal[0][1] + x * y, normal[0][2] + x * e];
+        normal[1] = [normal[1][0] + x * y, normal[1][1] + y * y, normal[1][2] + y * e];
+    }
+    let det = normal[0][0] * normal[1][1] - normal[0][1].powi(2);
+    println!(
+        "    more per kinetic power: forward {:.3}, turning {:.3}",
+        (normal[0][2] * normal[1][1] - normal[1][2] * normal[0][1]) / det,
+        (normal[1][2] * normal[0][0] - normal[0][2] * normal[0][1]) / det
+    );
     for (name, [n, p, e, e2]) in sums {
         println!(
             "    {name}: {n:5} rows, {:6.1} W, error {:+6.2} W, RMSE {:5.2} W",

@@ -59,7 +59,7 @@ fn the_model_the_terrain_and_the_recording_know_nothing_of_each_other() {
 #[test]
 fn the_world_shares_only_the_ground_with_what_it_tests() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).exec().unwrap();
-    let resolve = metadata.resolve.unwrap();
+    let resolve = metadata.resolve.as_ref().unwrap();
     let id = |name: &str| metadata.packages.iter().find(|p| p.name == name).unwrap().id.clone();
     let mut reached = vec![id("joulepath-world")];
     let mut next = 0;

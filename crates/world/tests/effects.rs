@@ -50,18 +50,18 @@ fn effects_change_power_the_way_physics_says() {
         match name {
             // Power does not change, its readings beside it do.
             E::PitchBias => {
-                assert!(truth.power_change == 0.0 && truth.channel_changes[2] > 0.003, "{truth:?}")
+                assert!(truth.power_change == 0.0 && truth.channel_changes[2] > 0.003, "{truth:?}");
             }
             E::WheelRadius => {
-                assert!(truth.power_change == 0.0 && truth.channel_changes[0] > 0.003, "{truth:?}")
+                assert!(truth.power_change == 0.0 && truth.channel_changes[0] > 0.003, "{truth:?}");
             }
             // Late, not more.
             E::ClockOffset => {
-                assert!(truth.power_share.abs() < 0.01 && truth.power_change > 0.05, "{truth:?}")
+                assert!(truth.power_share.abs() < 0.01 && truth.power_change > 0.05, "{truth:?}");
             }
             // Load that moves can help or hinder.
             E::CenterOfMass | E::LoadTransfer | E::LooseLoad => {
-                assert!(truth.power_change > 0.001, "{truth:?}")
+                assert!(truth.power_change > 0.001, "{truth:?}");
             }
             // Wind pushes as often as it brakes; inertia is given back but for the losses on the way.
             E::Wind | E::Inertia => assert!(truth.power_change > 0.003, "{truth:?}"),

@@ -1,6 +1,10 @@
 //! `joulepath simulate`.
 
-use std::{fs::File, io::BufWriter, path::PathBuf};
+use std::{
+    fs::File,
+    io::BufWriter,
+    path::{Path, PathBuf},
+};
 
 use anyhow::Context;
 use clap::Args;
@@ -39,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let drive = read(&arguments.drive, Drive::from_json)?;
     let log = simulate(&world, &robot, &drive).map_err(|error| BadInput(error.to_string()))?;
-    let unwritable = |path: &PathBuf| format!("cannot write {}", path.display());
+    let unwritable = |path: &Path| format!("cannot write {}", path.display());
     let file = File::create(&arguments.out).with_context(|| unwritable(&arguments.out))?;
     log.write_csv(BufWriter::new(file)).with_context(|| unwritable(&arguments.out))?;
     if let Some(path) = &arguments.key {
@@ -57,7 +61,7 @@ fn healthy(name: &str) -> anyhow::Result<RobotFile> {
     Ok(RobotFile::from_json(&file).map_err(|error| BadInput(format!("{name}: {error}")))?)
 }
 
-fn read<T>(path: &PathBuf, parse: impl Fn(&str) -> Result<T, world::Error>) -> Result<T, BadInput> {
+fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, world::Error>) -> Result<T, BadInput> {
     let name = path.display().to_string();
     parse(&text(&name)?).map_err(|error| BadInput(format!("{name}: {error}")))
 }
