@@ -1,8 +1,8 @@
 //! Random concealed cases: world, drive and effects from one seed.
 
 use crate::{
-    Drive, DriveKind, Effect, EffectName, Error, Family, Key, RobotFile, Sensors, Side, World,
-    random::Random, simulate, world::Relief,
+    Drive, DriveKind, Effect, EffectName, Error, Family, Key, Log, RobotFile, Row, Sensors, Side, World,
+    plant::GRAVITY_MPS2, random::Random, simulate, world::Relief,
 };
 
 /// What kind of case is drawn.
@@ -25,8 +25,10 @@ pub struct Case {
     pub world: World,
     /// The drive.
     pub drive: Drive,
-    /// Other drives of the same robot while it was healthy, as a reference.
-    pub reference: Drive,
+    /// The same robot and sensors while nothing was concealed, on ground and with noise of their own.
+    pub reference_world: World,
+    /// Drives through it, as a reference.
+    pub reference_drive: Drive,
 }
 
 impl Case {
@@ -43,10 +45,15 @@ impl Case {
             CaseKind::Two(first, second) => vec![first, second],
         };
         let drive = drive(&mut random, &names);
-        let reference = Drive { seed: random.seed(), ..Drive::new(DriveKind::Rich, drive.duration_s, 0) };
+        let half_s = drive.duration_s / 2.0;
+        let reference_drive = Drive { runs: 2, ..Drive::new(DriveKind::Rich, half_s, random.seed()) };
         let mut world = world(&mut random, &names);
         if kind == CaseKind::Decoy {
             disguise(&mut world, &mut random);
+        }
+        let mut reference_world = World { seed: random.seed(), ..world.clone() };
+        if let Relief::Rolling { seed, .. } = &mut reference_world.terrain {
+            *seed = random.seed();
         }
         for name in names {
             let mut effect = effect(&mut random, name, drive.duration_s);
@@ -55,7 +62,7 @@ impl Case {
             }
             world.effects.push(effect);
         }
-        Ok(Case { world, drive, reference })
+        Ok(Case { world, drive, reference_world, reference_drive })
     }
 
     /// Any kind: 20 % healthy, 10 % decoys, 45 % one effect, 15 % two, 10 % one that has no name.
@@ -129,6 +136,7 @@ fn world(random: &mut Random, names: &[EffectName]) -> World {
         sensors: Sensors::default(),
         scatter: 0.5,
         seed: random.seed(),
+        robot_seed: Some(random.seed()),
         step_s: 0.001,
         effects: Vec::new(),
     }
@@ -173,6 +181,9 @@ fn strength_of_share(
     let quiet = World { sensors: Sensors::perfect(), effects: Vec::new(), ..world.clone() };
     let plain = simulate(&quiet, robot, drive)?;
     let mean_w = plain.rows.iter().map(|r| r.battery_w).sum::<f64>() / plain.rows.len().max(1) as f64;
+    if let Some(strength) = unseen_by_power(effect.effect, robot, &plain, share * mean_w.abs()) {
+        return Ok(strength);
+    }
     let [_, most] = effect.effect.range();
     let mut strength = effect.strength;
     for _ in 0..6 {
@@ -188,5 +199,29 @@ fn strength_of_share(
         }
         strength = (strength * factor.clamp(0.2, 5.0)).min(most);
     }
-    Ok(strength)
+    // A delay below one row cannot be told from none.
+    let least = if effect.effect == EffectName::ClockOffset { 1.0 / world.sensors.rate_hz } else { 0.0 };
+    Ok(strength.max(least))
 }
+
+/// The strength of a fault that leaves power alone and misleads who computes it by so much [W], root mean square.
+fn unseen_by_power(name: EffectName, robot: &RobotFile, plain: &Log, mislead_w: f64) -> Option<f64> {
+    let speed_mps = |row: &Row| (row.rim_mps[0] + row.rim_mps[1]) / 2.0;
+    let root_mean_square = |value: &dyn Fn(&Row) -> f64| {
+        let sum: f64 = plain.rows.iter().map(|row| value(row).powi(2)).sum();
+        (sum / plain.rows.len().max(1) as f64).sqrt().max(1e-9)
+    };
+    let k2 = (robot.motors.left.k2 + robot.motors.right.k2) / 2.0;
+    match name {
+        // A slope that is not there costs m g v per radian, through the gears.
+        EffectName::PitchBias => {
+            Some(mislead_w / (k2 * robot.mass_kg * GRAVITY_MPS2 * root_mean_square(&speed_mps)))
+        }
+        // Speeds that are too large by a fraction make the power that goes with speed too large by it.
+        EffectName::WheelRadius => Some(mislead_w / root_mean_square(&|row| SPEED_SHARE * row.battery_w)),
+        _ => None,
+    }
+}
+
+/// Share of the power that goes with speed; copper takes the rest.
+const SPEED_SHARE: f64 = 0.7;

@@ -72,7 +72,7 @@ impl<'a> Observer<'a> {
     fn new(world: &'a World) -> Self {
         let stream = |purpose: &str| Random::new(world.seed, purpose);
         let sensors = &world.sensors;
-        let mut biases = stream("biases");
+        let mut biases = Random::new(world.robot_seed(), "biases");
         let gap = |purpose| Gap { random: stream(purpose), rows_left: 0.0 };
         Observer {
             sensors,

@@ -100,7 +100,7 @@ fn scattered<'a>(robot: &'a RobotFile, world: &World) -> Cow<'a, RobotFile> {
     if world.scatter == 0.0 {
         return Cow::Borrowed(robot);
     }
-    let mut random = Random::new(world.seed, "scatter");
+    let mut random = Random::new(world.robot_seed(), "scatter");
     let mut robot = robot.clone();
     let u = robot.uncertainty;
     let mut factor = |sigma: f64| (world.scatter * sigma * random.normal()).clamp(-0.5, 0.5).exp();

@@ -30,9 +30,12 @@ pub struct World {
     /// How far the healthy robot may be from its file, in units of the file's own `uncertainty`, 0 to 3. Default 0.
     #[serde(default)]
     pub scatter: f64,
-    /// Seed of sensor noise and of the scatter, below 2⁵³. Default 0.
+    /// Seed of sensor noise, below 2⁵³. Default 0.
     #[serde(default)]
     pub seed: u64,
+    /// Seed of what one robot keeps from drive to drive: the scatter and the sensors' biases. Default: `seed`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot_seed: Option<u64>,
     /// Step of the integration, 0.0001 to 0.001 [s]. Default 0.001.
     #[serde(default = "step_s")]
     pub step_s: f64,
@@ -118,6 +121,11 @@ impl World {
         World { effects: Vec::new(), ..self.clone() }
     }
 
+    /// Seed of what the robot keeps from drive to drive.
+    pub(crate) fn robot_seed(&self) -> u64 {
+        self.robot_seed.unwrap_or(self.seed)
+    }
+
     /// Checks every range; reading does this already, code that builds a world may call it.
     ///
     /// # Errors
@@ -156,7 +164,9 @@ impl World {
             within("wind.toward_rad", wind.toward_rad, [-10.0, 10.0], "give radians")?;
         }
         within("scatter", self.scatter, [0.0, 3.0], "in units of the robot's uncertainty")?;
-        within("seed", self.seed as f64, [0.0, 9_007_199_254_740_991.0], "give a number below 2^53")?;
+        for (field, seed) in [("seed", self.seed), ("robot_seed", self.robot_seed())] {
+            within(field, seed as f64, [0.0, 9_007_199_254_740_991.0], "give a number below 2^53")?;
+        }
         within("step_s", self.step_s, [1e-4, 1e-3], "stiff tyres need a millisecond or less")?;
         self.sensors.check()?;
         self.effects.iter().enumerate().try_for_each(|(i, effect)| effect.check(i))
