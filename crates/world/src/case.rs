@@ -125,7 +125,7 @@ fn world(random: &mut Random, names: &[EffectName]) -> World {
         E::Puddles,
     ];
     let needs_slopes = names.iter().any(|name| steep.contains(name));
-    let grade = if needs_slopes { random.between(0.05, 0.09) } else { random.between(0.015, 0.05) };
+    let grade = if needs_slopes { random.between(0.04, 0.06) } else { random.between(0.01, 0.03) };
     let relief = Relief::Rolling { grade, length_m: random.between(14.0, 30.0), seed: random.seed() };
     World {
         terrain: relief,

@@ -99,6 +99,8 @@ fn firm_stiffness(mu_skid: f64, slip_track_ratio: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     /// Force per load of a wheel that has rolled far at a slip angle.
@@ -143,6 +145,21 @@ mod tests {
             }
             let share = (contact.force_n[0] / 100.0).hypot(contact.force_n[1] / (100.0 * 0.2987));
             assert!((0.9..=1.001).contains(&share), "{share}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_wheel_that_slides_on_and_on_only_loses(
+            along in -1.0f64..1.0, across in -1.0f64..1.0, rim in -1.0f64..1.0, compliance in 0.0f64..1.0,
+        ) {
+            let brush = Brush::new(0.29, 0.30, 1.0, compliance);
+            let mut contact = Contact { force_n: [0.0; 2], deflection_m: [0.0; 2] };
+            for _ in 0..3000 {
+                contact = brush.advance(200.0, contact.deflection_m, [along, across], rim, 1e-3);
+            }
+            let lost_w = contact.force_n[0] * along + contact.force_n[1] * across;
+            prop_assert!(lost_w >= -1e-9, "{}", lost_w);
         }
     }
 }

@@ -119,6 +119,8 @@ impl DriveTrain {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::example_robot;
 
@@ -155,5 +157,17 @@ mod tests {
         let warm = steady(warm_a, 0.27, 76.0);
         assert!((warm.1 / cold.1 - 1.0).abs() < 1e-9, "the same force");
         assert!((1.1..1.6).contains(&(warm.0 / cold.0)), "{}", warm.0 / cold.0);
+    }
+
+    proptest! {
+        #[test]
+        fn a_side_draws_at_least_what_its_rim_delivers(
+            current_a in -60.0f64..60.0, rim_mps in -1.5f64..1.5, winding_c in -20.0f64..150.0, returned in 0.0f64..=1.0,
+        ) {
+            let train = DriveTrain::new(&example_robot(), true);
+            let (_, force_n) = train.force_n(current_a, rim_mps, winding_c);
+            let drawn_w = train.power(current_a, rim_mps, winding_c, returned).drawn_w;
+            prop_assert!(drawn_w >= force_n * rim_mps - 1e-9, "{} W drawn, {} W delivered", drawn_w, force_n * rim_mps);
+        }
     }
 }

@@ -170,6 +170,11 @@ impl RobotFile {
         within("center_of_mass.height_m", com.height_m, [0.0, 5.0], METRES)?;
         within("yaw_inertia_kgm2", self.yaw_inertia_kgm2(), [1e-3, 1e6], "give kg m²")?;
         within("max_wheel_speed_mps", self.max_wheel_speed_mps, [0.05, 20.0], "give metres per second")?;
+        self.check_power()?;
+        self.check_surface("default_surface", &self.default_surface)
+    }
+
+    fn check_power(&self) -> Result<(), Error> {
         for (side, motor) in [("left", self.motors.left), ("right", self.motors.right)] {
             within(
                 format!("motors.{side}.k1_w_per_n2"),
@@ -192,7 +197,7 @@ impl RobotFile {
                 "give radians",
             )?;
         }
-        self.check_surface("default_surface", &self.default_surface)
+        Ok(())
     }
 
     /// Refuses the name of a surface that the robot has no friction for.

@@ -168,3 +168,26 @@ fn wheels_go_where_they_roll() {
     assert!((last.position_m[0] / rolled_m - 1.0).abs() < 0.01, "{:?} {rolled_m}", last.position_m);
     assert!(last.position_m[1].abs() < 0.05, "straight ahead: {:?}", last.position_m);
 }
+
+#[test]
+fn ground_that_the_map_does_not_know_and_surfaces_that_the_robot_does_not_are_refused_by_place() {
+    let folder = std::env::temp_dir().join(format!("joulepath-world-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let refused = |map: &str| {
+        std::fs::write(folder.join("map.json"), map).unwrap();
+        let world = World::from_json(r#"{"terrain": {"map": "map.json"}}"#).unwrap().beside(&folder);
+        simulate(&world, &example_robot(), &Drive::new(DriveKind::Rich, 20.0, 1)).unwrap_err().to_string()
+    };
+    let unknown =
+        refused(r#"{"cell_size_m": 9, "rows": 2, "columns": 2, "elevation_m": [[0, null], [0, 0]]}"#);
+    assert!(unknown.contains("unknown") && unknown.contains("(9."), "{unknown}");
+    let moss = refused(
+        r#"{"cell_size_m": 9, "rows": 1, "columns": 2, "elevation_m": [[0, 0]], "surface": [["moss", "moss"]]}"#,
+    );
+    assert!(moss.contains("surface") && moss.contains("moss") && moss.contains("marble"), "{moss}");
+    std::fs::remove_file(folder.join("map.json")).unwrap();
+    let world = World::from_json(r#"{"terrain": {"map": "map.json"}}"#).unwrap().beside(&folder);
+    let absent = simulate(&world, &example_robot(), &Drive::new(DriveKind::Rich, 20.0, 1)).unwrap_err();
+    assert_eq!(absent.field(), Some("terrain.map"));
+    std::fs::remove_dir_all(folder).unwrap();
+}
