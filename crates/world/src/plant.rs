@@ -89,8 +89,8 @@ pub(crate) struct Plant<'a> {
 }
 
 impl<'a> Plant<'a> {
-    /// A robot at rest; `place` needs no slope.
-    pub(crate) fn new(robot: &'a RobotFile, world: &crate::World, ground: &'a Ground) -> Self {
+    /// A robot at rest, advanced in steps of `step_s`.
+    pub(crate) fn new(robot: &'a RobotFile, world: &crate::World, ground: &'a Ground, step_s: f64) -> Self {
         let reference_c = robot.motors.reference_temperature_c;
         let ambient_c = world.ambient_temp_c.unwrap_or(reference_c);
         let side = |left| SideState {
@@ -115,7 +115,7 @@ impl<'a> Plant<'a> {
             effects,
             wind: world.wind,
             ambient_c,
-            step_s: world.step_s,
+            step_s,
             steps: 0,
             t_s: 0.0,
             place_m: [0.0; 2],

@@ -45,7 +45,8 @@ pub fn simulate_closely(world: &World, robot: &RobotFile, drive: &Drive) -> Resu
     drive.check()?;
     let robot = scattered(robot, world);
     let ground = Ground::new(world, &robot)?;
-    let mut plant = Plant::new(&robot, world, &ground);
+    let (instant_s, steps) = rhythm(world);
+    let mut plant = Plant::new(&robot, world, &ground, instant_s / f64::from(steps));
     let mut truth = Vec::with_capacity(drive.runs);
     for run in 0..drive.runs {
         truth.push(one_run(&mut plant, world, &robot, &ground, drive, run)?);
@@ -68,18 +69,18 @@ fn one_run(
     plant.place(place_m, heading_rad)?;
     let rows = (drive.duration_s * world.sensors.rate_hz).round() as usize;
     let instants = rows * INSTANTS_PER_ROW;
-    let steps = steps_per_instant(world);
-    let pilot_steps = (PILOT_S / world.step_s).round().max(1.0) as u64;
+    let (instant_s, steps) = rhythm(world);
+    let pilot_steps = (PILOT_S * f64::from(steps) / instant_s).round().max(1.0) as u64;
+    let pilot_s = pilot_steps as f64 * instant_s / f64::from(steps);
     let mut truth = Vec::with_capacity(instants + 1);
     truth.push(plant.instant());
-    let instant_s = 1.0 / (world.sensors.rate_hz * INSTANTS_PER_ROW as f64);
     let begin_s = run as f64 * drive.duration_s;
     let (mut command_mps, mut step) = ([0.0; 2], 0_u64);
     for k in 1..=instants {
         for _ in 0..steps {
             if step.is_multiple_of(pilot_steps) {
                 let (place_m, heading_rad) = plant.pose();
-                command_mps = pilot.command_mps(place_m, heading_rad, PILOT_S);
+                command_mps = pilot.command_mps(place_m, heading_rad, pilot_s);
             }
             plant.step(command_mps)?;
             step += 1;
@@ -90,9 +91,11 @@ fn one_run(
     Ok(truth)
 }
 
-/// Whole steps between two truths.
-pub(crate) fn steps_per_instant(world: &World) -> usize {
-    (1.0 / (world.sensors.rate_hz * INSTANTS_PER_ROW as f64 * world.step_s)).round().max(1.0) as usize
+/// Time between two truths and the whole steps that it is made of, each no longer than the world asks.
+fn rhythm(world: &World) -> (f64, u32) {
+    let instant_s = 1.0 / (world.sensors.rate_hz * INSTANTS_PER_ROW as f64);
+    // A step that fits but for rounding fits.
+    (instant_s, (instant_s / world.step_s - 1e-6).ceil().max(1.0) as u32)
 }
 
 /// The robot as far from its file as the world says, each parameter by its own uncertainty.

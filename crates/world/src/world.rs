@@ -36,7 +36,7 @@ pub struct World {
     /// Seed of what one robot keeps from drive to drive: the scatter and the sensors' biases. Default: `seed`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot_seed: Option<u64>,
-    /// Step of the integration, 0.0001 to 0.001 [s]. Default 0.001.
+    /// Longest step of the integration, 0.0001 to 0.001 [s]; a whole number of steps makes a row. Default 0.001.
     #[serde(default = "step_s")]
     pub step_s: f64,
     /// What acts beyond the robot file. Default: nothing, a healthy robot.

@@ -98,3 +98,21 @@ fn columns_are_those_that_the_sensors_tell() {
     assert!(names(PowerChannels::CurrentAndVoltage, true).contains("current_a,voltage_v"));
     assert!(names(PowerChannels::Battery, true).contains("motor_temp_left_c"));
 }
+
+#[test]
+fn any_rate_keeps_the_clock() {
+    let mean_w = |rate_hz: f64| {
+        let log = record(Sensors { rate_hz, ..Sensors::perfect() }, 1);
+        assert!((log.rows.len() as f64 - 200.0 * rate_hz).abs() < 1.0);
+        assert!((log.rows.last().unwrap().t_s - 200.0).abs() < 1.0 / rate_hz);
+        let rolled_m: f64 = log.rows.iter().map(|row| row.rim_mps[0] / rate_hz).sum();
+        (log.rows.iter().map(|row| row.battery_w).sum::<f64>() / log.rows.len() as f64, rolled_m)
+    };
+    let (ten, odd, fast) = (mean_w(10.0), mean_w(6.5), mean_w(20.0));
+    for other in [odd, fast] {
+        assert!(
+            (other.0 / ten.0 - 1.0).abs() < 0.02 && (other.1 / ten.1 - 1.0).abs() < 0.01,
+            "{other:?} {ten:?}"
+        );
+    }
+}
