@@ -16,8 +16,8 @@ fn main() -> Result<(), Error> {
             println!(
                 "{:<26} {:>9.4} {:<40} from {:>4} s on {:?}: power {:+.4} of {:.0} W, change {:.4}, rims {:.4}, yaw rate {:.4}, pitch {:.4}",
                 name.name(),
-                truth.parameter.value,
-                truth.parameter.unit,
+                case.world.effects[0].strength,
+                name.unit(),
                 truth.onset_s,
                 case.drive.kind,
                 truth.power_share,

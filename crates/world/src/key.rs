@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::{
     Drive, Effect, EffectName, Error, Family, Log, RobotFile, World,
+    effect::{DRAG_AREA_M2, trailer_kg},
     simulate::{Simulation, simulate_closely},
 };
 
@@ -25,8 +26,8 @@ pub struct Truth {
     pub effect: EffectName,
     /// Physics, measurement, or none that is listed.
     pub family: Family,
-    /// Its size.
-    pub parameter: TruthParameter,
+    /// Its size, where a listed mechanism has the same quantity by the name that reports give it.
+    pub parameters: Vec<TruthParameter>,
     /// From when on it acted [s].
     pub onset_s: f64,
     /// Where it acted, if not everywhere.
@@ -78,11 +79,10 @@ impl Truth {
         let alone = World { effects: vec![effect.clone()], ..world.clone() };
         let log = simulate_closely(&alone, robot, drive)?.log;
         let (plain, base_w) = (&healthy.log, mean_w(&healthy.log, effect.onset_s).abs().max(1e-9));
-        let (unit, strength) = (effect.effect.unit(), effect.strength);
         Ok(Truth {
             effect: effect.effect,
             family: effect.effect.family(),
-            parameter: TruthParameter { name: parameter_name(effect.effect), value: strength, unit },
+            parameters: parameters(effect, robot),
             onset_s: effect.onset_s,
             place: effect.place,
             side: effect.effect.acts_on_a_side().then(|| effect.side.unwrap_or(crate::Side::Left)),
@@ -118,29 +118,38 @@ fn moments(log: &Log, plain: &Log, from_s: f64, channel: fn(&crate::Row) -> f64)
     (differences.iter().sum::<f64>() / count, square.sqrt())
 }
 
-/// What the strength of an effect measures.
-fn parameter_name(effect: EffectName) -> &'static str {
+/// What an effect amounts to, in the quantities by which reports tell its mechanism; else by its own strength.
+fn parameters(effect: &Effect, robot: &RobotFile) -> Vec<TruthParameter> {
     use EffectName as E;
-    match effect {
-        E::MotorHeating => "warming",
-        E::Payload => "mass_kg",
-        E::CenterOfMass => "shift_m",
-        E::LoadTransfer => "height_m",
-        E::SurfaceChange => "friction_change",
-        E::SpeedDependentFriction => "friction_per_mps",
-        E::Inertia => "rim_mass_kg",
-        E::HotelLoad => "power_w",
-        E::Regeneration => "lost_fraction",
-        E::Wind => "wind_speed_mps",
-        E::SoftSoil => "rolling_coefficient",
-        E::WheelSlip => "slip_per_pull",
-        E::DrivetrainDrag | E::TowedLoad => "force_n",
-        E::GradeDependentFriction => "friction_per_grade",
-        E::PitchBias => "bias_rad",
-        E::WheelRadius => "encoder_excess",
-        E::PowerScale => "power_excess",
-        E::PowerOffset => "offset_w",
-        E::ClockOffset => "power_late_s",
-        _ => "strength",
+    let one = |name, value, unit| TruthParameter { name, value, unit };
+    let (s, name) = (effect.strength, effect.effect);
+    let [ahead, aside] = [s * effect.direction_rad.cos(), s * effect.direction_rad.sin()];
+    match name {
+        E::Payload => vec![one("mass_kg", s, "kg")],
+        E::CenterOfMass => vec![one("forward_m", ahead, "m"), one("left_m", aside, "m")],
+        E::LoadTransfer => vec![one("height_m", s, "m")],
+        E::SurfaceChange => vec![one("roll_change", s, "1"), one("skid_change", s, "1")],
+        E::SpeedDependentFriction => vec![one("per_mps", s, "s/m")],
+        E::Inertia => vec![one("kg_per_side", s / 2.0, "kg")],
+        E::HotelLoad => vec![one("power_w", s, "W")],
+        E::Regeneration => vec![one("added", -s * robot.motors.regeneration, "1")],
+        E::Wind => vec![
+            one("drag_area_m2", DRAG_AREA_M2[0], "m²"),
+            one("east_mps", ahead, "m/s"),
+            one("north_mps", aside, "m/s"),
+        ],
+        E::DrivetrainDrag => {
+            let sides = [0, 1].map(|side| if side == effect.side() { s } else { 0.0 });
+            vec![one("left_n", sides[0], "N"), one("right_n", sides[1], "N")]
+        }
+        E::TowedLoad => vec![one("rolling_n", s, "N"), one("mass_kg", trailer_kg(s), "kg")],
+        E::GradeDependentFriction => vec![one("per_slope", s, "1")],
+        E::PitchBias => vec![one("bias_rad", s, "rad")],
+        // Reports say by how much the wheels turn faster than recorded.
+        E::WheelRadius => vec![one("scale", 1.0 / (1.0 + s) - 1.0, "1")],
+        E::PowerScale => vec![one("gain", s, "1")],
+        E::PowerOffset => vec![one("offset_w", s, "W")],
+        E::ClockOffset => vec![one("delay_s", s, "s")],
+        _ => vec![one("strength", s, name.unit())],
     }
 }

@@ -167,10 +167,9 @@ impl<'a> Observer<'a> {
             let mean_w = (last.drawn_j[i] - first.drawn_j[i]) / self.row_s;
             let fresh = (1.0 - memory * memory).sqrt() * self.power[i].normal();
             self.power_error[i] = memory * self.power_error[i] + fresh;
-            // The battery is read by one meter, which is off by what both sides' meters are.
-            let offset_w = distortion.power_w * if i == 2 { 2.0 } else { 1.0 };
             let sigma_w = self.sensors.power_noise_w.hypot(self.sensors.power_gain_noise * mean_w);
-            let read_w = mean_w * distortion.power_factor + offset_w + sigma_w * self.power_error[i];
+            let read_w =
+                mean_w * distortion.power_factor + distortion.power_w + sigma_w * self.power_error[i];
             quantised(read_w, self.sensors.power_step_w)
         })
     }

@@ -225,7 +225,9 @@ impl<'a> Plant<'a> {
     fn mechanical_j(&self) -> [f64; 2] {
         let [forward, left, yaw] = self.speed;
         let rims: f64 = self.sides.iter().map(|s| s.rim_mps * s.rim_mps).sum();
-        let body = self.mass_kg() * (forward * forward + left * left) + self.yaw_inertia_kgm2() * yaw * yaw;
+        let body = self.mass_kg() * (forward * forward + left * left)
+            + self.conditions.towed_kg * forward * forward
+            + self.yaw_inertia_kgm2() * yaw * yaw;
         [0.5 * (body + self.rim_kg() * rims), self.mass_kg() * GRAVITY_MPS2 * self.lie.z_m]
     }
 }

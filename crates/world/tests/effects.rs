@@ -161,3 +161,20 @@ fn every_family_has_its_name_in_files() {
     }
     assert_eq!(EffectName::all().filter(|name| name.family() == Family::Measurement).count(), 5);
 }
+
+#[test]
+fn keys_tell_sizes_by_the_names_of_reports() {
+    use EffectName as E;
+    let drive = Drive::new(DriveKind::Straight, 10.0, 1);
+    let told = |effect: Effect| -> Vec<(&'static str, f64)> {
+        let key = Key::of(&hills(Sensors::perfect(), vec![effect]), &example_robot(), &drive).unwrap();
+        key.truths[0].parameters.iter().map(|p| (p.name, p.value)).collect()
+    };
+    assert_eq!(told(Effect::new(E::Inertia, 30.0)), [("kg_per_side", 15.0)]);
+    let right = Effect { side: Some(Side::Right), ..Effect::new(E::DrivetrainDrag, 7.0) };
+    assert_eq!(told(right), [("left_n", 0.0), ("right_n", 7.0)]);
+    let ahead = Effect { direction_rad: std::f64::consts::PI, ..Effect::new(E::CenterOfMass, 0.05) };
+    assert_eq!(told(ahead)[0], ("forward_m", -0.05));
+    // Encoders that report a quarter too much belong to wheels that turn a fifth slower than reported.
+    assert!((told(Effect::new(E::WheelRadius, 0.25))[0].1 + 0.2).abs() < 1e-12);
+}

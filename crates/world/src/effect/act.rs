@@ -41,6 +41,8 @@ pub(crate) struct Conditions {
     pub(crate) compliance: f64,
     /// Force against the turning of each side's wheels [N].
     pub(crate) drag_n: [f64; 2],
+    /// Mass that is drawn along but carried by no wheel of the robot [kg].
+    pub(crate) towed_kg: f64,
     /// Force on the body, forward and left [N].
     pub(crate) push_n: [f64; 2],
     /// Moment on the body, positive to the left [N m].
@@ -67,6 +69,7 @@ impl Default for Conditions {
             sinkage: 0.0,
             compliance: 0.0,
             drag_n: [0.0; 2],
+            towed_kg: 0.0,
             push_n: [0.0; 2],
             moment_nm: 0.0,
             rim_kg: 0.0,

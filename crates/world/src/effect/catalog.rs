@@ -16,7 +16,7 @@ pub enum EffectName {
     LoadTransfer,
     /// Rolling and skid friction of the ground change by a fraction.
     SurfaceChange,
-    /// Rolling and skid friction grow with speed.
+    /// Rolling friction grows with speed.
     SpeedDependentFriction,
     /// Rotors and gears have inertia of their own.
     Inertia,
@@ -92,7 +92,7 @@ const LINES: [Line; 30] = {
         (E::CenterOfMass, P, "m", [0.0, 1.0], [0.02, 0.12]),
         (E::LoadTransfer, P, "m", [0.0, 3.0], [0.1, 0.6]),
         (E::SurfaceChange, P, "fraction of friction", [-0.9, 5.0], [0.03, 0.5]),
-        (E::SpeedDependentFriction, P, "fraction of friction per m/s", [-0.9, 5.0], [0.05, 0.8]),
+        (E::SpeedDependentFriction, P, "fraction of rolling friction per m/s", [-0.9, 10.0], [0.1, 2.0]),
         (E::Inertia, P, "kg at the rims, both sides", [0.0, 500.0], [10.0, 80.0]),
         (E::HotelLoad, P, "W", [0.0, 1000.0], [2.0, 40.0]),
         (E::Regeneration, P, "fraction of the returned power that is lost", [0.0, 1.0], [0.2, 1.0]),
@@ -111,7 +111,7 @@ const LINES: [Line; 30] = {
         (E::PitchBias, M, "rad", [-0.5, 0.5], [0.003, 0.04]),
         (E::WheelRadius, M, "fraction", [-0.5, 0.5], [0.01, 0.15]),
         (E::PowerScale, M, "fraction", [-0.9, 2.0], [0.01, 0.2]),
-        (E::PowerOffset, M, "W per side", [-500.0, 500.0], [1.0, 20.0]),
+        (E::PowerOffset, M, "W on each meter", [-500.0, 500.0], [1.0, 20.0]),
         (E::ClockOffset, M, "s", [-3.0, 3.0], [0.1, 0.8]),
         (E::BindingBrake, U, "N when cold", [0.0, 500.0], [4.0, 50.0]),
         (E::Puddles, U, "N per m of depth", [0.0, 1e4], [20.0, 400.0]),

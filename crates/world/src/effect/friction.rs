@@ -15,7 +15,7 @@ impl Act for Surface {
     }
 }
 
-/// Friction that grows with the wheels' speed, as that of rubber does below its maximum.
+/// Rolling friction that grows with the wheels' speed, as carcasses lose more the faster they are kneaded.
 #[derive(Debug)]
 pub(super) struct WithSpeed {
     pub(super) per_mps: f64,
@@ -24,9 +24,7 @@ pub(super) struct WithSpeed {
 impl Act for WithSpeed {
     fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
         let speed_mps = (seen.rim_mps[0].abs() + seen.rim_mps[1].abs()) / 2.0;
-        let factor = (1.0 + self.per_mps * speed_mps).max(0.1);
-        out.roll_factor *= factor;
-        out.skid_factor *= factor;
+        out.roll_factor *= (1.0 + self.per_mps * speed_mps).max(0.1);
     }
 }
 
@@ -38,7 +36,7 @@ pub(super) struct WithGrade {
 
 impl Act for WithGrade {
     fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
-        out.roll_factor *= 1.0 + self.per_grade * seen.pitch_rad.sin().abs();
+        out.roll_factor *= 1.0 + self.per_grade * seen.pitch_rad.sin().hypot(seen.roll_rad.sin());
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Act, Conditions, Surroundings, act::direction};
 /// Air density at 20 °C [kg/m³].
 const AIR_KG_PER_M3: f64 = 1.204;
 /// Drag areas of a box of a Husky's size with a mast, head-on and from the side [m²].
-const DRAG_AREA_M2: [f64; 2] = [0.45, 0.60];
+pub(crate) const DRAG_AREA_M2: [f64; 2] = [0.45, 0.60];
 const GRAVITY_MPS2: f64 = 9.806_65;
 
 /// Force of the air on the body, forward and left [N].
@@ -47,6 +47,11 @@ const DRAWBAR_M: f64 = 1.0;
 /// A trailer cannot fold further [rad].
 const LARGEST_FOLD_RAD: f64 = 1.2;
 
+/// Mass of a trailer by its pull on level ground [kg].
+pub(crate) fn trailer_kg(pull_n: f64) -> f64 {
+    pull_n / (TRAILER_ROLLING * GRAVITY_MPS2)
+}
+
 impl Trailer {
     pub(super) fn new(pull_n: f64) -> Self {
         Trailer { pull_n, fold_rad: 0.0 }
@@ -57,9 +62,10 @@ impl Act for Trailer {
     fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
         let rate_radps = -seen.yaw_rate_radps - seen.speed_mps / DRAWBAR_M * self.fold_rad.sin();
         self.fold_rad = (self.fold_rad + seen.step_s * rate_radps).clamp(-LARGEST_FOLD_RAD, LARGEST_FOLD_RAD);
-        let mass_kg = self.pull_n / (TRAILER_ROLLING * GRAVITY_MPS2);
+        let mass_kg = trailer_kg(self.pull_n);
         let rolls_mps = seen.speed_mps * self.fold_rad.cos();
         let along_n = self.pull_n * direction(rolls_mps) + mass_kg * GRAVITY_MPS2 * seen.pitch_rad.sin();
         out.push_n[0] -= along_n * self.fold_rad.cos();
+        out.towed_kg += mass_kg * self.fold_rad.cos().powi(2);
     }
 }

@@ -39,7 +39,7 @@ impl Plant<'_> {
         let [forward, left, yaw] = self.speed;
         let before_yaw = yaw;
         self.speed = [
-            forward + self.step_s * (forward_n / mass_kg + yaw * left),
+            forward + self.step_s * (forward_n / (mass_kg + c.towed_kg) + yaw * left),
             left + self.step_s * (left_n / mass_kg - yaw * forward),
             yaw + self.step_s * moment_nm / self.yaw_inertia_kgm2(),
         ];
