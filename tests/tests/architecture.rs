@@ -27,6 +27,7 @@ fn arrows_only_point_up_the_list_of_crates() {
     let order = [
         "joulepath-model",
         "joulepath-terrain",
+        "joulepath-world",
         "joulepath-planner",
         "joulepath-bench",
         "joulepath-recording",
@@ -54,6 +55,27 @@ fn the_model_the_terrain_and_the_recording_know_nothing_of_each_other() {
     assert!(arrows["joulepath-recording"].is_empty());
 }
 
+/// The world has to be seen through by what shares nothing with it but the ground.
+#[test]
+fn the_world_shares_only_the_ground_with_what_it_tests() {
+    let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).exec().unwrap();
+    let resolve = metadata.resolve.as_ref().unwrap();
+    let id = |name: &str| metadata.packages.iter().find(|p| p.name == name).unwrap().id.clone();
+    let mut reached = vec![id("joulepath-world")];
+    let mut next = 0;
+    while next < reached.len() {
+        let node = resolve.nodes.iter().find(|node| node.id == reached[next]).unwrap();
+        let needs =
+            node.deps.iter().filter(|dep| dep.dep_kinds.iter().any(|k| k.kind == DependencyKind::Normal));
+        let new: Vec<_> = needs.map(|dep| dep.pkg.clone()).filter(|dep| !reached.contains(dep)).collect();
+        reached.extend(new);
+        next += 1;
+    }
+    let names = reached.iter().map(|id| metadata[id].name.to_string());
+    let ours: Vec<String> = names.filter(|name| name.starts_with("joulepath")).collect();
+    assert_eq!(ours, ["joulepath-world", "joulepath-terrain"]);
+}
+
 #[test]
 fn nothing_below_the_service_is_async_or_speaks_http() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
@@ -61,6 +83,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
         let below = [
             "joulepath-model",
             "joulepath-terrain",
+            "joulepath-world",
             "joulepath-planner",
             "joulepath-recording",
             "joulepath-calibration",

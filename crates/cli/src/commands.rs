@@ -7,3 +7,4 @@ pub(crate) mod demo;
 pub(crate) mod plan;
 pub(crate) mod predict;
 pub(crate) mod serve;
+pub(crate) mod simulate;

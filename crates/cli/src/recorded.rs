@@ -81,7 +81,8 @@ fn map(name: &str) -> Result<Map, BadInput> {
     Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }
 
-fn robot(name: &str) -> anyhow::Result<Robot> {
+/// A built-in robot, or one from a file.
+pub(crate) fn robot(name: &str) -> anyhow::Result<Robot> {
     let is_file = name.ends_with(".json") || name.contains(std::path::MAIN_SEPARATOR);
     let robot = if is_file {
         Robot::from_json(&text(name)?).map_err(|error| BadInput(format!("{name}: {error}")))?

@@ -136,3 +136,42 @@ fn the_demo_prints_its_table_and_draws_a_self_contained_picture() {
     );
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn simulate_records_what_predict_reads_and_keeps_a_key() {
+    let folder = std::env::temp_dir().join(format!("joulepath-simulate-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).display().to_string();
+    let yard = concat!(env!("CARGO_MANIFEST_DIR"), "/../../maps/yard.json");
+    let world = format!(
+        r#"{{"terrain": {{"map": "{yard}"}}, "effects": [{{"effect": "payload", "strength": 15, "onset_s": 30}}]}}"#
+    );
+    std::fs::write(path("world.json"), world).unwrap();
+    let plan = with("plan", &["--json"]);
+    std::fs::write(path("drive.json"), plan.stdout).unwrap();
+    let simulate = |world: &str| {
+        let (drive, out, key) = (path("drive.json"), path("out.csv"), path("key.json"));
+        joulepath(&["simulate", "--world", world, "--drive", &drive, "--out", &out, "--key", &key])
+    };
+    let output = simulate(&path("world.json"));
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let key: serde_json::Value = serde_json::from_slice(&std::fs::read(path("key.json")).unwrap()).unwrap();
+    assert_eq!(key["truths"][0]["effect"], "payload");
+    assert!(key["truths"][0]["power_share"].as_f64().unwrap() > 0.02, "{key}");
+    let predicted = joulepath(&["predict", "--recording", &path("out.csv"), "--json"]);
+    let predicted: serde_json::Value = serde_json::from_slice(&predicted.stdout).unwrap();
+    assert!(predicted["total"]["r2"].as_f64().unwrap() > 0.8, "{predicted}");
+    std::fs::write(
+        path("bad.json"),
+        r#"{"terrain": "level", "effects": [{"effect": "payload", "weight": 3}]}"#,
+    )
+    .unwrap();
+    let refused = simulate(&path("bad.json"));
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        text(&refused.stderr).contains("effects[0].weight") && text(&refused.stderr).lines().count() == 1,
+        "{}",
+        text(&refused.stderr)
+    );
+    std::fs::remove_dir_all(folder).unwrap();
+}

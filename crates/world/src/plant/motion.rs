@@ -1,0 +1,95 @@
+//! Newton's law for the body and its wheels.
+
+use super::{BEARING_SHARE, GRAVITY_MPS2, Plant};
+use crate::motor::TURNAROUND_MPS;
+
+/// How long loads take to follow accelerations [s].
+const LOAD_FOLLOWS_S: f64 = 0.05;
+
+impl Plant<'_> {
+    /// Forces of all tyres on the body [N], their moment [N m], and the force that holds each side's wheels [N].
+    pub(super) fn tyres(&mut self) -> ([f64; 2], f64, [f64; 2]) {
+        let center_m = self.center_m();
+        let (mut force_n, mut moment_nm, mut held_n) = ([0.0; 2], 0.0, [0.0; 2]);
+        let [forward, left, yaw] = self.speed;
+        for (i, wheel) in self.wheels.iter_mut().enumerate() {
+            let (x, y) = (wheel.at_m[0] - center_m[0], wheel.at_m[1] - center_m[1]);
+            let rim_mps = self.sides[i % 2].rim_mps;
+            let slide_mps = [rim_mps - (forward - yaw * y), -(left + yaw * x)];
+            let contact =
+                wheel.brush.advance(wheel.load_n, wheel.deflection_m, slide_mps, rim_mps, self.step_s);
+            wheel.deflection_m = contact.deflection_m;
+            let [along_n, across_n] = contact.force_n;
+            force_n[0] += along_n;
+            force_n[1] += across_n;
+            moment_nm += x * across_n - y * along_n;
+            held_n[i % 2] += along_n;
+            self.ledger.sliding_j += (along_n * slide_mps[0] + across_n * slide_mps[1]) * self.step_s;
+        }
+        (force_n, moment_nm, held_n)
+    }
+
+    /// Newton's law for the body, in its own turning frame.
+    pub(super) fn accelerate(&mut self, tyres_n: [f64; 2], tyre_moment_nm: f64) {
+        let (mass_kg, c) = (self.mass_kg(), &self.conditions);
+        let weight_n = mass_kg * GRAVITY_MPS2;
+        let forward_n = tyres_n[0] + c.push_n[0] - weight_n * self.lie.pitch.0;
+        let left_n = tyres_n[1] + c.push_n[1] - weight_n * self.lie.roll.0;
+        let moment_nm = tyre_moment_nm + c.moment_nm - weight_n * self.lie.twist_m;
+        let [forward, left, yaw] = self.speed;
+        let before_yaw = yaw;
+        self.speed = [
+            forward + self.step_s * (forward_n / (mass_kg + c.towed_kg) + yaw * left),
+            left + self.step_s * (left_n / mass_kg - yaw * forward),
+            yaw + self.step_s * moment_nm / self.yaw_inertia_kgm2(),
+        ];
+        let outside_w = c.push_n[0] * (forward + self.speed[0]) / 2.0
+            + c.push_n[1] * (left + self.speed[1]) / 2.0
+            + c.moment_nm * (before_yaw + self.speed[2]) / 2.0;
+        self.ledger.outside_j -= outside_w * self.step_s;
+        let follow = self.step_s / LOAD_FOLLOWS_S;
+        for (carried_n, tyre_n) in self.carried_n.iter_mut().zip(tyres_n) {
+            *carried_n += follow * (tyre_n - *carried_n);
+        }
+    }
+
+    /// Newton's law for the wheels of each side; dry friction is taken implicitly, since it stops what it brakes.
+    pub(super) fn turn_wheels(&mut self, drive_n: [f64; 2], held_n: [f64; 2]) {
+        let bearing_n = BEARING_SHARE * self.nominal_rolling() * self.robot.mass_kg * GRAVITY_MPS2 / 2.0;
+        let rim_kg = self.rim_kg();
+        for i in 0..2 {
+            let s = &mut self.sides[i];
+            let before_mps = s.rim_mps;
+            if s.braked {
+                self.ledger.gears_j +=
+                    0.5 * rim_kg * before_mps * before_mps - held_n[i] * before_mps * self.step_s;
+                s.rim_mps = 0.0;
+                continue;
+            }
+            let direction = (before_mps / TURNAROUND_MPS).tanh();
+            let gear_n = bearing_n * direction + self.conditions.drag_n[i];
+            let rolling_n = s.rolling_n * direction;
+            s.rim_mps += self.step_s * (drive_n[i] - held_n[i] - gear_n - rolling_n) / rim_kg;
+            let mean_mps = (before_mps + s.rim_mps) / 2.0;
+            s.rim_m += mean_mps * self.step_s;
+            self.ledger.gears_j += gear_n * mean_mps * self.step_s;
+            self.ledger.rolling_j += rolling_n * mean_mps * self.step_s;
+        }
+    }
+
+    /// Rolling coefficient of the default surface, which bearings were measured on.
+    fn nominal_rolling(&self) -> f64 {
+        self.robot.surfaces.get(&self.robot.default_surface).map_or(0.0, |s| s.mu_roll)
+    }
+
+    /// Where the geometric centre goes.
+    pub(super) fn move_on(&mut self) {
+        let center_m = self.center_m();
+        let forward = (self.speed[0] + self.speed[2] * center_m[1]) * self.lie.pitch.1;
+        let left = (self.speed[1] - self.speed[2] * center_m[0]) * self.lie.roll.1;
+        let (sin, cos) = self.heading_rad.sin_cos();
+        self.place_m[0] += self.step_s * (forward * cos - left * sin);
+        self.place_m[1] += self.step_s * (forward * sin + left * cos);
+        self.heading_rad += self.step_s * self.speed[2];
+    }
+}
