@@ -34,6 +34,28 @@ pub fn file(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
+/// A recording of several runs at 10 Hz, each of arcs that last five seconds. Its power follows speed and turning, so that a
+/// robot can be fitted to it.
+pub fn drive_csv(runs: usize, rows: usize) -> String {
+    let mut text =
+        "run,t_s,v_left_mps,v_right_mps,yaw_rate_radps,power_left_w,power_right_w,surface\n".to_owned();
+    for run in 0..runs {
+        for row in 0..rows {
+            let t = row as f64 / 10.0;
+            let arc = row / 50;
+            let (left, right) =
+                (0.3 + 0.1 * ((2 * arc + run) % 4) as f64, 0.3 + 0.1 * ((3 * arc) % 5) as f64);
+            let yaw_rate = (right - left) / 0.9;
+            let side = |v: f64, against: f64| 8.0 + 90.0 * v + 40.0 * v * against;
+            let (left_w, right_w) = (side(left, -yaw_rate), side(right, yaw_rate));
+            text += &format!(
+                "drive-{run},{t:.1},{left:.5},{right:.5},{yaw_rate:.5},{left_w:.3},{right_w:.3},marble\n"
+            );
+        }
+    }
+    text
+}
+
 /// A running server, ended when dropped.
 #[derive(Debug)]
 pub struct Server {
@@ -48,8 +70,17 @@ impl Server {
     /// # Panics
     /// When it does not start.
     pub fn start() -> Self {
+        Server::start_with(&[])
+    }
+
+    /// Starts a server with more arguments.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new(program())
             .args(["serve", "--bind", "127.0.0.1:0"])
+            .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -68,6 +99,12 @@ impl Server {
         Answer::from(request.send(body))
     }
 
+    /// Sends a body of unknown length as it is read.
+    pub fn post_stream(&self, path: &str, content_type: &str, mut body: impl std::io::Read) -> Answer {
+        let request = agent().post(format!("{}{path}", self.url)).content_type(content_type);
+        Answer::from(request.send(ureq::SendBody::from_reader(&mut body)))
+    }
+
     /// Sends a JSON document.
     pub fn post_json(&self, path: &str, body: &Value) -> Answer {
         self.post(path, "application/json", body.to_string().as_bytes())
@@ -82,6 +119,20 @@ impl Server {
     /// Gets a path.
     pub fn get(&self, path: &str) -> Answer {
         Answer::from(agent().get(format!("{}{path}", self.url)).call())
+    }
+
+    /// Opens a stream of server-sent events, as who has seen all up to an event.
+    ///
+    /// # Panics
+    /// When the server does not answer.
+    pub fn events(&self, path: &str, last_event_id: Option<&str>) -> Events {
+        let mut request = agent().get(format!("{}{path}", self.url)).header("accept", "text/event-stream");
+        if let Some(id) = last_event_id {
+            request = request.header("last-event-id", id);
+        }
+        let response = request.call().unwrap_or_else(|error| panic!("the server did not answer: {error}"));
+        let status = response.status().as_u16();
+        Events { status, lines: BufReader::new(Box::new(response.into_body().into_reader())) }
     }
 
     /// Deletes a path.
@@ -115,6 +166,46 @@ impl Drop for Server {
     }
 }
 
+/// A stream of server-sent events.
+#[allow(missing_debug_implementations)]
+pub struct Events {
+    /// HTTP status of the stream.
+    pub status: u16,
+    lines: BufReader<Box<dyn std::io::Read + Send>>,
+}
+
+/// One event.
+#[derive(Debug)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// Its id.
+    pub id: String,
+    /// Its data.
+    pub data: Value,
+}
+
+impl Iterator for Events {
+    type Item = Event;
+
+    fn next(&mut self) -> Option<Event> {
+        let mut event = Event { name: String::new(), id: String::new(), data: Value::Null };
+        loop {
+            let mut line = String::new();
+            if self.lines.read_line(&mut line).ok()? == 0 {
+                return None;
+            }
+            match line.trim_end().split_once(": ") {
+                Some(("event", name)) => event.name = name.to_owned(),
+                Some(("id", id)) => event.id = id.to_owned(),
+                Some(("data", data)) => event.data = serde_json::from_str(data).ok()?,
+                None if line.trim().is_empty() && !event.name.is_empty() => return Some(event),
+                _ => {}
+            }
+        }
+    }
+}
+
 /// An HTTP answer, whatever its status.
 #[derive(Debug)]
 pub struct Answer {
@@ -124,6 +215,8 @@ pub struct Answer {
     pub content_type: String,
     /// The server's id of the request.
     pub request_id: Option<String>,
+    /// Where what was made is found.
+    pub location: Option<String>,
     /// The body as text.
     pub text: String,
 }
@@ -137,15 +230,31 @@ impl Answer {
         serde_json::from_str(&self.text).unwrap_or_else(|error| panic!("{error} in {}", self.text))
     }
 
+    /// The problem document that it must be.
+    ///
+    /// # Panics
+    /// When it is none, or another.
+    pub fn problem(&self, status: u16, kind: &str) -> Value {
+        assert_eq!(self.status, status, "{}", self.text);
+        assert_eq!(self.content_type, "application/problem+json", "{}", self.text);
+        let problem = self.json();
+        assert_eq!(problem["type"], kind, "{problem}");
+        assert_eq!(problem["status"], status);
+        let detail = problem["detail"].as_str().is_some_and(|detail| detail.len() > 10);
+        assert!(problem["title"].is_string() && detail, "{problem}");
+        problem
+    }
+
     fn from(result: Result<ureq::http::Response<ureq::Body>, ureq::Error>) -> Self {
         let mut response = result.unwrap_or_else(|error| panic!("the server did not answer: {error}"));
         let header =
             |name: &str| response.headers().get(name).and_then(|v| v.to_str().ok()).map(str::to_owned);
         let (content_type, request_id) = (header("content-type").unwrap_or_default(), header("x-request-id"));
+        let location = header("location");
         let status = response.status().as_u16();
         let body = response.body_mut().with_config().limit(256 << 20).read_to_string();
         let text = body.unwrap_or_else(|error| panic!("the answer broke off: {error}"));
-        Answer { status, content_type, request_id, text }
+        Answer { status, content_type, request_id, location, text }
     }
 }
 

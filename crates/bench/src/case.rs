@@ -48,8 +48,7 @@ pub(crate) fn measure(scene: &Scene, built: &Built) -> Result<Vec<Case>, Error> 
         let question =
             Search { starts: &scene.starts, goals: &goals, besides: 0.0, bound, patience: &patience };
         let (cold, cold_time) = timed(|| {
-            let field =
-                GoalField::new(&built.table, built.ends(scene, Some(scene.starts[0].cell)), &patience);
+            let field = GoalField::new(&built.table, built.ends(Some(scene.starts[0].cell)), &patience);
             let mut workspace = Workspace::of(&scene.lattice);
             field.map(|field| search(&built.table, &field, &question, &mut workspace))
         });

@@ -35,15 +35,15 @@ pub struct Parts {
 pub(crate) struct Built {
     pub(crate) table: CostTable,
     pub(crate) field: GoalField,
-    goal_cells: Vec<(Cell, f64)>,
+    goals: Vec<(State, f64)>,
     table_time: Duration,
     field_time: Duration,
 }
 
 impl Built {
     /// The scene's goal, with a start or for the whole map.
-    pub(crate) fn ends(&self, _: &Scene, start: Option<Cell>) -> FieldEnds<'_> {
-        FieldEnds { goals: &self.goal_cells, start }
+    pub(crate) fn ends(&self, start: Option<Cell>) -> FieldEnds<'_> {
+        FieldEnds { goals: &self.goals, start }
     }
 }
 
@@ -56,11 +56,11 @@ pub(crate) fn build(scene: &Scene) -> Result<Built, Error> {
     let patience = Patience::default();
     let (table, table_time) = timed(|| CostTable::new(&scene.lattice, Objective::Energy, &patience));
     let table = table.ok_or_else(|| scene.no_path())?;
-    let goal_cells = vec![(scene.goal_cell(), 0.0)];
-    let ends = FieldEnds { goals: &goal_cells, start: None };
+    let goals: Vec<(State, f64)> = scene.goals.iter().map(|goal| (*goal, 0.0)).collect();
+    let ends = FieldEnds { goals: &goals, start: None };
     let (field, field_time) = timed(|| GoalField::new(&table, ends, &patience));
     let field = field.ok_or_else(|| scene.no_path())?;
-    Ok(Built { table, field, goal_cells, table_time, field_time })
+    Ok(Built { table, field, goals, table_time, field_time })
 }
 
 pub(crate) fn measure(scene: &Scene, built: &Built, exact: bool) -> Result<Parts, Error> {
@@ -80,8 +80,7 @@ pub(crate) fn measure(scene: &Scene, built: &Built, exact: bool) -> Result<Parts
         all_cores_ratio: 1.0,
     };
     if exact {
-        let goals: Vec<(State, f64)> = scene.goals.iter().map(|goal| (*goal, 0.0)).collect();
-        let (field, time) = timed(|| ExactField::new(&built.table, &goals, &Patience::default()));
+        let (field, time) = timed(|| ExactField::new(&built.table, &built.goals, &Patience::default()));
         let field = field.ok_or_else(|| scene.no_path())?;
         let walk = (0..REPEATS).map(|_| timed(|| field.walk(&built.table, &scene.starts)).1).min();
         parts.exact_field_ns_per_state = Some(nanoseconds_each(time, scene.states()));

@@ -47,7 +47,7 @@ fn pathfinding_astar(scene: &Scene, built: &Built) -> Result<(u64, f64), Error> 
     let successors = |state: &State| -> Vec<(State, u64)> {
         built.table.successors(*state).map(|(next, units)| (next, u64::from(units))).collect()
     };
-    let ahead = |state: &State| u64::from(built.field.units(state.cell));
+    let ahead = |state: &State| u64::from(built.field.units(*state));
     let start = scene.starts[0];
     let goal = |state: &State| scene.goals.contains(state);
     let (found, time) = timed(|| pathfinding::directed::astar::astar(&start, successors, ahead, goal));
@@ -70,7 +70,7 @@ fn petgraph_astar(scene: &Scene, built: &Built) -> Result<(u64, f64), Error> {
     }
     let start = NodeIndex::new(lattice.index(scene.starts[0]));
     let is_goal = |node: NodeIndex| scene.goals.contains(&lattice.state(node.index()));
-    let ahead = |node: NodeIndex| u64::from(built.field.units(lattice.state(node.index()).cell));
+    let ahead = |node: NodeIndex| u64::from(built.field.units(lattice.state(node.index())));
     let (found, time) = timed(|| astar(&graph, start, is_goal, |edge| u64::from(*edge.weight()), ahead));
     let (units, _) = found.ok_or_else(|| scene.no_path())?;
     Ok((units, time.as_secs_f64() * 1e3))

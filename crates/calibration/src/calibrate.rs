@@ -70,7 +70,6 @@ pub struct Calibration {
     /// What a person should know.
     pub notes: Vec<String>,
     /// The robot with the values found and their `uncertainty`.
-    #[serde(skip)]
     pub robot: Robot,
 }
 

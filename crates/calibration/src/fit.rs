@@ -53,6 +53,9 @@ impl Problem<'_> {
     /// Finds the parameters.
     pub fn solve(&self, parameters: &[Parameter]) -> Fit {
         let free: Vec<usize> = (0..parameters.len()).filter(|&i| !parameters[i].held).collect();
+        if free.is_empty() {
+            return self.unmoved(parameters);
+        }
         let pick = |f: fn(&Parameter) -> f64| free.iter().map(|&i| f(&parameters[i])).collect::<Vec<f64>>();
         let (lower, upper) = (pick(|p| p.bounds[0]), pick(|p| p.bounds[1]));
         let start: Vec<f64> = pick(|p| {
@@ -89,6 +92,20 @@ impl Problem<'_> {
         }
         let cost = errors.iter().map(|e| e * e).sum();
         Fit { parameters: parameters.to_vec(), values: all(&x), covariance: whole, student, cost }
+    }
+
+    /// The fit of nothing: every parameter is held.
+    fn unmoved(&self, parameters: &[Parameter]) -> Fit {
+        let values: Vec<f64> = parameters.iter().map(|p| p.start).collect();
+        let errors = (self.predict)(&values);
+        let errors = errors.iter().zip(self.recorded).map(|(p, r)| huber(p - r, self.largest));
+        Fit {
+            parameters: parameters.to_vec(),
+            covariance: DMatrix::zeros(values.len(), values.len()),
+            student: student_975(0.0),
+            cost: errors.map(|e| e * e).sum(),
+            values,
+        }
     }
 
     /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
@@ -157,17 +174,22 @@ impl Problem<'_> {
             let gradient = DVector::from_iterator(count, jacobian.row(row).iter().copied());
             middle += &gradient * gradient.transpose() * self.noise * self.noise;
         }
-        let bread = (jacobian.transpose() * jacobian)
-            .pseudo_inverse(1e-14)
-            .unwrap_or_else(|_| DMatrix::zeros(count, count));
+        let normal = jacobian.transpose() * jacobian;
+        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
+        let student = student_975(blocks.saturating_sub(count) as f64);
+        // Numbers out of all proportion overflow, and the decomposition of what is not finite never ends.
+        let finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
+        if !finite(&normal) || !finite(&middle) {
+            return (DMatrix::from_diagonal_element(count, count, f64::INFINITY), student);
+        }
+        let bread = normal.pseudo_inverse(1e-14).unwrap_or_else(|_| DMatrix::zeros(count, count));
         let sandwich = &bread * middle * &bread;
         let stretch = DVector::from_fn(count, |i, _| {
             let trusting = self.noise * self.noise * bread[(i, i)];
             if sandwich[(i, i)] > 0.0 { (trusting / sandwich[(i, i)]).max(1.0).sqrt() } else { 1.0 }
         });
         let covariance = DMatrix::from_fn(count, count, |i, j| sandwich[(i, j)] * stretch[i] * stretch[j]);
-        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
-        (covariance, student_975(blocks.saturating_sub(count) as f64))
+        (covariance, student)
     }
 }
 

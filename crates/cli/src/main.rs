@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod failure;
 mod picture;
+mod progress;
 mod recorded;
 mod table;
 

@@ -1,12 +1,12 @@
 //! The robot and the recordings that `predict` and `calibrate` are given.
 
-use std::{fs, path::PathBuf};
+use std::{fs, ops::ControlFlow, path::PathBuf, sync::Arc};
 
 use clap::Args;
 use model::{Robot, builtin};
-use recording::{Map, Recording, read_paths};
+use recording::{Map, ReadingReport, Recording, Watch, read_paths_watched};
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, progress};
 
 /// What `predict` and `calibrate` share.
 #[derive(Args)]
@@ -17,9 +17,9 @@ pub(crate) struct Recorded {
     /// Recordings: .csv, .parquet, .mcap or .bag
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
-    /// Map file that names columns or topics and their units
+    /// Map file that names columns or topics and their units, or the built-in husky or borealtc
     #[arg(long)]
-    map: Option<PathBuf>,
+    map: Option<String>,
     /// Print the answer as a JSON document
     #[arg(long)]
     pub(crate) json: bool,
@@ -29,21 +29,17 @@ impl Recorded {
     /// Reads the robot and all recordings; doubts about them go to stderr.
     pub(crate) fn read(&self) -> anyhow::Result<(Robot, Recording)> {
         let robot = robot(&self.robot)?;
-        let map = self.map.as_ref().map(|path| {
-            let text = text(&path.display().to_string())?;
-            Map::from_json(&text).map_err(|error| BadInput(format!("{}: {error}", path.display())))
+        let map = self.map.as_deref().map(map).transpose()?;
+        let bar = progress::reading(&self.recording);
+        let told = bar.clone();
+        let watch: Watch = Arc::new(move |bytes| {
+            told.inc(bytes);
+            ControlFlow::Continue(())
         });
-        let (recording, reports) = read_paths(&self.recording, map.transpose()?.as_ref())
-            .map_err(|error| BadInput(error.to_string()))?;
-        for report in reports {
-            if !report.aside.is_empty() {
-                eprintln!("{}: kept aside: {}", report.source, report.aside.join(", "));
-            }
-            for doubt in &report.suspicions {
-                let run = doubt.run.as_deref().map_or(String::new(), |run| format!(", run {run}"));
-                eprintln!("{}{run}: {}", report.source, doubt.statement);
-            }
-        }
+        let read = read_paths_watched(&self.recording, map.as_ref(), &watch);
+        bar.finish_and_clear();
+        let (recording, reports) = read.map_err(|error| BadInput(error.to_string()))?;
+        reports.iter().for_each(warn);
         Ok((robot, recording))
     }
 
@@ -52,6 +48,37 @@ impl Recorded {
         let files: Vec<String> = self.recording.iter().map(|path| path.display().to_string()).collect();
         BadInput(format!("{}: {error}", files.join(", ")))
     }
+}
+
+/// Says what of a file was not used, what was mended and what is doubtful.
+fn warn(report: &ReadingReport) {
+    let source = &report.source;
+    if !report.aside.is_empty() {
+        eprintln!("{source}: kept aside: {}", report.aside.join(", "));
+    }
+    if !report.ignored.is_empty() {
+        let ignored: Vec<String> =
+            report.ignored.iter().map(|i| format!("{} ({})", i.name, i.reason)).collect();
+        eprintln!("{source}: not used: {}", ignored.join("; "));
+    }
+    for repair in &report.repairs {
+        eprintln!("{source}: {}: {}", repair.place, repair.what);
+    }
+    for doubt in &report.suspicions {
+        let run = doubt.run.as_deref().map_or(String::new(), |run| format!(", run {run}"));
+        eprintln!("{source}{run}: {}: {}", doubt.channel, doubt.statement);
+    }
+}
+
+/// A built-in map by its name, or a map file.
+fn map(name: &str) -> Result<Map, BadInput> {
+    if let Some(map) = Map::built_in(name) {
+        return Ok(map);
+    }
+    let known = Map::BUILT_IN.join(" or ");
+    let text = text(name)
+        .map_err(|error| BadInput(format!("--map {error}; give a map file, or the built-in {known}")))?;
+    Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }
 
 /// A built-in robot, or one from a file.

@@ -1,6 +1,6 @@
 //! The `force-balance` model: side forces from a quasi-static balance, continuous over every turning radius.
 
-use crate::{Robot, Sides, motion::Motion, robot::Surface, rolling, skid};
+use crate::{Robot, Sides, mechanism::Adjustment, motion::Motion, robot::Surface, rolling, skid};
 
 /// Side forces of one motion on one surface, per newton of weight; the slope enters later.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +40,22 @@ impl FrictionShape {
     ///
     /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
     pub(crate) fn side_forces(&self, robot: &Robot, surface: &Surface) -> SideForces {
+        self.side_forces_adjusted(robot, surface, &Adjustment::default())
+    }
+
+    /// The same with friction and loads changed.
+    pub(crate) fn side_forces_adjusted(
+        &self,
+        robot: &Robot,
+        surface: &Surface,
+        adjustment: &Adjustment,
+    ) -> SideForces {
         let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
-        let rolling = rolling::load_share(robot).zip(self.rolling).map(|(n, s)| mu_roll * n * s);
-        let skid = self.skid_arm_m * surface.mu_skid / robot.track_m;
+        let share = rolling::load_share(robot);
+        let share =
+            Sides { left: share.left + adjustment.load_left, right: share.right - adjustment.load_left };
+        let rolling = share.zip(self.rolling).zip(adjustment.mu_roll).map(|((n, s), c)| c * mu_roll * n * s);
+        let skid = self.skid_arm_m * (adjustment.mu_skid * surface.mu_skid) / robot.track_m;
         SideForces {
             friction_per_load: Sides { left: rolling.left - skid, right: rolling.right + skid },
             gravity_share: Sides::both(0.5),

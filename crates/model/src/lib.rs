@@ -15,6 +15,7 @@ mod gravity;
 pub mod inversion;
 mod kernel;
 pub mod least_squares;
+pub mod mechanism;
 mod motion;
 mod motor;
 pub mod paper;

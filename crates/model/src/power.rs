@@ -7,6 +7,7 @@ use crate::{
     balance::{FrictionShape, SideForces},
     gravity::{Attitude, STANDARD_GRAVITY_MPS2},
     kernel::PowerKernel,
+    mechanism::Adjustment,
     motion::{Acceleration, Motion},
     paper::PaperForces,
     robot::Surface,
@@ -45,6 +46,8 @@ pub struct Manoeuvre {
     mass_kg: f64,
     /// I / b: force difference per yaw acceleration, halved between the sides [N s²].
     turning_n_per_radps2: f64,
+    /// What mechanisms add to each side's force, forward [N].
+    added_n: Sides<f64>,
 }
 
 impl Manoeuvre {
@@ -79,6 +82,30 @@ impl Manoeuvre {
         Manoeuvre::of_forces(robot, motion, shape.side_forces(robot, surface), motor_temperature_c, false)
     }
 
+    /// The same with what a mechanism adds ([`crate::mechanism`]).
+    pub fn adjusted(
+        robot: &Robot,
+        surface: &Surface,
+        motion: Motion,
+        shape: &FrictionShape,
+        motor_temperature_c: Sides<f64>,
+        adjustment: &Adjustment,
+    ) -> Self {
+        let forces = shape.side_forces_adjusted(robot, surface, adjustment);
+        let motor_c = motor_temperature_c.zip(adjustment.motor_k).map(|(c, k)| c + k);
+        let mut manoeuvre = Manoeuvre::of_forces(robot, motion, forces, motor_c, false);
+        let kernel = &mut manoeuvre.kernel;
+        let heavier = 1.0 + adjustment.mass_kg / robot.mass_kg;
+        kernel.friction_n = kernel.friction_n.map(|n| heavier * n);
+        kernel.lifting_n = kernel.lifting_n.map(|n| heavier * n);
+        kernel.lift_w *= heavier;
+        kernel.driven = kernel.driven.zip(kernel.driving).map(|(d, k2)| d + adjustment.regeneration / k2);
+        kernel.standing_w += adjustment.standing_w;
+        manoeuvre.mass_kg += adjustment.mass_kg;
+        manoeuvre.added_n = adjustment.force_n;
+        manoeuvre
+    }
+
     fn of_forces(
         robot: &Robot,
         motion: Motion,
@@ -108,7 +135,7 @@ impl Manoeuvre {
             standing_w: robot.hotel_power_w + electronics.sum(),
         };
         let turning_n_per_radps2 = robot.yaw_inertia_kgm2 / robot.track_m;
-        Manoeuvre { motion, kernel, mass_kg: robot.mass_kg, turning_n_per_radps2 }
+        Manoeuvre { motion, kernel, mass_kg: robot.mass_kg, turning_n_per_radps2, added_n: Sides::both(0.0) }
     }
 
     /// The motion this was prepared for.
@@ -138,8 +165,8 @@ impl Manoeuvre {
         let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
         let turning_n = self.turning_n_per_radps2 * acceleration.yaw_radps2;
         let force_n = Sides {
-            left: steady_n.left + forward_n - turning_n,
-            right: steady_n.right + forward_n + turning_n,
+            left: steady_n.left + forward_n - turning_n + self.added_n.left,
+            right: steady_n.right + forward_n + turning_n + self.added_n.right,
         };
         let side_w = self.kernel.side_w(force_n);
         Power {

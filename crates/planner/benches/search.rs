@@ -35,9 +35,18 @@ fn table(lattice: &Arc<Lattice>) -> CostTable {
 
 const GOAL: Cell = Cell { row: SIDE * 9 / 10, column: SIDE * 9 / 10 };
 
-fn field(table: &CostTable) -> GoalField {
-    let ends = FieldEnds { goals: &[(GOAL, 0.0)], start: None };
-    GoalField::new(table, ends, &Patience::default()).unwrap_or_else(|| unreachable!("patience has no end"))
+/// Poses at a cell.
+fn poses(cell: Cell) -> impl Iterator<Item = State> {
+    Heading::all().map(move |heading| State { cell, heading })
+}
+
+fn goals() -> Vec<(State, f64)> {
+    poses(GOAL).map(|goal| (goal, 0.0)).collect()
+}
+
+fn field(table: &CostTable, goals: &[(State, f64)]) -> GoalField {
+    GoalField::new(table, FieldEnds { goals, start: None }, &Patience::default())
+        .unwrap_or_else(|| unreachable!("patience has no end"))
 }
 
 #[divan::bench]
@@ -56,19 +65,27 @@ fn cost_table(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 10)]
 fn goal_field(bencher: Bencher<'_, '_>) {
     let table = table(&lattice());
-    bencher.counter(divan::counter::ItemsCount::new(SIDE * SIDE)).bench(|| field(&table));
+    bencher.counter(divan::counter::ItemsCount::new(SIDE * SIDE)).bench(|| field(&table, &goals()));
 }
 
 #[divan::bench(args = [1.0, 1.05, 1.2], sample_count = 10)]
 fn warm_search(bencher: Bencher<'_, '_>, bound: f64) {
+    warm(bencher, &goals(), bound);
+}
+
+/// To a goal that is to be left the way one came.
+#[divan::bench(sample_count = 10)]
+fn warm_search_turning_at_the_goal(bencher: Bencher<'_, '_>) {
+    warm(bencher, &[(State { cell: GOAL, heading: Heading::new(10) }, 0.0)], 1.0);
+}
+
+fn warm(bencher: Bencher<'_, '_>, goals: &[(State, f64)], bound: f64) {
     let lattice = lattice();
     let table = table(&lattice);
-    let field = field(&table);
-    let poses = |cell: Cell| Heading::all().map(move |heading| State { cell, heading });
+    let field = field(&table, goals);
     let starts: Vec<State> = poses(Cell { row: SIDE / 10, column: SIDE / 10 }).collect();
-    let goals: Vec<(State, f64)> = poses(GOAL).map(|goal| (goal, 0.0)).collect();
     let patience = Patience::default();
-    let question = Search { starts: &starts, goals: &goals, besides: 0.0, bound, patience: &patience };
+    let question = Search { starts: &starts, goals, besides: 0.0, bound, patience: &patience };
     let mut workspace = Workspace::of(&lattice);
     bencher.bench_local(|| search(&table, &field, &question, &mut workspace));
 }

@@ -89,9 +89,9 @@ impl Chain {
         Chain { pieces: prepared, sweep, reach, read_from, read_to, reverse }
     }
 
-    /// The cells it sweeps and their largest king's distance.
-    pub(crate) fn sweep(&self) -> (&[(i32, i32)], u8) {
-        (&self.sweep, self.reach)
+    /// The cells it sweeps, as offsets (columns, rows) from where it starts.
+    pub(crate) fn sweep(&self) -> &[(i32, i32)] {
+        &self.sweep
     }
 
     /// Its steps, each with the manoeuvres of all surfaces and whether it is driven backwards.

@@ -4,9 +4,9 @@ use crate::{
     error::{Error, Place},
     heading::Heading,
     lattice::{Lattice, State},
+    objective::Objective,
     query::{Goal, Query},
     snap::{Asked, Snapped, cells_within, snap},
-    table::Objective,
 };
 
 /// Both ends on the lattice.

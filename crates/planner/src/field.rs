@@ -1,25 +1,31 @@
 //! Least cost from every cell to the goal when headings need not join up.
 
+use std::collections::BTreeMap;
+
 use terrain::Cell;
 
 use crate::{
     growth::Home,
-    heading::Heading,
+    heading::{HEADINGS, Heading},
     lattice::State,
-    layout::{Layout, TILE, TILE_CELLS},
+    layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
+    near::Near,
     patience::Patience,
     table::CostTable,
 };
 
-/// A lower bound of the cost to the goal, cell by cell.
+/// A lower bound of the cost to the goal, cell by cell; about a goal with a heading pose by pose.
 ///
 /// Every lattice motion, seen without its headings, is a step between cells; the field is the exact least cost over
-/// these steps, each as cheap as its cheapest heading and shape. It never exceeds the true cost and falls along every
-/// motion by no more than the motion costs, so A* expands hardly a state twice.
+/// these steps, each as cheap as its cheapest heading and shape. Where a goal asks for a heading, the poses from which it
+/// costs least are worked out exactly and the field begins at their rim, so that it knows of the turn at the end. It never
+/// exceeds the true cost and falls along every motion by no more than the motion costs, so A* expands hardly a state twice.
 pub struct GoalField {
     /// Ones' complement of the bound in the table's units, by cell of the layout; 0, as fresh memory is, where the field
     /// did not come or no chain of motions leads to the goal. Memory that the field does not reach is never touched.
     pub(crate) complement: Vec<u32>,
+    /// Bounds by heading of cells about the goal, whose complements are 0.
+    near: BTreeMap<u32, [u32; HEADINGS]>,
     beyond: Beyond,
     units: f64,
     pub(crate) layout: Layout,
@@ -28,8 +34,8 @@ pub struct GoalField {
 /// Where a field begins and how far it has to reach.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldEnds<'a> {
-    /// Goal cells with the cost that still follows there, in the table's own unit.
-    pub goals: &'a [(Cell, f64)],
+    /// Goal poses with the cost that still follows there, in the table's own unit.
+    pub goals: &'a [(State, f64)],
     /// The cell from which a search will start: the field grows towards it and ends soon after. `None`: it covers all.
     pub start: Option<Cell>,
 }
@@ -40,8 +46,8 @@ enum Beyond {
     /// No motions lead from there to the goal.
     Unreachable,
     /// Any way from the start to the goal by such a cell costs `floor` at least, of which reaching it takes at least its
-    /// distance times the least cost per metre.
-    Towards { floor: u32, home: Home },
+    /// distance times the least cost per metre; none costs less than `least`, the rim about the goal.
+    Towards { floor: u32, home: Home, least: u32 },
 }
 
 pub(crate) const UNREACHED: u32 = u32::MAX;
@@ -57,6 +63,7 @@ impl GoalField {
         let layout = table.lattice().layout;
         let mut field = GoalField {
             complement: vec![0u32; layout.cells()],
+            near: BTreeMap::new(),
             beyond: Beyond::Unreachable,
             units: table.units(),
             layout,
@@ -66,27 +73,56 @@ impl GoalField {
             column: start.column as f32,
             rate: table.least_units_per_cell(),
         });
+        let near = match Near::matters(ends.goals) {
+            true => Some(Near::new(table, ends.goals, patience)?),
+            false => None,
+        };
+        let seeds = match &near {
+            Some(near) => near.rim.clone(),
+            None => ends
+                .goals
+                .iter()
+                .map(|(goal, after)| (Layout::cell(layout.pack(*goal)), (after * table.units()) as u32))
+                .collect(),
+        };
         let mut touched = vec![false; layout.tiles()];
-        if let Some(floor) = field.grow(table, &ends, &home, &mut touched, patience)? {
-            field.bound_rest(floor, home, &touched);
+        let start =
+            ends.start.map(|cell| Layout::cell(layout.pack(State { cell, heading: Heading::new(0) })));
+        if let Some(floor) = field.grow(table, (&seeds, start), &home, &mut touched, patience)? {
+            let least = seeds.iter().map(|(_, cost)| *cost).min().unwrap_or(0);
+            field.bound_rest(Beyond::Towards { floor, home, least }, &touched);
+        }
+        if let Some(near) = near {
+            field.take_near(near);
         }
         Some(field)
     }
 
+    /// Lets exact costs stand for the poses that have one; others in the same cells have the field's.
+    fn take_near(&mut self, mut near: Near) {
+        for (cell, costs) in &mut near.costs {
+            let outside = self.units_at(cell << HEADING_BITS);
+            for cost in costs.iter_mut().filter(|cost| **cost == UNREACHED) {
+                *cost = outside;
+            }
+            self.complement[*cell as usize] = 0;
+        }
+        self.near = near.costs;
+    }
+
     /// Lets the bound of unsettled cells stand in the tiles that were touched; elsewhere it is worked out when asked for.
-    fn bound_rest(&mut self, floor: u32, home: Home, touched: &[bool]) {
+    fn bound_rest(&mut self, beyond: Beyond, touched: &[bool]) {
         let layout = self.layout;
         let tiles = self.complement.chunks_exact_mut(TILE_CELLS).zip(touched).enumerate();
         for (tile, (cells, _)) in tiles.filter(|(_, (_, touched))| **touched) {
             let (tile_row, tile_column) = layout.tile_place(tile);
             for (row, cells) in cells.chunks_exact_mut(TILE).enumerate() {
                 for (column, cell) in cells.iter_mut().enumerate() {
-                    let away = home.away(tile_row * TILE + row, tile_column * TILE + column);
-                    *cell = (*cell).max(!(floor - away.min(floor)));
+                    *cell = (*cell).max(!beyond.at(tile_row * TILE + row, tile_column * TILE + column));
                 }
             }
         }
-        self.beyond = Beyond::Towards { floor, home };
+        self.beyond = beyond;
     }
 
     /// Bytes held, memory that was never touched included.
@@ -94,21 +130,26 @@ impl GoalField {
         self.complement.len() * size_of::<u32>()
     }
 
-    /// Lower bound of the cost from a cell to the goal, in the objective's unit; infinite where no chain of motions leads
+    /// Lower bound of the cost from a pose to the goal, in the objective's unit; infinite where no chain of motions leads
     /// there.
-    pub fn at(&self, cell: Cell) -> f64 {
-        match self.units_at(self.layout.pack(State { cell, heading: Heading::new(0) })) {
+    pub fn at(&self, state: State) -> f64 {
+        match self.units(state) {
             UNREACHED => f64::INFINITY,
             units => f64::from(units) / self.units,
         }
     }
 
     /// The same in the table's units; the largest number where no chain of motions leads there.
-    pub fn units(&self, cell: Cell) -> u32 {
-        self.units_at(self.layout.pack(State { cell, heading: Heading::new(0) }))
+    pub fn units(&self, state: State) -> u32 {
+        self.units_at(self.layout.pack(state))
     }
 
-    /// The same in the table's units, for a packed state.
+    /// Whether a chain of motions leads to the goal from a cell under some heading.
+    pub(crate) fn leads_from(&self, cell: Cell) -> bool {
+        Heading::all().any(|heading| self.units(State { cell, heading }) != UNREACHED)
+    }
+
+    /// The same for a packed state.
     #[inline(always)]
     pub(crate) fn units_at(&self, state: u32) -> u32 {
         match self.complement[Layout::cell(state)] {
@@ -119,11 +160,21 @@ impl GoalField {
 
     #[cold]
     fn beyond_at(&self, state: u32) -> u32 {
-        match self.beyond {
+        if let Some(costs) = self.near.get(&(Layout::cell(state) as u32)) {
+            return costs[state as usize % HEADINGS];
+        }
+        let (row, column) = self.layout.place(state);
+        self.beyond.at(row, column)
+    }
+}
+
+impl Beyond {
+    /// Lower bound of the cost from a cell.
+    fn at(&self, row: usize, column: usize) -> u32 {
+        match self {
             Beyond::Unreachable => UNREACHED,
-            Beyond::Towards { floor, home } => {
-                let (row, column) = self.layout.place(state);
-                floor - home.away(row, column).min(floor)
+            Beyond::Towards { floor, home, least } => {
+                (floor - home.away(row, column).min(*floor)).max(*least)
             }
         }
     }

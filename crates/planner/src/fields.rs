@@ -8,8 +8,9 @@ use crate::{
     exact::ExactField,
     field::{FieldEnds, GoalField},
     lattice::State,
+    objective::Objective,
     patience::Patience,
-    table::{CostTable, Objective},
+    table::CostTable,
 };
 
 /// What a field is for.
@@ -52,7 +53,7 @@ impl FieldCache {
         &self,
         key: FieldKey,
         table: &CostTable,
-        goals: &[(Cell, f64)],
+        goals: &[(State, f64)],
         start: Cell,
         patience: &Patience,
     ) -> Option<Arc<GoalField>> {

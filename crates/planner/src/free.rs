@@ -7,9 +7,9 @@ use crate::{
     edge::Edge,
     footprint::Footprint,
     lattice::Lattice,
+    objective::{Objective, Weights},
     primitive::Piece,
     step::{PreparedStep, Sample, Step, prepare_steps},
-    table::{Objective, Weights},
 };
 
 /// Longest step off the lattice, in cells: no coarser than the cells, so that no ground is skipped. The lattice's own

@@ -37,15 +37,23 @@ impl Front {
         }
     }
 
-    /// Takes the tile with the least key.
-    pub(crate) fn pop(&mut self) -> Option<(u32, usize, Change)> {
-        while let Some(Reverse((key, tile))) = self.queue.pop() {
+    /// Takes up to `most` tiles in the order of their keys; the least key there is when that is beyond a limit.
+    pub(crate) fn pop_within(&mut self, limit: u32, most: usize) -> Result<Vec<(usize, Change)>, u32> {
+        let mut taken = Vec::with_capacity(most);
+        while taken.len() < most
+            && let Some(&Reverse((key, tile))) = self.queue.peek()
+        {
             let change = &mut self.changes[tile as usize];
             // A tile is queued again whenever its key falls; only the last entry counts.
-            if change.key == !key {
-                return Some((key, tile as usize, std::mem::take(change)));
+            let is_last = change.key == !key;
+            if is_last && key > limit {
+                return if taken.is_empty() { Err(key) } else { Ok(taken) };
+            }
+            self.queue.pop();
+            if is_last {
+                taken.push((tile as usize, std::mem::take(change)));
             }
         }
-        None
+        Ok(taken)
     }
 }

@@ -1,14 +1,14 @@
 //! How a goal field grows: tile by tile, in the order of the least cost at which anything in them may still fall.
 
-use terrain::Cell;
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
 
 use crate::{
     cost::ENDLESS,
-    field::{FieldEnds, GoalField, UNREACHED},
+    field::{GoalField, UNREACHED},
     front::Front,
-    heading::Heading,
-    lattice::State,
-    layout::{Layout, TILE, TILE_CELLS},
+    layout::{HEADING_BITS, TILE, TILE_CELLS},
     patience::Patience,
     stencil::Stencil,
     sweep::Sweep,
@@ -38,51 +38,61 @@ impl Home {
 
 /// A field goes on beyond the start by a share of 1/`MARGIN` of its cost, which is about what turning adds to it.
 const MARGIN: u32 = 32;
+/// Tiles that are settled at the same time, each as if the others stayed as they were; what they change is looked at again
+/// from tile to tile. The number is the same on every machine, so that a field is.
+const ABREAST: usize = 6;
 
 impl GoalField {
-    /// Settles tiles; `Some(None)` when all were, `Some(floor)` when it ended before.
+    /// Settles tiles from cells whose cost is known on, until the start is settled; `Some(None)` when all were, `Some(floor)`
+    /// when it ended before.
     pub(crate) fn grow(
         &mut self,
         table: &CostTable,
-        ends: &FieldEnds<'_>,
+        (known, start): (&[(usize, u32)], Option<usize>),
         home: &Home,
         touched: &mut [bool],
         patience: &Patience,
     ) -> Option<Option<u32>> {
-        let position = |cell: Cell| Layout::cell(self.layout.pack(State { cell, heading: Heading::new(0) }));
-        let start = ends.start.map(position);
         let mut front = Front::new(self.layout.tiles());
-        let mut goals = Vec::new();
-        for &(cell, after) in ends.goals {
-            let (at, after) = (position(cell), (after * table.units()) as u32);
-            if after < ENDLESS && !after > self.complement[at] {
-                self.complement[at] = !after;
-                goals.push(at);
-                let key = after.saturating_add(home.away(cell.row, cell.column));
+        let mut goals = BTreeSet::new();
+        for &(at, cost) in known {
+            if cost < ENDLESS && !cost > self.complement[at] {
+                self.complement[at] = !cost;
+                goals.insert(at);
+                let (row, column) = self.layout.place((at << HEADING_BITS) as u32);
+                let key = cost.saturating_add(home.away(row, column));
                 front.note(at / TILE_CELLS, key, |change| change.seeded = true);
             }
         }
-        let mut sweep = Sweep::new(Stencil::new(table.displacements()));
-        while let Some((key, tile, change)) = front.pop() {
+        let mut sweeps: Vec<Sweep> =
+            (0..ABREAST).map(|_| Sweep::new(Stencil::new(table.displacements()))).collect();
+        loop {
             let farthest = start.map_or(UNREACHED, |at| !self.complement[at]);
-            if key > farthest.saturating_add(farthest / MARGIN) {
-                return Some(Some(key));
-            }
+            let taken = match front.pop_within(farthest.saturating_add(farthest / MARGIN), ABREAST) {
+                Ok(taken) if taken.is_empty() => return Some(None),
+                Ok(taken) => taken,
+                Err(key) => return Some(Some(key)),
+            };
             if patience.is_over() {
                 return None;
             }
-            let least = table.least(tile, patience)?;
-            self.load(tile, &mut sweep);
-            sweep.take_up(&change);
-            let seeds = goals.iter().filter(|at| change.seeded && **at / TILE_CELLS == tile);
-            seeds.for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
-            sweep.settle(least);
-            touched[tile] = true;
-            self.store(tile, &sweep);
-            self.pass_on(tile, &sweep, home, &mut front);
-            sweep.fallen = [0; TILE];
+            let least =
+                taken.iter().map(|(tile, _)| table.least(*tile, patience)).collect::<Option<Vec<_>>>()?;
+            let field = &*self;
+            taken.par_iter().zip(&mut sweeps).zip(least).for_each(|(((tile, change), sweep), least)| {
+                field.load(*tile, sweep);
+                sweep.take_up(change);
+                let cells = if change.seeded { tile * TILE_CELLS..(tile + 1) * TILE_CELLS } else { 0..0 };
+                goals.range(cells).for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
+                sweep.settle(least);
+            });
+            for ((tile, _), sweep) in taken.iter().zip(&mut sweeps) {
+                touched[*tile] = true;
+                self.store(*tile, sweep);
+                self.pass_on(*tile, sweep, home, &mut front);
+                sweep.fallen = [0; TILE];
+            }
         }
-        Some(None)
     }
 
     /// Copies the costs of a tile and around it.

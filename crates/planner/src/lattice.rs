@@ -11,9 +11,9 @@ use crate::{
     footprint::{Clearance, Footprint, first_blocked},
     heading::{HEADINGS, Heading},
     layout::Layout,
+    objective::{Objective, Weights},
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
     step::Limits,
-    table::{Objective, Weights},
 };
 
 /// How the robot is to be driven; the defaults are what a plain request gets.

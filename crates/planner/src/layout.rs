@@ -13,7 +13,8 @@ const TILE_BITS: u32 = 6;
 pub(crate) const TILE: usize = 1 << TILE_BITS;
 /// Cells in a tile.
 pub(crate) const TILE_CELLS: usize = TILE * TILE;
-const HEADING_BITS: u32 = 4;
+/// Bits of a heading, the lowest of a state.
+pub(crate) const HEADING_BITS: u32 = 4;
 /// Bits of a state within its tile.
 const WITHIN_BITS: u32 = 2 * TILE_BITS + HEADING_BITS;
 

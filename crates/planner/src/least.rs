@@ -2,7 +2,7 @@
 
 use model::{Manoeuvre, PowerModel};
 
-use crate::{edge::Chain, lattice::Lattice, step::PreparedStep, table::Weights};
+use crate::{edge::Chain, lattice::Lattice, objective::Weights, step::PreparedStep};
 
 /// What single precision may take off a cost of the table, as a share.
 const SINGLE_PRECISION: f64 = 1e-4;

@@ -5,9 +5,9 @@ use terrain::Terrain;
 
 use crate::{
     error::Error,
+    objective::Objective,
     planner::Planner,
     query::{Comparison, Plan, Query},
-    table::Objective,
 };
 
 /// Finds a path that has least of an objective, or as little as the query's bound asks for.

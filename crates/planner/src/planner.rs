@@ -7,7 +7,7 @@ use std::{
 
 use model::Robot;
 use rayon::prelude::*;
-use terrain::{Cell, CellRange, Terrain};
+use terrain::{CellRange, Terrain};
 
 use crate::{
     astar::{Found, Outcome, Search, search},
@@ -18,10 +18,11 @@ use crate::{
     fields::{FieldCache, FieldKey},
     labels::Workspace,
     lattice::{Lattice, Settings},
+    objective::Objective,
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
     route::Route,
-    table::{CostTable, Objective},
+    table::CostTable,
     uncertainty::energy_interval_j,
 };
 
@@ -192,10 +193,9 @@ impl Planner {
     fn search(&self, ends: &Ends, query: &Query, objective: Objective) -> Result<Found, Error> {
         let table = self.table(objective);
         let goals = ends.goals_with_potential(&self.lattice, objective);
-        let cells: Vec<(Cell, f64)> = goals.iter().map(|(state, after)| (state.cell, *after)).collect();
         let key = FieldKey::new(objective, &ends.goals);
         let late = Error::Timeout { expanded: 0 };
-        let field = self.fields.field(key, table, &cells, ends.start.cell, &query.patience).ok_or(late)?;
+        let field = self.fields.field(key, table, &goals, ends.start.cell, &query.patience).ok_or(late)?;
         let question = Search {
             starts: &ends.starts,
             goals: &goals,
@@ -229,7 +229,7 @@ fn nearest_connected(lattice: &Lattice, field: &GoalField, ends: &Ends) -> Error
     let [sx, sy] = grid.center_m(ends.start.cell);
     let nearest = (0..grid.cells())
         .map(|i| grid.cell(i))
-        .filter(|&cell| field.at(cell).is_finite())
+        .filter(|&cell| field.leads_from(cell))
         .map(|cell| grid.center_m(cell))
         .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
         .min_by(|a, b| a.0.total_cmp(&b.0));

@@ -4,12 +4,12 @@ use crate::{
     course::Course,
     free::FreeGround,
     lattice::Lattice,
+    objective::Objective,
     patience::Patience,
     polish::polish,
     rates::{LevelRates, Radii},
     route::Route,
     shortcut::{best_link, shortcut},
-    table::Objective,
 };
 
 /// A route freed from the lattice.

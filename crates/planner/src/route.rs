@@ -5,8 +5,9 @@ use model::{Acceleration, Manoeuvre, PowerModel, Robot, Sides};
 use crate::{
     edge::Edge,
     lattice::{Lattice, State},
+    objective::Objective,
     step::Step,
-    table::{Objective, cheapest},
+    table::cheapest,
 };
 
 /// One pose along a path, with what the path has cost up to it.

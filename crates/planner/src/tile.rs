@@ -4,16 +4,16 @@ use multiversion::multiversion;
 use terrain::Cell;
 
 use crate::{
+    blocked::Blocked,
     cost::{FORBIDDEN, encode},
     displacement::Displacement,
     edge::Chain,
-    footprint::first_blocked,
     heading::HEADINGS,
     lattice::Lattice,
     layout::TILE,
+    objective::Weights,
     patience::Patience,
     row_step::{Lanes, Pricing, RowStep},
-    table::Weights,
     tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
     window::Window,
 };
@@ -24,6 +24,8 @@ pub(crate) struct TileKernel {
     /// Slots per state.
     pub(crate) stride: usize,
     halo: usize,
+    /// How far from a cell lie those that its motions sweep.
+    swept: usize,
     pricing: Pricing,
     /// Units per joule, metre or second of the objective.
     units: f32,
@@ -33,7 +35,6 @@ pub(crate) struct TileKernel {
 struct RowChain {
     heading: usize,
     motion: usize,
-    reach: u8,
     sweep: Vec<(i32, i32)>,
     steps: Vec<RowStep>,
 }
@@ -50,11 +51,14 @@ impl TileKernel {
         }
         let reads = chains.iter().flat_map(|c| &c.steps).flat_map(RowStep::reads);
         let halo = reads.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
+        let sweeps = chains.iter().flat_map(|c| &c.sweep);
+        let swept = sweeps.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
         let limits = &lattice.limits;
         TileKernel {
             chains,
             stride: lattice.motions_per_state().next_multiple_of(4),
             halo,
+            swept,
             pricing: Pricing {
                 pitch_grade: limits.pitch_grade as f32,
                 roll_grade: limits.roll_grade as f32,
@@ -70,8 +74,7 @@ impl TileKernel {
 
     /// How far from a cell, in cells, lies the ground that its motions depend on; slopes look one further.
     pub(crate) fn reach(&self) -> usize {
-        let swept = self.chains.iter().map(|chain| usize::from(chain.reach)).max().unwrap_or(0);
-        swept.max(self.halo) + 1
+        self.swept.max(self.halo) + 1
     }
 
     /// Costs of all motions from all states of a tile; `None` when patience ends first.
@@ -87,6 +90,7 @@ impl TileKernel {
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
         let mut tile = TileBuilder::new(self.stride, displacements);
         let window = Window::new(lattice, origin, self.halo);
+        let blocked = Blocked::new(&lattice.terrain, origin, self.swept);
         let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
         let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
         for row in 0..rows {
@@ -94,7 +98,7 @@ impl TileKernel {
                 return None;
             }
             evaluate_row(self, &window, row, &mut offered);
-            self.forbid_blocked(lattice, Cell { row: origin.row + row, ..origin }, columns, &mut offered);
+            self.forbid_blocked(&blocked, row, columns, &mut offered);
             take_cheapest(self, &offered, &mut slots);
             tile.store_row(row, &slots);
         }
@@ -102,21 +106,14 @@ impl TileKernel {
     }
 
     /// Forbids motions that would touch blocked ground or start beyond the map.
-    fn forbid_blocked(&self, lattice: &Lattice, west: Cell, columns: usize, offered: &mut [RowCodes]) {
-        let first = lattice.terrain.grid.index(west);
-        let clearance = |x: usize| lattice.clearance.at(first + x);
-        let least = (0..columns).map(clearance).min().unwrap_or(0);
+    fn forbid_blocked(&self, blocked: &Blocked, row: usize, columns: usize, offered: &mut [RowCodes]) {
+        let is_near = blocked.is_near(row);
         for (chain, codes) in self.chains.iter().zip(offered) {
             codes[columns..].fill(FORBIDDEN);
-            if least > chain.reach {
-                continue;
-            }
-            for (x, code) in codes.iter_mut().enumerate().take(columns) {
-                let cell = Cell { column: west.column + x, ..west };
-                let near = *code != FORBIDDEN && clearance(x) <= chain.reach;
-                if near && first_blocked(&lattice.terrain, cell, &chain.sweep).is_some() {
-                    *code = FORBIDDEN;
-                }
+            let mut touched = if is_near { blocked.touched(row, &chain.sweep) } else { 0 };
+            while touched != 0 {
+                codes[touched.trailing_zeros() as usize] = FORBIDDEN;
+                touched &= touched - 1;
             }
         }
     }
@@ -149,8 +146,7 @@ fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCode
 
 impl RowChain {
     fn new(heading: usize, motion: usize, chain: &Chain) -> Self {
-        let (sweep, reach) = chain.sweep();
-        RowChain { heading, motion, reach, sweep: sweep.to_vec(), steps: chain.row_steps().collect() }
+        RowChain { heading, motion, sweep: chain.sweep().to_vec(), steps: chain.row_steps().collect() }
     }
 
     #[inline(always)]

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use multiversion::multiversion;
+
 use crate::{
     cost::FORBIDDEN,
     displacement::Displacement,
@@ -44,27 +46,49 @@ impl<'d> TileBuilder<'d> {
     /// Stores the codes of a row of cells, given slot by slot.
     pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
         let codes = &mut self.codes[row * TILE * slots.len()..][..TILE * slots.len()];
-        // Eight slots at a time, so that neighbouring codes are written together.
-        for (at, eight) in slots.chunks(8).enumerate() {
-            for (x, cell) in codes.chunks_exact_mut(slots.len()).enumerate() {
-                for (code, slot) in cell[8 * at..].iter_mut().zip(eight) {
-                    *code = slot[x];
-                }
-            }
-        }
         let steps = self.displacements.len();
         let least = &mut self.least[row * GROUPS * steps..][..GROUPS * steps];
-        for (i, least) in least.iter_mut().enumerate() {
-            for &slot in &self.displacements[i % steps].slots {
-                lower(least, &slots[slot][i / steps * LANES..][..LANES]);
-            }
-        }
+        store_row(slots, codes, self.displacements, least);
     }
 
     /// Codes by cell, heading and motion, and the least by displacement and cell.
     pub(crate) fn finish(self) -> (Codes, Least) {
         (self.codes.into(), self.least.into())
     }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+fn store_row(slots: &[RowCodes], codes: &mut [u16], displacements: &[Displacement], least: &mut [Lanes]) {
+    let stride = slots.len() / PACKED;
+    let (cells, _) = codes.as_chunks_mut::<PACKED>();
+    for (at, four) in slots.as_chunks::<PACKED>().0.iter().enumerate() {
+        for (x, packed) in pack(four).into_iter().enumerate() {
+            for (slot, code) in cells[x * stride + at].iter_mut().enumerate() {
+                *code = (packed >> (16 * slot)) as u16;
+            }
+        }
+    }
+    let steps = displacements.len();
+    for (i, least) in least.iter_mut().enumerate() {
+        for &slot in &displacements[i % steps].slots {
+            lower(least, &slots[slot][i / steps * LANES..][..LANES]);
+        }
+    }
+}
+
+/// Codes that fill a word; every stride is a multiple of it.
+const PACKED: usize = 4;
+
+/// The codes of each cell in one word, the first slot lowest.
+#[inline(always)]
+fn pack(slots: &[RowCodes; PACKED]) -> [u64; TILE] {
+    let mut packed = [0; TILE];
+    for x in 0..TILE {
+        let low = u32::from(slots[0][x]) | u32::from(slots[1][x]) << 16;
+        let high = u32::from(slots[2][x]) | u32::from(slots[3][x]) << 16;
+        packed[x] = u64::from(low) | u64::from(high) << 32;
+    }
+    packed
 }
 
 /// Lowers codes to others where those are lower.

@@ -2,16 +2,17 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use model::{PowerModel, STANDARD_GRAVITY_MPS2};
+use model::{PowerModel, STANDARD_GRAVITY_MPS2, builtin};
 use petgraph::{
     algo::{bellman_ford, dijkstra},
     graph::NodeIndex,
 };
 use planner::{
-    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Patience, Settings, State,
-    plan,
+    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Search,
+    Settings, State, Workspace, plan, search,
 };
 use rand::RngExt;
+use terrain::{Cell, Grid, Terrain};
 
 mod ground;
 
@@ -130,16 +131,20 @@ fn the_least_energy_equals_bellman_fords_on_energies_that_may_be_negative() {
 fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_costs() {
     let mut random = ground::random(22);
     let mut ended_early = 0;
-    for case in 0..12 {
+    for case in 0..24 {
         let terrain = ground::small_terrain(&mut random, if case % 2 == 1 { 100 } else { 8 });
         let robot = ground::some_robot(&mut random, [0.0, 0.5, 1.0][case % 3]);
         let mut settings = planner::Settings::of(&robot);
         settings.speed_mps = random.random_range(0.1..1.0);
         let lattice = Lattice::new(&terrain, &robot, settings).unwrap();
-        let objective = [Objective::Energy, Objective::Distance, Objective::Time][case / 4];
+        let objective = [Objective::Energy, Objective::Distance, Objective::Time][case / 2 % 3];
         let table = CostTable::new(&lattice, objective, &Patience::default()).unwrap();
         let goal = random.random_range(0..terrain.grid.cells());
-        let goals = [(terrain.grid.cell(goal), 0.0)];
+        // Every heading, one or a few, which do not cost the same.
+        let headings: Vec<Heading> = Heading::all().take([HEADINGS, 1, 3][case / 2 % 5 % 3]).collect();
+        let poses = |cell| headings.iter().map(move |heading| State { cell, heading: *heading });
+        let goals: Vec<(State, f64)> =
+            poses(terrain.grid.cell(goal)).map(|goal| (goal, 3.0 * goal.heading.index() as f64)).collect();
         // Half of the fields end early, soon after one cell.
         let near = |goal: usize| goal.saturating_sub(5);
         let start = terrain.grid.cell(near(goal));
@@ -148,22 +153,22 @@ fn the_field_never_exceeds_the_true_cost_and_never_drops_by_more_than_a_motion_c
         let mut graph = ground::table_graph(&lattice, &table);
         graph.reverse();
         let mut truth = vec![f64::INFINITY; lattice.states()];
-        for heading in 0..HEADINGS {
-            let from = NodeIndex::new(goal * HEADINGS + heading);
+        for (goal, after) in &goals {
+            let from = NodeIndex::new(lattice.index(*goal));
             for (node, cost) in dijkstra(&graph, from, None, |e| *e.weight()) {
-                truth[node.index()] = truth[node.index()].min(cost);
+                truth[node.index()] = truth[node.index()].min(cost + after);
             }
         }
         let whole = GoalField::new(&table, FieldEnds { start: None, ..ends }, &Patience::default()).unwrap();
-        let cells = || (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i));
-        ended_early += usize::from(cells().any(|cell| field.at(cell) < whole.at(cell)));
+        let states = || (0..lattice.states()).map(|i| lattice.state(i));
+        ended_early += usize::from(states().any(|state| field.at(state) < whole.at(state)));
         for (state, truth) in truth.iter().enumerate() {
-            let bound = field.at(terrain.grid.cell(state / HEADINGS));
+            let bound = field.at(lattice.state(state));
             assert!(bound <= truth * (1.0 + 1e-6) + 1e-6, "state {state}: bound {bound} above {truth}");
             for motion in 0..lattice.motions_per_state() {
                 let cost = table.cost(lattice.state(state), motion);
                 let Some(next) = lattice.successor(lattice.state(state), motion) else { continue };
-                let next_bound = field.at(next.cell);
+                let next_bound = field.at(next);
                 assert!(bound <= cost + next_bound + 1e-9, "the bound drops faster than the cost");
             }
         }
@@ -184,18 +189,21 @@ fn the_whole_field_is_everywhere_the_least_of_a_motion_and_the_field_at_its_end(
         let lattice = Lattice::new(&terrain, &robot, Settings::of(&robot)).unwrap();
         let table = CostTable::new(&lattice, Objective::Energy, &Patience::default()).unwrap();
         let goal = terrain.grid.cell(random.random_range(0..terrain.grid.cells()));
-        let ends = FieldEnds { goals: &[(goal, 0.0)], start: None };
+        let goals: Vec<(State, f64)> =
+            Heading::all().map(|h| (State { cell: goal, heading: h }, 0.0)).collect();
+        let ends = FieldEnds { goals: &goals, start: None };
         let field = GoalField::new(&table, ends, &Patience::default()).unwrap();
+        let at = |cell| field.at(State { cell, heading: Heading::new(0) });
         for cell in (0..terrain.grid.cells()).map(|i| terrain.grid.cell(i)).filter(|cell| *cell != goal) {
             let ways = Heading::all().flat_map(|heading| {
                 let state = State { cell, heading };
-                let (lattice, table, field) = (&lattice, &table, &field);
+                let (lattice, table) = (&lattice, &table);
                 (0..lattice.motions_per_state()).filter_map(move |motion| {
                     let next = lattice.successor(state, motion).filter(|next| next.cell != cell)?;
-                    Some(table.cost(state, motion) + field.at(next.cell))
+                    Some(table.cost(state, motion) + at(next.cell))
                 })
             });
-            let (least, held) = (ways.fold(f64::INFINITY, f64::min), field.at(cell));
+            let (least, held) = (ways.fold(f64::INFINITY, f64::min), at(cell));
             assert!(held == least || (held - least).abs() < 1e-6 * least, "{cell:?}: {held}, not {least}");
         }
     }
@@ -238,5 +246,35 @@ fn the_table_holds_each_motions_own_cost_rounded_up_by_less_than_its_rounding() 
             }
         }
         assert!(forbidden_differently <= 5, "{forbidden_differently} of 5000");
+    }
+}
+
+#[test]
+fn a_turn_at_the_goal_hardly_costs_a_search_more_than_any_heading_there() {
+    let grid = Grid { rows: 200, columns: 200, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let level = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
+    let robot = builtin::husky_a200();
+    let lattice = Lattice::new(&level, &robot, Settings::of(&robot)).unwrap();
+    let table = CostTable::lazy(&lattice, Objective::Energy);
+    let cell = |column| Cell { row: 100, column };
+    let starts = [State { cell: cell(80), heading: Heading::new(0) }];
+    let patience = Patience::default();
+    let expanded = |headings: &[Heading]| {
+        let goals: Vec<(State, f64)> =
+            headings.iter().map(|heading| (State { cell: cell(120), heading: *heading }, 0.0)).collect();
+        let ends = FieldEnds { goals: &goals, start: Some(cell(80)) };
+        let field = GoalField::new(&table, ends, &patience).unwrap();
+        let query = Search { starts: &starts, goals: &goals, besides: 0.0, bound: 1.0, patience: &patience };
+        match search(&table, &field, &query, &mut Workspace::of(&lattice)) {
+            Outcome::Found(found) => found.expanded,
+            other => panic!("{other:?}"),
+        }
+    };
+    let all: Vec<Heading> = Heading::all().collect();
+    let open = expanded(&all);
+    for heading in all {
+        // Without the turn worked out beforehand it would be up to two hundred times as many.
+        let fixed = expanded(&[heading]);
+        assert!(fixed <= 8 * open, "{fixed} expansions for {heading:?}, {open} for any heading");
     }
 }

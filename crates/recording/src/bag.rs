@@ -3,11 +3,12 @@
 //! The `rosbag` crate needs the index at the end of the file, which a bag that was cut off lacks, and allocates what a chunk
 //! claims; so the records are read here.
 
-use std::io::{BufReader, Read};
+use std::io::Read;
 
 use crate::{
-    Error, Map, Repair,
+    Error, Map,
     compression::{LONGEST_BYTES, decompress},
+    container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
     topic::{Schema, Topics},
@@ -47,16 +48,10 @@ impl<'b> Header<'b> {
 
 /// Reads a bag front to back; its index is not needed, so one that was cut off is read as far as it goes.
 pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
-    let mut source = BufReader::with_capacity(1 << 20, source);
+    let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
+    let mut source = opened(source, MAGIC, "ROS 1 bag", older)?;
+    let mut topics = topics(map)?;
     let mut header = Vec::new();
-    read_up_to(&mut source, MAGIC.len() as u64, &mut header)?;
-    if header != MAGIC {
-        let reason = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`".into();
-        return Err(Error::NotTheFormat { format: "ROS 1 bag", reason });
-    }
-    let husky = Map::built_in("husky");
-    let map = map.or(husky.as_ref()).ok_or(Error::Empty { found: "no map".into() })?;
-    let mut topics = Topics::new(map);
     let (mut body, mut plain) = (Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
     loop {
@@ -64,7 +59,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
             // A bag has no end mark: it ends where no record begins.
             Ended::Before => break,
             Ended::Within => {
-                tell(&mut topics, at, "the file breaks off; everything before was read");
+                topics.tell(at, ENDS_EARLY);
                 break;
             }
             Ended::Not(bytes) => bytes,
@@ -73,21 +68,17 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
             if Header(&header).operation() == Some(CHUNK) {
                 chunk(&Header(&header), &body, at, false, &mut plain, &mut topics)?;
             }
-            tell(&mut topics, at, "the file breaks off in this record; what is whole was read");
+            topics.tell(at, BREAKS_OFF);
             break;
         };
         match Header(&header).operation() {
             Some(CHUNK) => chunk(&Header(&header), &body, at, true, &mut plain, &mut topics)?,
             Some(_) => record(&Header(&header), &body, at, &mut topics)?,
-            None => tell(&mut topics, at, "a record does not say what it is; it was left out"),
+            None => topics.tell(at, "a record does not say what it is; it was left out"),
         }
         at = at.saturating_add(8).saturating_add(header_bytes).saturating_add(body_bytes);
     }
     topics.finish(name, "ROS 1 bag")
-}
-
-fn tell(topics: &mut Topics<'_>, at: u64, what: &str) {
-    topics.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
 }
 
 /// Whether the file ended while a part of a record was read.
@@ -115,7 +106,7 @@ fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) ->
     match (header.operation(), connection) {
         (Some(MESSAGE), Some(connection)) => {
             let Some(time) = header.number::<8>("time") else {
-                tell(topics, at, "a message has no time; it was left out");
+                topics.tell(at, "a message has no time; it was left out");
                 return Ok(());
             };
             let packed = u64::from_le_bytes(time);
@@ -145,12 +136,12 @@ fn chunk(
     topics: &mut Topics<'_>,
 ) -> Result<(), Error> {
     let (Some(compression), Some(size)) = (header.get("compression"), header.number("size")) else {
-        tell(topics, at, "a chunk does not say how it is compressed; it was left out");
+        topics.tell(at, "a chunk does not say how it is compressed; it was left out");
         return Ok(());
     };
     match decompress(compression, body, u64::from(u32::from_le_bytes(size)), plain) {
-        Err(reason) => tell(topics, at, &format!("{reason}; the chunk was left out")),
-        Ok(false) if whole => tell(topics, at, "a chunk cannot be decompressed; it was left out"),
+        Err(reason) => topics.tell(at, &format!("{reason}; the chunk was left out")),
+        Ok(false) if whole => topics.tell(at, UNPACKABLE),
         Ok(_) => {
             let mut cursor = Cursor::packed(plain);
             let mut next = || Ok::<_, Short>((cursor.counted()?, cursor.counted()?));

@@ -5,9 +5,11 @@ use std::io::{BufRead, BufReader, Read};
 use ::csv::{ByteRecord, ErrorKind, ReaderBuilder};
 
 use crate::{
-    Error, Labels, Map, Repair,
+    Error, Map, Repair,
     column::{Column, Kind, Plan},
     error::{Position, excerpt},
+    label_column::{LabelColumn, MOST_NAMES},
+    limit::refuse_too_many,
     reading::{Part, Reading},
 };
 
@@ -34,7 +36,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
         .kinds
         .iter()
         .map(|kind| match kind {
-            Kind::Label => Column::Labels(Labels::default()),
+            Kind::Label => Column::Labels(LabelColumn::default()),
             Kind::Number | Kind::Perhaps => Column::Numbers(Vec::new()),
         })
         .collect();
@@ -56,6 +58,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
             return Err(Error::Csv { line, message });
         }
         lines.push(line);
+        refuse_too_many(lines.rows, headers.len())?;
         for (index, cell) in record.iter().enumerate() {
             push(&mut columns[index], plan.kinds[index], cell, &headers[index], line)?;
         }
@@ -112,7 +115,12 @@ fn push(column: &mut Column, kind: Kind, cell: &[u8], name: &str, line: u64) -> 
                 });
             }
         },
-        Column::Labels(labels) => labels.push(String::from_utf8_lossy(cell).trim()),
+        Column::Labels(labels) => {
+            if !labels.push(String::from_utf8_lossy(cell).trim()) {
+                let (position, column) = (Position::Line(line), name.to_owned());
+                return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
+            }
+        }
         Column::Unusable(_) => {}
     }
     Ok(())

@@ -2,6 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::error::excerpt;
+
+/// Most fields of one message; real ones stay below 300.
+const MOST_FIELDS: usize = 4096;
+
 /// A number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Primitive {
@@ -80,7 +85,17 @@ impl Definition {
                 continue;
             }
             if let Some(field) = field(line, &name)? {
-                messages.entry(name.clone()).or_default().push(field);
+                let fields: &mut Vec<Field> = messages.entry(name.clone()).or_default();
+                if fields.iter().any(|other| other.name == field.name) {
+                    return Err(format!(
+                        "its definition has two fields `{}` in {name}",
+                        excerpt(&field.name)
+                    ));
+                }
+                if fields.len() == MOST_FIELDS {
+                    return Err(format!("its definition has more than {MOST_FIELDS} fields in {name}"));
+                }
+                fields.push(field);
             }
         }
         Ok(Definition { root, messages })

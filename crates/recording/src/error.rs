@@ -156,6 +156,29 @@ pub enum Error {
         /// What was wrong with the first.
         reason: String,
     },
+    /// A text column with so many names that it must be something else.
+    #[error(
+        "{position}, column `{column}`: more than {most} different names; is it a number? Rename the column"
+    )]
+    TooManyNames {
+        /// Line or row.
+        position: Position,
+        /// The column.
+        column: String,
+        /// The most that are read.
+        most: usize,
+    },
+    /// More numbers than are held in memory.
+    #[error(
+        "the recording holds more than {most} numbers, which do not fit in memory together: cut it into several files, or name fewer columns or topics in a map"
+    )]
+    TooLarge {
+        /// The most that are read.
+        most: usize,
+    },
+    /// Who asked for it stopped the reading.
+    #[error("the reading was stopped")]
+    Stopped,
     /// The file holds no rows or no messages of the topics that the map names.
     #[error("there is nothing to read: {found}")]
     Empty {

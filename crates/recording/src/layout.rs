@@ -4,6 +4,7 @@ use crate::{
     cursor::{Cursor, Encoding, Short},
     definition::{Base, Count, Definition, Field, Primitive},
     field::{Angle, Pick, Resolved, Segment, resolve},
+    walk::{Found, Node, Picked},
 };
 
 /// Deepest nesting and most fields that a message may have; real ones stay below 10 and 300.
@@ -35,41 +36,11 @@ enum ValueKind {
     Angle([usize; 4], Angle),
 }
 
-#[derive(Clone, Debug)]
-enum Node {
-    Number(Primitive, Option<usize>),
-    Text,
-    /// Seconds and nanoseconds; wanted together.
-    Time(Option<[usize; 2]>),
-    Message(Vec<Node>),
-    Array {
-        count: Option<usize>,
-        element: Box<Node>,
-        picks: Vec<(Picked, Node)>,
-        /// Texts looked for among the elements, and under which key their place is kept.
-        keys: Vec<(String, usize)>,
-    },
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Picked {
-    At(usize),
-    Key(usize),
-}
-
 /// A number wanted: the rest of its path, and the slots that it goes to.
 #[derive(Clone, Debug)]
 struct Want<'p> {
     path: &'p [Segment],
     slots: [usize; 2],
-}
-
-/// What a walk has found.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Found {
-    slots: Vec<f64>,
-    keys: Vec<Option<usize>>,
-    wanted: usize,
 }
 
 impl Layout {
@@ -148,7 +119,9 @@ impl Layout {
         // Seconds and nanoseconds are whole numbers below 2³², which doubles hold exactly.
         let [seconds, nanoseconds] = self.stamp.unwrap_or_default().map(|slot| found.slots.get(slot));
         let whole = |part: Option<&f64>| part.map(|part| *part as i64);
-        let stamp = whole(seconds).zip(whole(nanoseconds)).map(|(s, ns)| s * 1_000_000_000 + ns);
+        let stamp = whole(seconds)
+            .zip(whole(nanoseconds))
+            .and_then(|(s, ns)| s.checked_mul(1_000_000_000)?.checked_add(ns));
         Ok(stamp.filter(|_| self.stamp.is_some()))
     }
 }
@@ -272,138 +245,6 @@ impl Builder<'_> {
                 let fields = fields.ok_or_else(|| format!("its definition lacks {name}"))?;
                 Node::Message(self.message(fields, wants, depth + 1)?)
             }
-        })
-    }
-}
-
-impl Node {
-    fn walk(&self, cursor: &mut Cursor<'_>, found: &mut Found) -> Result<(), Short> {
-        match self {
-            Node::Number(primitive, None) => {
-                cursor.align(primitive.bytes())?;
-                cursor.skip(primitive.bytes())
-            }
-            Node::Number(primitive, Some(slot)) => {
-                let value = primitive.read(cursor)?;
-                found.keep(*slot, value);
-                Ok(())
-            }
-            Node::Text => cursor.text().map(|_| ()),
-            Node::Time(slots) => {
-                let (seconds, nanoseconds) = (cursor.u32()?, cursor.u32()?);
-                if let Some([first, second]) = slots {
-                    found.keep(*first, f64::from(seconds));
-                    found.keep(*second, f64::from(nanoseconds));
-                }
-                Ok(())
-            }
-            Node::Message(nodes) => {
-                for node in nodes {
-                    node.walk(cursor, found)?;
-                    if found.wanted == 0 {
-                        return Ok(());
-                    }
-                }
-                Ok(())
-            }
-            Node::Array { count, element, picks, keys } => {
-                let count = match count {
-                    Some(count) => *count,
-                    None => cursor.u32()? as usize,
-                };
-                Node::walk_array(count, element, picks, keys, cursor, found)
-            }
-        }
-    }
-
-    fn walk_array(
-        count: usize,
-        element: &Node,
-        picks: &[(Picked, Node)],
-        keys: &[(String, usize)],
-        cursor: &mut Cursor<'_>,
-        found: &mut Found,
-    ) -> Result<(), Short> {
-        if count == 0 || element.is_empty() {
-            return Ok(());
-        }
-        // Every element has at least one byte, so a count that lies is caught before it costs time.
-        if count > cursor.left() {
-            return Err(Short);
-        }
-        if let Node::Number(primitive, _) = element {
-            let bytes = primitive.bytes();
-            cursor.align(bytes)?;
-            for (picked, node) in picks {
-                if let Some(place) = found.place(*picked).filter(|place| *place < count) {
-                    let mut there = *cursor;
-                    there.skip(place.checked_mul(bytes).ok_or(Short)?)?;
-                    node.walk(&mut there, found)?;
-                }
-            }
-            return cursor.skip(count.checked_mul(bytes).ok_or(Short)?);
-        }
-        for place in 0..count {
-            if found.wanted == 0 {
-                return Ok(());
-            }
-            if let (Node::Text, false) = (element, keys.is_empty()) {
-                let text = cursor.text()?;
-                for (_, key) in keys.iter().filter(|(looked_for, _)| looked_for.as_bytes() == text) {
-                    found.keys[*key] = Some(place);
-                }
-                continue;
-            }
-            let before = *cursor;
-            element.walk(cursor, found)?;
-            for (picked, node) in picks {
-                if found.place(*picked) == Some(place) {
-                    node.walk(&mut before.clone(), found)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether it takes no bytes at all.
-    fn is_empty(&self) -> bool {
-        match self {
-            Node::Message(nodes) => nodes.iter().all(Node::is_empty),
-            Node::Array { count, element, .. } => {
-                *count == Some(0) || (count.is_some() && element.is_empty())
-            }
-            Node::Number(..) | Node::Text | Node::Time(_) => false,
-        }
-    }
-}
-
-impl Found {
-    fn keep(&mut self, slot: usize, value: f64) {
-        self.slots[slot] = value;
-        self.wanted = self.wanted.saturating_sub(1);
-    }
-
-    fn place(&self, picked: Picked) -> Option<usize> {
-        match picked {
-            Picked::At(place) => Some(place),
-            Picked::Key(key) => self.keys.get(key).copied().flatten(),
-        }
-    }
-}
-
-impl Primitive {
-    fn read(self, cursor: &mut Cursor<'_>) -> Result<f64, Short> {
-        Ok(match self {
-            Primitive::I8 => f64::from(i8::from_le_bytes(cursor.number()?)),
-            Primitive::U8 => f64::from(u8::from_le_bytes(cursor.number()?)),
-            Primitive::I16 => f64::from(i16::from_le_bytes(cursor.number()?)),
-            Primitive::U16 => f64::from(u16::from_le_bytes(cursor.number()?)),
-            Primitive::I32 => f64::from(i32::from_le_bytes(cursor.number()?)),
-            Primitive::U32 => f64::from(u32::from_le_bytes(cursor.number()?)),
-            Primitive::I64 => i64::from_le_bytes(cursor.number()?) as f64,
-            Primitive::U64 => u64::from_le_bytes(cursor.number()?) as f64,
-            Primitive::F32 => f64::from(f32::from_le_bytes(cursor.number()?)),
-            Primitive::F64 => f64::from_le_bytes(cursor.number()?),
         })
     }
 }

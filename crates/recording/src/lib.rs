@@ -10,16 +10,22 @@ pub mod align;
 mod bag;
 mod channel;
 mod column;
+mod combine;
 mod compression;
+mod container;
 mod csv;
 mod cursor;
 mod definition;
+mod divide;
 mod error;
 mod field;
 mod gap;
+mod label_column;
 mod layout;
+mod limit;
 mod map;
 mod mcap;
+mod merge;
 mod parquet;
 mod reading;
 mod recording;
@@ -28,14 +34,20 @@ mod stream;
 mod suspicion;
 mod topic;
 mod units;
+mod walk;
+mod watch;
 
 pub use channel::{Channel, Quantity};
+pub use combine::Combine;
 pub use error::Error;
-pub use map::{Combine, Map, Place, Source, Stamp, Target};
-pub use reading::{Format, Reading, read, read_path, read_paths};
+pub use map::{Map, Place, Source, Stamp, Target};
+pub use reading::{
+    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
+};
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{
     AlignmentReport, ChannelReport, Ignored, ReadingReport, Repair, RunReport, StreamReport, Suspicion,
     SuspicionKind,
 };
 pub use units::{Conversion, unit_names};
+pub use watch::Watch;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Channel, Conversion, Error, Quantity, units};
+use crate::{Channel, Combine, Conversion, Error, Quantity, units};
 
 /// A checked map. Read from JSON:
 ///
@@ -87,19 +87,6 @@ pub enum Place {
         /// Field paths.
         fields: Vec<String>,
     },
-}
-
-/// How several columns or fields become one value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Combine {
-    /// Their mean, as of the wheels of a side.
-    #[default]
-    Mean,
-    /// Their sum, as of currents.
-    Sum,
-    /// Their product, as of current and voltage.
-    Product,
 }
 
 /// Which of a message's times counts.

@@ -3,14 +3,12 @@
 //! The records are framed here rather than by the `mcap` crate: its readers give up a chunk that is cut off, and subtract
 //! lengths unchecked in chunks that are not compressed.
 
-use std::{
-    collections::BTreeMap,
-    io::{BufReader, Read},
-};
+use std::{collections::BTreeMap, io::Read};
 
 use crate::{
-    Error, Map, Repair,
+    Error, Map,
     compression::{LONGEST_BYTES, decompress},
+    container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
     topic::{Schema, Topics},
@@ -43,22 +41,15 @@ struct Reader<'m> {
 
 /// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
 pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
-    let mut source = BufReader::with_capacity(1 << 20, source);
+    let mut source = opened(source, MAGIC, "MCAP", "it does not begin with the MCAP magic")?;
+    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map)?, plain: Vec::new() };
     let mut bytes = Vec::new();
-    read_up_to(&mut source, MAGIC.len() as u64, &mut bytes)?;
-    if bytes != MAGIC {
-        let reason = "it does not begin with the MCAP magic".into();
-        return Err(Error::NotTheFormat { format: "MCAP", reason });
-    }
-    let husky = Map::built_in("husky");
-    let map = map.or(husky.as_ref()).ok_or(Error::Empty { found: "no map".into() })?;
-    let mut reader = Reader { schemas: BTreeMap::new(), topics: Topics::new(map), plain: Vec::new() };
     let mut at = MAGIC.len() as u64;
     loop {
         let framed = read_up_to(&mut source, FRAME_BYTES, &mut bytes)?;
         let mut frame = Cursor::packed(&bytes);
         let Some((opcode, length)) = framed.then(|| frame_of(&mut frame)).and_then(Result::ok) else {
-            reader.tell(at, "the file breaks off; everything before was read");
+            reader.tell(at, ENDS_EARLY);
             break;
         };
         if opcode == DATA_END {
@@ -78,7 +69,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
             reader.record(opcode, &bytes, at, whole)?;
         }
         if !whole {
-            reader.tell(at, "the file breaks off in this record; what is whole was read");
+            reader.tell(at, BREAKS_OFF);
             break;
         }
         at = at.saturating_add(FRAME_BYTES).saturating_add(length);
@@ -93,7 +84,7 @@ fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
 
 impl Reader<'_> {
     fn tell(&mut self, at: u64, what: &str) {
-        self.topics.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
+        self.topics.tell(at, what);
     }
 
     /// Reads a record. What a broken one says is told, not trusted.
@@ -183,7 +174,7 @@ impl Reader<'_> {
             Ok(true) if checksum != 0 && crc32fast::hash(&plain) != checksum => {
                 self.tell(at, "a chunk fails its checksum; it was left out");
             }
-            Ok(false) if whole => self.tell(at, "a chunk cannot be decompressed; it was left out"),
+            Ok(false) if whole => self.tell(at, UNPACKABLE),
             Ok(_) => self.records(&plain, at)?,
         }
         self.plain = plain;

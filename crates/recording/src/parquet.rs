@@ -11,9 +11,11 @@ use ::parquet::{
 };
 
 use crate::{
-    Error, Labels, Map,
+    Error, Map,
     column::{Column, Kind, Plan},
     error::Position,
+    label_column::{LabelColumn, MOST_NAMES},
+    limit::refuse_too_many,
     reading::{Part, Reading},
 };
 
@@ -55,6 +57,13 @@ fn refuse_contradictions<R: ChunkReader + 'static>(
     file: &SerializedFileReader<R>,
     file_bytes: u64,
 ) -> Result<(), Error> {
+    let rows = file
+        .metadata()
+        .row_groups()
+        .iter()
+        .map(|group| usize::try_from(group.num_rows()).unwrap_or(usize::MAX));
+    let rows = rows.fold(0usize, usize::saturating_add);
+    refuse_too_many(rows, file.metadata().file_metadata().schema_descr().num_columns())?;
     for group in file.metadata().row_groups() {
         for column in group.columns() {
             let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
@@ -84,8 +93,16 @@ fn read_column<R: ChunkReader + 'static>(
         }
     };
     let mut column = match kind {
-        Kind::Label => Column::Labels(Labels::default()),
+        Kind::Label => Column::Labels(LabelColumn::default()),
         Kind::Number | Kind::Perhaps => Column::Numbers(Vec::new()),
+    };
+    let mut rows = 0;
+    let mut too_many = None;
+    let mut add = |labels: &mut LabelColumn, name: &str| {
+        rows += 1;
+        if !labels.push(name) {
+            too_many.get_or_insert(rows);
+        }
     };
     for group in 0..file.num_row_groups() {
         let reader = file.get_row_group(group)?.get_column_reader(index)?;
@@ -106,17 +123,21 @@ fn read_column<R: ChunkReader + 'static>(
             }
             (ColumnReader::ByteArrayColumnReader(r), Column::Labels(labels)) => {
                 for_each(r, full, |text: Option<&ByteArray>| {
-                    labels.push(text.and_then(|text| text.as_utf8().ok()).unwrap_or_default());
+                    add(labels, text.and_then(|text| text.as_utf8().ok()).unwrap_or_default());
                 })?;
             }
             (ColumnReader::Int32ColumnReader(r), Column::Labels(labels)) => {
-                for_each(r, full, |x: Option<&i32>| labels.push(&x.map_or(String::new(), i32::to_string)))?;
+                for_each(r, full, |x: Option<&i32>| add(labels, &x.map_or(String::new(), i32::to_string)))?;
             }
             (ColumnReader::Int64ColumnReader(r), Column::Labels(labels)) => {
-                for_each(r, full, |x: Option<&i64>| labels.push(&x.map_or(String::new(), i64::to_string)))?;
+                for_each(r, full, |x: Option<&i64>| add(labels, &x.map_or(String::new(), i64::to_string)))?;
             }
             _ => return Ok(Column::Unusable("its type changes within the file".into())),
         }
+    }
+    if let Some(row) = too_many {
+        let (position, column) = (Position::Row(row), descriptor.path().string());
+        return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
     }
     if let (Kind::Number, Column::Numbers(values)) = (kind, &column)
         && let Some(row) = values.iter().position(|value| value.is_infinite())

@@ -3,11 +3,16 @@
 use std::{
     fs::File,
     io::{Cursor, Read},
+    ops::ControlFlow,
     path::Path,
+    sync::{Arc, atomic::Ordering},
 };
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
-    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, bag, csv, mcap, parquet, suspicion,
+    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Watch, bag, csv, mcap, parquet,
+    suspicion, watch::Watched,
 };
 
 /// A recording and what reading it found.
@@ -20,7 +25,9 @@ pub struct Reading {
 }
 
 /// A file format of recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum Format {
     /// Comma-, semicolon- or tab-separated text with a header line.
     Csv,
@@ -57,20 +64,50 @@ impl Format {
 /// # Errors
 /// What is wrong, with file and line, row or topic.
 pub fn read_path(path: &Path, map: Option<&Map>) -> Result<Reading, Error> {
+    read_path_watched(path, map, &unwatched())
+}
+
+/// Reads a file as [`read_path`] does, followed by a watch.
+///
+/// # Errors
+/// As [`read_path`], and [`Error::Stopped`] when the watch breaks.
+pub fn read_path_watched(path: &Path, map: Option<&Map>, watch: &Watch) -> Result<Reading, Error> {
     let read = || {
         let format = Format::of(path)?;
-        let file = File::open(path)?;
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
-        match format {
-            Format::Csv => csv::read(file, name, map),
-            Format::Parquet => parquet::read(file, name, map),
-            Format::Mcap => mcap::read(file, name, map),
-            Format::Bag => bag::read(file, name, map),
-        }
+        read_file(File::open(path)?, format, name, map, watch)
     };
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
     reading.report.source = path.display().to_string();
     Ok(reading)
+}
+
+/// Reads an open file of a known format, followed by a watch. The name becomes that of the run where the recording has
+/// none of its own.
+///
+/// # Errors
+/// What is wrong, with line, row or topic; [`Error::Stopped`] when the watch breaks.
+pub fn read_file(
+    file: File,
+    format: Format,
+    name: &str,
+    map: Option<&Map>,
+    watch: &Watch,
+) -> Result<Reading, Error> {
+    let file = Watched::new(file, Arc::clone(watch));
+    let stopped = file.stopped();
+    let reading = match format {
+        Format::Csv => csv::read(file, name, map),
+        Format::Parquet => parquet::read(file, name, map),
+        Format::Mcap => mcap::read(file, name, map),
+        Format::Bag => bag::read(file, name, map),
+    };
+    if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
+}
+
+/// A watch that lets everything pass.
+fn unwatched() -> Watch {
+    Arc::new(|_| ControlFlow::Continue(()))
 }
 
 /// Reads several files and puts their runs behind one another.
@@ -81,9 +118,21 @@ pub fn read_paths<P: AsRef<Path>>(
     paths: &[P],
     map: Option<&Map>,
 ) -> Result<(Recording, Vec<ReadingReport>), Error> {
+    read_paths_watched(paths, map, &unwatched())
+}
+
+/// Reads several files as [`read_paths`] does, followed by a watch.
+///
+/// # Errors
+/// As [`read_paths`], and [`Error::Stopped`] when the watch breaks.
+pub fn read_paths_watched<P: AsRef<Path>>(
+    paths: &[P],
+    map: Option<&Map>,
+    watch: &Watch,
+) -> Result<(Recording, Vec<ReadingReport>), Error> {
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for path in paths {
-        let reading = read_path(path.as_ref(), map)?;
+        let reading = read_path_watched(path.as_ref(), map, watch)?;
         recordings.push(reading.recording);
         reports.push(reading.report);
     }

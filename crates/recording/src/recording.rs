@@ -1,6 +1,9 @@
 //! The table that every format is read into.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{
+    collections::{BTreeMap, HashMap},
+    ops::Range,
+};
 
 use serde::Serialize;
 
@@ -46,6 +49,7 @@ pub struct Labels {
 
 /// In which of the contract's forms a recording tells power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PowerForm {
     /// `power_left_w` and `power_right_w`.
@@ -66,6 +70,12 @@ impl PowerForm {
         (PowerForm::CurrentAndVoltage, [Channel::Current, Channel::Voltage]),
         (PowerForm::MotorCurrents, [Channel::LeftMotorCurrent, Channel::RightMotorCurrent]),
     ];
+
+    /// The channels that it needs.
+    pub(crate) fn channels(self) -> [Channel; 2] {
+        let own = PowerForm::ALL.iter().find(|(form, _)| *form == self);
+        own.map_or([Channel::Power; 2], |(_, channels)| *channels)
+    }
 }
 
 impl Recording {
@@ -168,30 +178,15 @@ impl Labels {
         Labels { names: Vec::new(), index: vec![Labels::NONE; rows] }
     }
 
-    /// Adds a row; an empty name is none.
-    pub(crate) fn push(&mut self, name: &str) {
-        let index = match self.index.last() {
-            // Names come in long stretches, so the last one is looked at first.
-            Some(&last) if self.names.get(last as usize).is_some_and(|known| known == name) => last,
-            _ => self.index_of(name),
-        };
-        self.index.push(index);
-    }
-
-    fn index_of(&mut self, name: &str) -> u32 {
-        if name.is_empty() {
-            return Labels::NONE;
-        }
-        let known = self.names.iter().position(|known| known == name);
-        let position = known.unwrap_or_else(|| {
-            self.names.push(name.to_owned());
-            self.names.len() - 1
-        });
-        u32::try_from(position).unwrap_or(Labels::NONE)
-    }
-
     fn append(&mut self, part: &Labels) {
-        let renamed: Vec<u32> = part.names.iter().map(|name| self.index_of(name)).collect();
+        let mut known: HashMap<String, u32> = self.names.iter().cloned().zip(0u32..).collect();
+        let mut index_of = |name: &String| {
+            *known.entry(name.clone()).or_insert_with(|| {
+                self.names.push(name.clone());
+                u32::try_from(self.names.len() - 1).unwrap_or(Labels::NONE)
+            })
+        };
+        let renamed: Vec<u32> = part.names.iter().map(&mut index_of).collect();
         let new = |index: &u32| renamed.get(*index as usize).copied().unwrap_or(Labels::NONE);
         self.index.extend(part.index.iter().map(new));
     }

@@ -8,6 +8,7 @@ use crate::{Channel, PowerForm, Recording, gap};
 
 /// What was found, used, left aside, repaired, missing and suspicious.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ReadingReport {
     /// The file, or the name that the reader was given.
     pub source: String,
@@ -39,6 +40,7 @@ pub struct ReadingReport {
 
 /// One drive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct RunReport {
     /// Its name.
     pub run: String,
@@ -56,8 +58,10 @@ pub struct RunReport {
 
 /// One channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ChannelReport {
     /// Which.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "power_w"))]
     pub channel: Channel,
     /// The column, or topic and field, that it came from.
     pub from: String,
@@ -75,6 +79,7 @@ pub struct ChannelReport {
 
 /// A column, topic or source that was not used.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Ignored {
     /// Its name.
     pub name: String,
@@ -84,6 +89,7 @@ pub struct Ignored {
 
 /// The messages of one topic.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct StreamReport {
     /// The topic.
     pub topic: String,
@@ -99,6 +105,7 @@ pub struct StreamReport {
 
 /// How streams were brought onto one clock.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct AlignmentReport {
     /// The topic whose stamps became the rows.
     pub base: String,
@@ -110,6 +117,7 @@ pub struct AlignmentReport {
 
 /// What was wrong with the file and mended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Repair {
     /// Where: line, row, byte or topic.
     pub place: String,
@@ -119,6 +127,7 @@ pub struct Repair {
 
 /// What kind of doubt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SuspicionKind {
     /// The same value in every row.
@@ -139,8 +148,10 @@ pub enum SuspicionKind {
 
 /// A doubt about a channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Suspicion {
     /// Which channel.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "power_w"))]
     pub channel: Channel,
     /// In which run; `None` for the whole recording.
     pub run: Option<String>,

@@ -33,6 +33,7 @@ pub(crate) fn find(recording: &Recording) -> Vec<Suspicion> {
         doubts.extend(magnitude(channel, &present).map(|statement| doubt(Kind::Unit, statement)));
     }
     for run in &recording.runs {
+        doubts.extend(empty(recording, run));
         for channel in [Channel::LeftSpeed, Channel::RightSpeed, Channel::YawRate] {
             let values = recording.channel(channel).and_then(|values| values.get(run.rows.clone()));
             if let Some(statement) = values.and_then(lone_flips) {
@@ -59,6 +60,19 @@ fn sparse(present: usize, rows: usize) -> Option<String> {
     let missing = rows - present;
     // More gaps than values: what is fitted to the rest describes the minority of the drive.
     (missing > present).then(|| format!("{missing} of {rows} rows have no value"))
+}
+
+/// A run that tells nothing: of one of the channels that are needed it has no value.
+fn empty(recording: &Recording, run: &Run) -> Option<Suspicion> {
+    let power = recording.power_form()?.channels();
+    let needed = [Channel::LeftSpeed, Channel::RightSpeed].into_iter().chain(power);
+    let lacks = |channel: &Channel| {
+        let values = recording.channel(*channel).and_then(|values| values.get(run.rows.clone()));
+        values.is_some_and(|values| values.iter().all(|value| value.is_nan()))
+    };
+    let channel = needed.into_iter().find(lacks)?;
+    let statement = format!("it has no value in {} rows, so that this run tells nothing", run.rows.len());
+    Some(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Sparse, statement })
 }
 
 fn constant(present: &[f64]) -> Option<String> {
@@ -280,5 +294,24 @@ mod tests {
         assert_eq!(drive(C::YawRate, |_, w| w.to_degrees()), [(C::YawRate, Kind::Unit); 2]);
         assert_eq!(drive(C::LeftSpeed, |r, v| if r == 200 { -v } else { v }), [(C::LeftSpeed, Kind::Sign)]);
         assert_eq!(drive(C::Pitch, |_, p| 10.0 * p), [(C::Pitch, Kind::Unit)]);
+    }
+
+    #[test]
+    fn currents_without_a_sign_are_named_when_the_wheels_turn_both_ways() {
+        let t_s: Vec<f64> = (0..ROWS).map(|row| row as f64 * 0.1).collect();
+        let speed_mps: Vec<f64> = t_s.iter().map(|t| 0.5 * t.sin()).collect();
+        let find = |current: fn(&f64) -> f64| {
+            let current_a: Vec<f64> = speed_mps.iter().map(current).collect();
+            let channels = BTreeMap::from([
+                (Channel::LeftSpeed, speed_mps.clone()),
+                (Channel::RightSpeed, speed_mps.clone()),
+                (Channel::LeftMotorCurrent, current_a.clone()),
+                (Channel::RightMotorCurrent, current_a),
+            ]);
+            let runs = vec![Run::new("drive".into(), 0..ROWS, &t_s, None)];
+            let recording = Recording { t_s: t_s.clone(), channels, runs, ..Recording::default() };
+            find(&recording).into_iter().filter(|doubt| doubt.kind == Kind::Unsigned).count()
+        };
+        assert_eq!((find(|v| 8.0 * v.abs() + 0.5), find(|v| 8.0 * v)), (2, 0));
     }
 }

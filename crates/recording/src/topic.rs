@@ -1,42 +1,36 @@
-//! From the messages of a container to a recording: the topics that the map names, read by their definitions.
+//! The messages of a container: the topics that the map names, read by their definitions.
 
 use std::collections::BTreeMap;
 
 use crate::{
-    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
-    align::{Between, interpolate},
-    cursor::Encoding,
-    definition::Definition,
-    gap,
-    layout::{Found, Layout},
-    map::{Place, Target},
-    reading::{Part, Reading},
-    report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
-    stream::{Samples, Stream},
+    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout,
+    limit::refuse_too_many, map::Place, stream::Samples, walk::Found,
 };
 
 /// The topics of a file while it is read.
 pub(crate) struct Topics<'m> {
-    map: &'m Map,
+    pub(crate) map: &'m Map,
     /// By the container's number of a connection or channel, which topic it feeds.
     connections: BTreeMap<u32, Option<usize>>,
-    topics: Vec<Topic>,
-    names: Vec<String>,
-    ignored: Vec<Ignored>,
+    pub(crate) topics: Vec<Topic>,
+    pub(crate) names: Vec<String>,
+    pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
     found: Found,
+    /// Numbers held by all topics.
+    pub(crate) numbers: usize,
 }
 
-struct Topic {
-    name: String,
-    type_name: String,
+pub(crate) struct Topic {
+    pub(crate) name: String,
+    pub(crate) type_name: String,
     layout: Layout,
     /// Sources of the map that it feeds, and how many values of a message each takes.
-    sources: Vec<(usize, usize)>,
+    pub(crate) sources: Vec<(usize, usize)>,
     values: Vec<f64>,
-    samples: Samples,
-    bad: usize,
-    first_bad: Option<String>,
+    pub(crate) samples: Samples,
+    pub(crate) bad: usize,
+    pub(crate) first_bad: Option<String>,
 }
 
 /// How a container says that its messages are written.
@@ -57,7 +51,13 @@ impl<'m> Topics<'m> {
             ignored: Vec::new(),
             repairs: Vec::new(),
             found: Found::default(),
+            numbers: 0,
         }
+    }
+
+    /// Takes note of what is wrong at a byte of the file.
+    pub(crate) fn tell(&mut self, at: u64, what: &str) {
+        self.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
     }
 
     /// Takes note of a connection; containers repeat them.
@@ -157,6 +157,11 @@ impl<'m> Topics<'m> {
                 return;
             }
         };
+        // Stamps count like values. What comes beyond the limit is counted, not kept, and then refused as a whole.
+        self.numbers = self.numbers.saturating_add(topic.samples.columns.len() + 2);
+        if refuse_too_many(self.numbers, 1).is_err() {
+            return;
+        }
         topic.samples.log_ns.push(log_ns);
         if let Some(stamp_ns) = stamp_ns {
             topic.samples.stamp_ns.push(stamp_ns);
@@ -167,191 +172,5 @@ impl<'m> Topics<'m> {
             let value = source.combine.of(values.by_ref().take(*count).copied());
             column.push(source.conversion.apply(value));
         }
-    }
-
-    /// Brings what was read onto one clock.
-    pub(crate) fn finish(mut self, name: &str, format: &'static str) -> Result<Reading, Error> {
-        let mut report = ReadingReport::default();
-        let mut streams = Vec::new();
-        for topic in std::mem::take(&mut self.topics) {
-            if let Some(reason) = &topic.first_bad {
-                self.refuse_or_tell(&topic, reason)?;
-            }
-            if topic.samples.log_ns.is_empty() {
-                self.ignored.push(Ignored { name: topic.name, reason: "it has no message".into() });
-                continue;
-            }
-            let messages = topic.samples.log_ns.len();
-            let stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
-            let step_s = gap::median_step_s(&stream.t_s(stream.t_ns.first().copied().unwrap_or(0)));
-            let rate_hz = step_s.map(|step_s| 1.0 / step_s);
-            let step_s = step_s.unwrap_or(f64::INFINITY);
-            let (topic_name, clock, type_name) = (topic.name.clone(), stream.clock, topic.type_name);
-            report.streams.push(StreamReport { topic: topic_name, type_name, messages, rate_hz, clock });
-            streams.push(Named { topic: topic.name, sources: topic.sources, stream, step_s });
-        }
-        let chosen = self.choose(&streams);
-        if chosen.is_empty() {
-            let found = match self.names.as_slice() {
-                [] => "the file names no topic".to_owned(),
-                names => format!(
-                    "the file has {}, but map `{}` reads none of them",
-                    names.join(", "),
-                    self.map.name
-                ),
-            };
-            return Err(Error::Empty { found });
-        }
-        let base = self.base(&streams, &chosen)?;
-        let recording = self.align(&streams, &chosen, base, name, &mut report);
-        report.ignored = self.ignored;
-        report.repairs = self.repairs;
-        let part = Part { recording, report, found: self.names, format };
-        Reading::finish(part, name, Some(self.map))
-    }
-
-    fn refuse_or_tell(&mut self, topic: &Topic, reason: &str) -> Result<(), Error> {
-        if topic.samples.log_ns.is_empty() {
-            return Err(Error::Undecodable {
-                topic: topic.name.clone(),
-                type_name: topic.type_name.clone(),
-                messages: topic.bad,
-                reason: reason.to_owned(),
-            });
-        }
-        let what = format!(
-            "{} messages are not what their definition says ({reason}); they were left out",
-            topic.bad
-        );
-        self.repairs.push(Repair { place: format!("topic {}", topic.name), what });
-        Ok(())
-    }
-
-    /// For each target the first source of the map that has a value: (source, stream, column).
-    fn choose(&mut self, streams: &[Named]) -> Vec<(usize, usize, usize)> {
-        let mut chosen: Vec<(usize, usize, usize)> = Vec::new();
-        for (index, source) in self.map.sources.iter().enumerate() {
-            for (at, named) in streams.iter().enumerate() {
-                let Some(column) = named.sources.iter().position(|(source, _)| *source == index) else {
-                    continue;
-                };
-                let taken = chosen.iter().any(|(other, ..)| self.map.sources[*other].target == source.target);
-                let holds = named.stream.columns[column].iter().any(|value| !value.is_nan());
-                let reason = match (holds, taken) {
-                    (true, false) => {
-                        chosen.push((index, at, column));
-                        continue;
-                    }
-                    (true, true) => "an earlier source gives the same channel",
-                    (false, _) => "it holds no number",
-                };
-                let name = format!("{}, {}", named.topic, fields(&source.place));
-                self.ignored.push(Ignored { name, reason: reason.into() });
-            }
-        }
-        chosen
-    }
-
-    /// The stream whose stamps become the rows: the map's, or the slowest of those that tell power.
-    fn base(&self, streams: &[Named], chosen: &[(usize, usize, usize)]) -> Result<usize, Error> {
-        if let Some(base) = &self.map.base {
-            let named = streams.iter().position(|named| Map::topic_matches(base, &named.topic));
-            return named.ok_or_else(|| {
-                Error::missing_names(&[format!("the map's base {base}")], &[base], &self.names)
-            });
-        }
-        let power =
-            |source: usize| matches!(&self.map.sources[source].target, Target::Channel(c) if c.tells_power());
-        let tells = chosen.iter().filter(|(source, ..)| power(*source)).map(|(_, stream, _)| *stream);
-        let slowest = tells.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s));
-        Ok(slowest.or(chosen.first().map(|(_, stream, _)| *stream)).unwrap_or(0))
-    }
-
-    fn align(
-        &mut self,
-        streams: &[Named],
-        chosen: &[(usize, usize, usize)],
-        base: usize,
-        name: &str,
-        report: &mut ReadingReport,
-    ) -> Recording {
-        let origin_ns = streams[base].stream.t_ns.first().copied().unwrap_or(0);
-        let t_s = streams[base].stream.t_s(origin_ns);
-        let mut recording = Recording::default();
-        let mut max_gaps = BTreeMap::new();
-        for &(source, at, column) in chosen {
-            let (source, named) = (&self.map.sources[source], &streams[at]);
-            let values = &named.stream.columns[column];
-            let values = if at == base {
-                values.clone()
-            } else {
-                let own_s = named.stream.t_s(origin_ns);
-                let max_gap_s = self.map.max_gap_s.unwrap_or_else(|| gap::threshold_s(&own_s));
-                max_gaps.insert(named.topic.clone(), max_gap_s);
-                let between = if source.target == Target::Channel(Channel::Heading) {
-                    Between::ShorterArc
-                } else {
-                    Between::Line
-                };
-                interpolate(&own_s, values, &t_s, max_gap_s, between)
-            };
-            if values.iter().all(|value| value.is_nan()) {
-                let reason = format!("its stamps do not meet those of {}", streams[base].topic);
-                self.ignored.push(Ignored { name: named.topic.clone(), reason });
-                continue;
-            }
-            match &source.target {
-                Target::Channel(channel) => {
-                    let from = format!("{} {}", named.topic, fields(&source.place));
-                    report.channels.push(ChannelReport::new(*channel, from, source.unit.clone()));
-                    recording.channels.insert(*channel, values);
-                }
-                Target::Aside(name) => {
-                    recording.aside.insert(name.clone(), values);
-                }
-                Target::Time | Target::Run | Target::Surface => {}
-            }
-        }
-        let start_unix_s = (origin_ns > 0).then_some(origin_ns as f64 / 1e9);
-        recording.runs = vec![Run::new(name.to_owned(), 0..t_s.len(), &t_s, start_unix_s)];
-        recording.surface = self.map.surface.as_ref().map(|surface| Labels::constant(surface, t_s.len()));
-        recording.t_s = t_s;
-        report.alignment = Some(alignment(&streams[base].topic, max_gaps));
-        recording
-    }
-}
-
-/// A topic's stream, and the sources of the map that its columns are.
-struct Named {
-    topic: String,
-    sources: Vec<(usize, usize)>,
-    stream: Stream,
-    /// Its median step \[s\]; infinite for a single message.
-    step_s: f64,
-}
-
-fn fields(place: &Place) -> String {
-    match place {
-        Place::Topic { fields, .. } => fields.join(", "),
-        Place::Columns(names) => names.join(", "),
-    }
-}
-
-fn alignment(base: &str, max_gaps: BTreeMap<String, f64>) -> AlignmentReport {
-    let max_gap_s: Vec<(String, f64)> = max_gaps.into_iter().collect();
-    let gaps: Vec<String> =
-        max_gap_s.iter().map(|(topic, gap_s)| format!("{gap_s:.3} s of {topic}")).collect();
-    let others = match gaps.as_slice() {
-        [] => "no other topic is used".to_owned(),
-        _ => format!(
-            "others interpolated linearly, headings on the shorter arc, between neighbours at most {} apart; nothing \
-             beyond either end",
-            gaps.join(", ")
-        ),
-    };
-    AlignmentReport {
-        base: base.to_owned(),
-        method: format!("rows are the stamps of {base}; {others}"),
-        max_gap_s,
     }
 }

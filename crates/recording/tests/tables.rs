@@ -77,6 +77,41 @@ fn bad_tables_are_refused_by_place_and_remedy() {
 }
 
 #[test]
+fn a_column_of_numbers_named_run_is_refused_rather_than_taken_for_as_many_drives() {
+    let rows: String = (0..20_000).map(|row| format!("{row}.5,{row},1,1,1\n")).collect();
+    let message = csv(&format!("run,t_s,v_left_mps,v_right_mps,power_w\n{rows}")).unwrap_err().to_string();
+    assert!(message.contains("line 10002, column `run`: more than 10000 different names"), "{message}");
+}
+
+#[test]
+fn a_run_without_a_number_among_others_is_told() {
+    let rows =
+        |run: &str, power: &str| -> String { (0..3).map(|t| format!("{run},{t},1,1,{power}\n")).collect() };
+    let text = format!("run,t_s,v_left_mps,v_right_mps,power_w\n{}{}", rows("a", "40"), rows("b", ""));
+    let report = csv(&text).unwrap().report;
+    let doubt = report.suspicions.iter().find(|doubt| doubt.run.as_deref() == Some("b")).unwrap();
+    assert!(doubt.channel == Channel::Power && doubt.statement.contains("no value in 3 rows"), "{report}");
+}
+
+#[test]
+fn time_that_goes_back_in_parquet_is_refused_by_row() {
+    let schema = "message drive { required double t_s; required double v_left_mps; required double v_right_mps; required double power_w; }";
+    let schema = Arc::new(parse_message_type(schema).unwrap());
+    let mut bytes = Vec::new();
+    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::default()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    for values in [[0.0, 2.0, 1.0], [1.0; 3], [1.0; 3], [40.0; 3]] {
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<DoubleType>().write_batch(&values, None, None).unwrap();
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    writer.close().unwrap();
+    let message = read(bytes, Format::Parquet, "drive", None).unwrap_err().to_string();
+    assert!(message.starts_with("row 3: time goes back from 2 s to 1 s"), "{message}");
+}
+
+#[test]
 fn a_last_line_that_breaks_off_is_left_out_and_told() {
     let Reading { recording, report } = csv(SMALL.trim_end_matches("an,52,turn,3\n")).unwrap();
     assert_eq!(recording.rows(), 2);

@@ -1,6 +1,6 @@
 """Writes the same drive as ROS 2 MCAP files and ROS 1 bags with the formats' own tools, and its values as JSON.
 
-    python write_reference.py FOLDER
+    python write_reference.py FOLDER [SECONDS]
 
 The drive is a Husky's: wheel speeds at 10 Hz, IMU at 50 Hz, odometry at 20 Hz, power at 5 Hz. Values are formulas of
 time, so that a reader can be held to what was written.
@@ -17,7 +17,7 @@ from rosbags.rosbag1 import Writer as BagWriter
 from rosbags.typesys import Stores, get_typestore, get_types_from_msg
 
 START_NS = 1_700_000_000_000_000_000
-SECONDS = 20
+SECONDS = int(sys.argv[2]) if len(sys.argv) > 2 else 20
 JOINTS = ["front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"]
 
 STATUS = """std_msgs/Header header

@@ -1,6 +1,8 @@
 //! What all requests share: limits, maps, and the right to compute.
 
 use std::{
+    io,
+    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -9,12 +11,16 @@ use std::{
 };
 
 use planner::Patience;
-use tokio::sync::Semaphore;
+use serde_json::Value;
+use tokio::{sync::Semaphore, task::JoinError};
 
 use crate::{
+    job::Job,
+    jobs::Jobs,
     limits::Limits,
     planners::Planners,
     problem::{Problem, ProblemType},
+    recordings::RecordingStore,
     store::MapStore,
 };
 
@@ -26,7 +32,11 @@ struct Shared {
     limits: Limits,
     maps: MapStore,
     planners: Planners,
+    recordings: RecordingStore,
+    jobs: Jobs,
     turns: Arc<Semaphore>,
+    /// Jobs take a turn here before they wait for one among all computations.
+    job_turns: Arc<Semaphore>,
 }
 
 /// Cancels a computation when its request is dropped, as it is when the client leaves.
@@ -39,10 +49,20 @@ impl Drop for Asked {
 }
 
 impl Engine {
-    /// An engine without maps.
-    pub fn new(limits: Limits) -> Self {
-        let turns = Arc::new(Semaphore::new(limits.parallel_plans.max(1)));
-        Engine(Arc::new(Shared { limits, maps: MapStore::default(), planners: Planners::default(), turns }))
+    /// An engine without maps. Recordings are kept in a folder; without one, as long as the engine lasts.
+    ///
+    /// # Errors
+    /// When the folder cannot be made.
+    pub fn new(limits: Limits, folder: Option<&Path>) -> io::Result<Self> {
+        Ok(Engine(Arc::new(Shared {
+            limits,
+            maps: MapStore::default(),
+            planners: Planners::default(),
+            recordings: RecordingStore::open(folder)?,
+            jobs: Jobs::default(),
+            turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
+            job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
+        })))
     }
 
     /// What one request may ask for.
@@ -58,27 +78,91 @@ impl Engine {
         &self.0.planners
     }
 
+    pub(crate) fn recordings(&self) -> &RecordingStore {
+        &self.0.recordings
+    }
+
+    pub(crate) fn jobs(&self) -> &Jobs {
+        &self.0.jobs
+    }
+
+    /// Calls off all jobs, as when the service ends.
+    pub(crate) fn call_off_jobs(&self) {
+        self.jobs().call_off_all();
+    }
+
     /// Runs a computation on a thread of its own, in turn; its patience ends when the request does.
     pub(crate) async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
         let deadline = Instant::now() + self.limits().plan_time;
-        let stopped = |_| Problem::new(ProblemType::Internal, "the service is stopping");
-        let turn = Arc::clone(&self.0.turns).acquire_owned().await.map_err(stopped)?;
+        self.work(move |left| work(&Patience::until_or(deadline, Arc::clone(left)))).await
+    }
+
+    /// Runs work on a thread of its own, in turn, for as long as it takes; it is told when the request ends.
+    pub(crate) async fn work<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&Arc<AtomicBool>) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let turn = Arc::clone(&self.0.turns).acquire_owned().await.map_err(|_| stopping())?;
         let cancelled = Arc::new(AtomicBool::new(false));
         let asked = Asked(Arc::clone(&cancelled));
-        let patience = Patience::until_or(deadline, cancelled);
         let running = tokio::task::spawn_blocking(move || {
             // The turn ends with the work, not with the request: who leaves early makes no room before it is there.
             let _turn = turn;
-            work(&patience)
+            work(&cancelled)
         });
         let outcome = running.await;
         drop(asked);
-        outcome.unwrap_or_else(|failure| {
-            tracing::error!(%failure, "a computation did not finish");
-            Err(Problem::new(ProblemType::Internal, "the computation failed; the fault has been logged"))
-        })
+        outcome.unwrap_or_else(|failure| Err(fault(&failure)))
     }
+
+    /// Asks the disk, which may take its time, on a thread of its own.
+    pub(crate) async fn on_disk<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        tokio::task::spawn_blocking(work).await.unwrap_or_else(|failure| Err(fault(&failure)))
+    }
+
+    /// Starts work that outlasts its request. It takes its turn among jobs and among computations, tells the job how far
+    /// it is, and ends soon after the job is called off.
+    pub(crate) fn start(
+        &self,
+        kind: &'static str,
+        work: impl FnOnce(&Arc<Job>) -> Result<Value, Problem> + Send + 'static,
+    ) -> Result<Arc<Job>, Problem> {
+        let job = self.jobs().open(kind, self.limits().open_jobs, self.limits().kept_jobs)?;
+        let (engine, started) = (self.clone(), Arc::clone(&job));
+        tokio::spawn(async move {
+            let outcome = engine.run(&job, work).await;
+            job.end(outcome);
+        });
+        Ok(started)
+    }
+
+    async fn run(
+        &self,
+        job: &Arc<Job>,
+        work: impl FnOnce(&Arc<Job>) -> Result<Value, Problem> + Send + 'static,
+    ) -> Result<Value, Problem> {
+        let turn = Arc::clone(&self.0.job_turns).acquire_owned().await.map_err(|_| stopping())?;
+        let running = Arc::clone(job);
+        let called_off = || Problem::new(ProblemType::Internal, "the job was called off");
+        self.work(move |_| {
+            let _turn = turn;
+            if running.is_called_off() { Err(called_off()) } else { work(&running) }
+        })
+        .await
+    }
+}
+
+fn stopping() -> Problem {
+    Problem::new(ProblemType::Internal, "the service is stopping")
+}
+
+fn fault(failure: &JoinError) -> Problem {
+    tracing::error!(%failure, "a computation did not finish");
+    Problem::new(ProblemType::Internal, "the computation failed; the fault has been logged")
 }

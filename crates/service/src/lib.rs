@@ -1,4 +1,4 @@
-//! The HTTP service: terrains and robots in, paths with predicted energy out.
+//! The HTTP service: terrains, robots and recordings in, paths with predicted energy and fitted robots out.
 //!
 //! The only crate that knows HTTP and async. Each file under `routes` holds a request, its handler and its answer; the
 //! functions that turn a request into an answer are plain and are shared with the command line, so both give the same
@@ -7,9 +7,13 @@
 mod body;
 mod engine;
 mod geojson;
+mod job;
+mod jobs;
 mod limits;
 mod planners;
 mod problem;
+mod receive;
+mod recordings;
 mod router;
 pub mod routes;
 mod serve;

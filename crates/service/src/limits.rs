@@ -17,6 +17,16 @@ pub struct Limits {
     pub kept_bytes: usize,
     /// Computations that run at the same time; more wait. Default: one for each core.
     pub parallel_plans: usize,
+    /// Largest recording [bytes]. Default 12 GiB.
+    pub recording_bytes: u64,
+    /// Most bytes over all stored recordings. Default 64 GiB.
+    pub stored_recording_bytes: u64,
+    /// Jobs that may wait or run; more are refused. Default 32.
+    pub open_jobs: usize,
+    /// Jobs that run at the same time, of the computations that may. Default: one less than cores, but one.
+    pub parallel_jobs: usize,
+    /// Jobs that ended and are kept for who asks later. Default 256.
+    pub kept_jobs: usize,
     /// Longest pause while a body is sent [s]. Default 30 s.
     pub body_pause: Duration,
     /// Longest wait for requests under way when the service is asked to end [s]. Default 10 s.
@@ -25,13 +35,19 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         Limits {
             body_bytes: 64 << 20,
             plan_time: Duration::from_secs(60),
             plan_states: 32_000_000,
             stored_cells: 200_000_000,
             kept_bytes: 2 << 30,
-            parallel_plans: std::thread::available_parallelism().map_or(1, usize::from),
+            parallel_plans: cores,
+            recording_bytes: 12 << 30,
+            stored_recording_bytes: 64 << 30,
+            open_jobs: 32,
+            parallel_jobs: (cores - 1).max(1),
+            kept_jobs: 256,
             body_pause: Duration::from_secs(30),
             drain_time: Duration::from_secs(10),
         }

@@ -19,6 +19,8 @@ pub enum ProblemType {
     InvalidMap,
     /// The robot cannot be used as it is.
     InvalidRobot,
+    /// The recording cannot be read.
+    InvalidRecording,
     /// A content type that this path does not take.
     UnsupportedMediaType,
     /// No such path.
@@ -27,10 +29,16 @@ pub enum ProblemType {
     UnknownMap,
     /// No robot of this name.
     UnknownRobot,
+    /// No recording with this id.
+    UnknownRecording,
+    /// No job with this id.
+    UnknownJob,
     /// The path does not take this method.
     MethodNotAllowed,
-    /// The map's ground has a surface that the robot has no friction for.
+    /// A surface that the robot or the recording does not know.
     UnknownSurface,
+    /// The recording can be read, but does not hold what is needed.
+    InsufficientRecording,
     /// The start lies off the map.
     StartOutsideMap,
     /// The goal lies off the map.
@@ -45,8 +53,10 @@ pub enum ProblemType {
     Timeout,
     /// The body or the map exceeds a limit.
     TooLarge,
-    /// The service holds as many maps as it may.
+    /// The service holds as much as it may.
     StoreFull,
+    /// As many jobs wait or run as may.
+    TooManyJobs,
     /// A fault of the service.
     Internal,
 }
@@ -82,11 +92,16 @@ impl ProblemType {
     fn status(self) -> StatusCode {
         use ProblemType as T;
         match self {
-            T::InvalidRequest | T::InvalidMap | T::InvalidRobot => StatusCode::BAD_REQUEST,
+            T::InvalidRequest | T::InvalidMap | T::InvalidRobot | T::InvalidRecording => {
+                StatusCode::BAD_REQUEST
+            }
             T::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            T::NotFound | T::UnknownMap | T::UnknownRobot => StatusCode::NOT_FOUND,
+            T::NotFound | T::UnknownMap | T::UnknownRobot | T::UnknownRecording | T::UnknownJob => {
+                StatusCode::NOT_FOUND
+            }
             T::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
             T::UnknownSurface
+            | T::InsufficientRecording
             | T::StartOutsideMap
             | T::GoalOutsideMap
             | T::StartBlocked
@@ -95,6 +110,7 @@ impl ProblemType {
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
+            T::TooManyJobs => StatusCode::SERVICE_UNAVAILABLE,
             T::Internal => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -105,12 +121,16 @@ impl ProblemType {
             T::InvalidRequest => "The request cannot be read",
             T::InvalidMap => "The map cannot be used",
             T::InvalidRobot => "The robot cannot be used",
+            T::InvalidRecording => "The recording cannot be read",
             T::UnsupportedMediaType => "Content type not supported",
             T::NotFound => "No such path",
             T::UnknownMap => "No such map",
             T::UnknownRobot => "No such robot",
+            T::UnknownRecording => "No such recording",
+            T::UnknownJob => "No such job",
             T::MethodNotAllowed => "Method not allowed",
-            T::UnknownSurface => "A surface is unknown to the robot",
+            T::UnknownSurface => "A surface is unknown",
+            T::InsufficientRecording => "The recording does not suffice",
             T::StartOutsideMap => "The start lies outside the map",
             T::GoalOutsideMap => "The goal lies outside the map",
             T::StartBlocked => "The robot cannot stand at the start",
@@ -119,6 +139,7 @@ impl ProblemType {
             T::Timeout => "The search ran out of time",
             T::TooLarge => "Too large",
             T::StoreFull => "The store is full",
+            T::TooManyJobs => "Too many jobs",
             T::Internal => "Internal error",
         }
     }
@@ -175,6 +196,35 @@ impl Problem {
         };
         let place = error.field().map_or(String::new(), pointer);
         Problem::new(kind, error.to_string()).at(format!("{under}{place}"))
+    }
+
+    /// A recording or a map of one that cannot be read. A map's place is `map`, wherever it stands in the request.
+    pub fn invalid_recording(error: &recording::Error) -> Self {
+        use recording::Error as E;
+        match error {
+            E::Map { path, .. } => {
+                let place = if path == "." { String::new() } else { pointer(path) };
+                Problem::new(ProblemType::InvalidRequest, error.to_string()).at(format!("/map{place}"))
+            }
+            E::Unit { index, .. } => Problem::new(ProblemType::InvalidRequest, error.to_string())
+                .at(format!("/map/sources/{index}/unit")),
+            E::Io(_) => Problem::new(ProblemType::Internal, format!("the stored recording: {error}")),
+            E::TooLarge { .. } => Problem::new(ProblemType::TooLarge, error.to_string()),
+            _ => Problem::new(ProblemType::InvalidRecording, error.to_string()),
+        }
+    }
+
+    /// Why a robot cannot be fitted to a recording.
+    pub fn no_calibration(error: &calibration::Error) -> Self {
+        use calibration::Error as E;
+        let (kind, at) = match error {
+            E::UnknownSurface { .. } => (ProblemType::UnknownSurface, "/robot/surfaces"),
+            E::NoReference { .. } => (ProblemType::UnknownSurface, "/reference_surface"),
+            E::NoForcePerAmpere => (ProblemType::InvalidRobot, "/robot/motors"),
+            E::Lift { .. } => (ProblemType::InvalidRequest, "/lift"),
+            _ => (ProblemType::InsufficientRecording, "/recordings"),
+        };
+        Problem::new(kind, error.to_string()).at(at)
     }
 
     /// Why the planner has no path.

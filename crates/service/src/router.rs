@@ -23,19 +23,21 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 use crate::{
     Engine,
     problem::{Problem, ProblemType},
-    routes::{compare, health, maps, plan, robots},
+    routes::{calibrate, compare, health, jobs, maps, plan, recordings, robots},
 };
 
 #[derive(OpenApi)]
 #[openapi(
     info(
         title = "joulepath",
-        description = "Energy-minimal paths for skid-steered robots. SI units; x east, y north, z up; heading counter-clockwise from east. Failures are RFC 9457 problem documents."
+        description = "Energy-minimal paths for skid-steered robots, and robots fitted to their recordings. SI units; x east, y north, z up; heading counter-clockwise from east. Failures are RFC 9457 problem documents."
     ),
     tags(
         (name = "plan", description = "Paths and their energy"),
         (name = "maps", description = "Terrain at hand"),
         (name = "robots", description = "Robots at hand"),
+        (name = "recordings", description = "Drive logs at hand"),
+        (name = "jobs", description = "Long work, started, followed and cancelled"),
         (name = "service", description = "The service itself")
     )
 )]
@@ -49,6 +51,11 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(robots::list))
         .routes(routes!(robots::read))
+        .routes(routes!(recordings::create, recordings::list))
+        .routes(routes!(recordings::read, recordings::remove))
+        .routes(routes!(calibrate::handler))
+        .routes(routes!(jobs::read, jobs::remove))
+        .routes(routes!(jobs::events))
         .routes(routes!(health::healthz))
         .split_for_parts()
 }

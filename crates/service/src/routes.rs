@@ -1,7 +1,10 @@
 //! One file for each path: request, handler and answer together.
 
+pub mod calibrate;
 pub mod compare;
 pub mod health;
+pub mod jobs;
 pub mod maps;
 pub mod plan;
+pub mod recordings;
 pub mod robots;

@@ -70,8 +70,11 @@ async fn run(
     let listener = tokio::net::TcpListener::from_std(listener)?;
     let drain_time = engine.limits().drain_time;
     let (draining, drained) = oneshot::channel();
-    let stop = async {
+    let ending = engine.clone();
+    let stop = async move {
         stop.await;
+        // Who follows a job is told, and leaves.
+        ending.call_off_jobs();
         let _ = draining.send(());
     };
     let serving = axum::serve(listener, router(engine)).with_graceful_shutdown(stop);

@@ -1,13 +1,14 @@
 //! `joulepath calibrate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use calibration::{Calibration, Options, calibrate, lift};
+use calibration::{Calibration, Method, Options, lift};
 use clap::{Args, ValueEnum};
 
 use crate::{
     failure::BadInput,
+    progress,
     recorded::{Recorded, text},
 };
 
@@ -20,7 +21,7 @@ pub(crate) struct Arguments {
     lift: Option<PathBuf>,
     /// Which procedure: a fit of everything, or the paper's own
     #[arg(long, value_enum, default_value = "fit")]
-    method: Method,
+    method: MethodName,
     /// For motor currents: the surface that what belongs to the robot is fitted on
     #[arg(long)]
     reference_surface: Option<String>,
@@ -30,25 +31,27 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Method {
+enum MethodName {
     Fit,
     DogruMarques,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    refuse_unwritable(&arguments.out)?;
     let (mut robot, recording) = arguments.recorded.read()?;
     if let Some(path) = &arguments.lift {
         let name = path.display().to_string();
         let lifts = lift::read(&text(&name)?).map_err(|error| BadInput(format!("{name}: {error}")))?;
         robot = lift::apply(&robot, &lifts).map_err(|error| BadInput(format!("{name}: {error}")))?;
     }
-    let found = match arguments.method {
-        Method::Fit => {
-            let options = Options { reference_surface: arguments.reference_surface.clone() };
-            calibrate(&robot, &recording, &options)
-        }
-        Method::DogruMarques => calibration::dogru_marques::calibrate(&robot, &recording),
+    let method = match arguments.method {
+        MethodName::Fit => Method::Fit,
+        MethodName::DogruMarques => Method::DogruMarques,
     };
+    let options = Options { reference_surface: arguments.reference_surface.clone() };
+    let sign = progress::working("fitting");
+    let found = method.calibrate(&robot, &recording, &options);
+    sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;
     let out = &arguments.out;
@@ -60,6 +63,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         println!("{}", summary(&found));
     }
     Ok(())
+}
+
+/// Refuses a place that cannot be written to before long work is done for it.
+fn refuse_unwritable(out: &Path) -> Result<(), BadInput> {
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() && !out.is_dir() {
+        return Ok(());
+    }
+    let fault = if out.is_dir() { "it is a folder" } else { "its folder does not exist" };
+    Err(BadInput(format!("--out {}: {fault}; name a file in a folder that does", out.display())))
 }
 
 fn summary(found: &Calibration) -> String {

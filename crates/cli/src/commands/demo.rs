@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let began = Instant::now();
     let listener = TcpListener::bind("127.0.0.1:0").context("no free loopback port")?;
-    let service = start(listener, Engine::new(Limits::default()))?;
+    let service = start(listener, Engine::new(Limits::default(), None)?)?;
     let url = format!("http://{}", service.address);
     println!("service    {url}, started in {:.0} ms", milliseconds(began));
 

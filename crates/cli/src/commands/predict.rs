@@ -6,7 +6,7 @@ use anyhow::Context;
 use calibration::{RunPrediction, predict};
 use clap::Args;
 
-use crate::recorded::Recorded;
+use crate::{progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -19,7 +19,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (robot, recording) = arguments.recorded.read()?;
-    let found = predict(&robot, &recording).map_err(|error| arguments.recorded.refuse(&error))?;
+    let sign = progress::working("predicting");
+    let found = predict(&robot, &recording);
+    sign.finish_and_clear();
+    let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     if let Some(path) = &arguments.html {
         let page = calibration::report::html(&robot, &found);
         std::fs::write(path, page)
@@ -50,17 +53,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 fn line(run: &RunPrediction) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
+    // A run of one row has no energy.
     let error_percent = 100.0 * (run.predicted_j / run.recorded_j - 1.0);
+    let error = if error_percent.is_finite() { format!("{error_percent:+.1} %") } else { "-".to_owned() };
     let current = run.r2_a.map_or(String::new(), |r2| format!(" {r2:>8.3}"));
     format!(
-        "{:<20} {:>8} {:>7.1} W {:>7.1} W {:>7} {:>8.2} kJ {:>8.2} kJ {:>+6.1} %{current}",
+        "{:<20} {:>8} {:>7.1} W {:>7.1} W {:>7} {:>8.2} kJ {:>8.2} kJ {error:>8}{current}",
         run.run,
         run.rows,
         run.bias_w,
         run.rmse_w,
         number(run.r2),
         run.recorded_j / 1e3,
-        run.predicted_j / 1e3,
-        error_percent
+        run.predicted_j / 1e3
     )
 }

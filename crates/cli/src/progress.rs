@@ -1,0 +1,21 @@
+//! Bars on a terminal; nothing on a pipe, where indicatif draws nothing.
+
+use std::{path::PathBuf, time::Duration};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar over the bytes of files that are about to be read.
+pub(crate) fn reading(files: &[PathBuf]) -> ProgressBar {
+    let bytes = files.iter().filter_map(|file| file.metadata().ok()).map(|file| file.len()).sum();
+    let style = ProgressStyle::with_template("reading {wide_bar} {bytes} of {total_bytes}");
+    ProgressBar::new(bytes).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// A sign of life for work whose length is not known.
+pub(crate) fn working(what: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
+    let bar = ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    bar.set_message(what);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}

@@ -1,0 +1,119 @@
+//! The robot's own numbers fitted to the drives, and how predictions hang on them.
+
+use model::Robot;
+use rayon::prelude::*;
+
+use crate::{
+    Error,
+    knobs::Knob,
+    noise::Noise,
+    series::{Applied, Series},
+};
+
+/// A robot at its best fit, with the sensitivities that a linear search needs.
+pub(crate) struct Baseline {
+    /// The robot.
+    pub(crate) robot: Robot,
+    /// What was fitted.
+    pub(crate) knobs: Vec<Knob>,
+    /// Fitted less filed values, in widths of the file.
+    pub(crate) moved: Vec<f64>,
+    /// Predictions at the fit.
+    pub(crate) predicted_w: Vec<f64>,
+    /// Change of predictions with each knob, per width of the file.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// Scatter of what is recorded about them.
+    pub(crate) noise: Noise,
+}
+
+/// Steps of Gauss and Newton; healthy drives need two or three.
+const STEPS: usize = 5;
+
+impl Baseline {
+    /// Fits the knobs, with mechanisms acting.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub(crate) fn fit(series: &Series, file: &Robot, applied: &[Applied]) -> Result<Self, Error> {
+        let knobs = Knob::of(file, &series.surfaces(), series.channels() == 2);
+        let mut robot = file.clone();
+        let mut predicted_w = series.predict(&robot, applied)?;
+        let mut noise =
+            Noise::of(&differences(&series.recorded, &predicted_w), &predicted_w, &series.averages);
+        let mut columns = Vec::new();
+        for step in 0..STEPS {
+            columns = columns_of(series, &robot, &knobs, applied, &predicted_w)?;
+            if step + 1 == STEPS {
+                break;
+            }
+            let errors = differences(&series.recorded, &predicted_w);
+            let moves = solve(series, &knobs, file, &robot, (&errors, &predicted_w, &columns), &noise);
+            for (knob, by) in knobs.iter().zip(&moves) {
+                let value = knob.value(&robot) + by.clamp(-3.0, 3.0) * knob.sigma;
+                knob.set(&mut robot, value);
+            }
+            predicted_w = series.predict(&robot, applied)?;
+            noise = Noise::of(&differences(&series.recorded, &predicted_w), &predicted_w, &series.averages);
+        }
+        let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, noise })
+    }
+}
+
+fn columns_of(
+    series: &Series,
+    robot: &Robot,
+    knobs: &[Knob],
+    applied: &[Applied],
+    predicted_w: &[f64],
+) -> Result<Vec<Vec<f64>>, Error> {
+    knobs
+        .par_iter()
+        .map(|knob| {
+            let mut moved = robot.clone();
+            knob.set(&mut moved, knob.value(robot) + knob.step());
+            let by = knob.value(&moved) - knob.value(robot);
+            if by == 0.0 {
+                return Ok(vec![0.0; predicted_w.len()]);
+            }
+            let there = series.predict(&moved, applied)?;
+            Ok(there.iter().zip(predicted_w).map(|(a, b)| (a - b) / by * knob.sigma).collect())
+        })
+        .collect()
+}
+
+/// One step towards the least squares of robust errors and what the file says, in widths of the file.
+fn solve(
+    series: &Series,
+    knobs: &[Knob],
+    file: &Robot,
+    robot: &Robot,
+    (errors, predicted_w, columns): (&[f64], &[f64], &[Vec<f64>]),
+    noise: &Noise,
+) -> Vec<f64> {
+    let count = knobs.len();
+    let white = |values: &[f64]| noise.whiten(values, predicted_w, &series.averages);
+    let errors = white(errors);
+    let columns: Vec<Vec<f64>> = columns.iter().map(|column| white(column)).collect();
+    // Errors beyond three sigma count linearly.
+    let weight: Vec<f64> = errors.iter().map(|e| (3.0 / e.abs().max(1e-9)).min(1.0)).collect();
+    let mut square = nalgebra::DMatrix::<f64>::identity(count, count);
+    let mut right = nalgebra::DVector::<f64>::zeros(count);
+    for j in 0..count {
+        right[j] = (knobs[j].value(file) - knobs[j].value(robot)) / knobs[j].sigma;
+        for k in 0..count {
+            square[(j, k)] +=
+                (0..errors.len()).map(|i| weight[i] * columns[j][i] * columns[k][i]).sum::<f64>();
+        }
+        right[j] += (0..errors.len()).map(|i| weight[i] * columns[j][i] * errors[i]).sum::<f64>();
+    }
+    match square.cholesky() {
+        Some(root) => root.solve(&right).iter().copied().collect(),
+        None => vec![0.0; count],
+    }
+}
+
+/// Recorded less predicted.
+pub(crate) fn differences(recorded: &[f64], predicted: &[f64]) -> Vec<f64> {
+    recorded.iter().zip(predicted).map(|(r, p)| r - p).collect()
+}

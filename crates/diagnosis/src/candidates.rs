@@ -1,0 +1,118 @@
+//! What might be missing: every mechanism, at some of the values that its power does not follow in proportion, from some times on.
+
+use model::{Robot, mechanism};
+use rayon::prelude::*;
+
+use crate::{
+    Error,
+    series::{Applied, Series},
+};
+
+/// A mechanism with its sensitivities: the change of every prediction per unit of each of its linear parameters.
+pub(crate) struct Candidate {
+    /// The mechanism at a probe.
+    pub(crate) applied: Applied,
+    /// Parameters that the columns belong to.
+    pub(crate) linear: Vec<usize>,
+    /// Change of predictions per unit [W].
+    pub(crate) columns: Vec<Vec<f64>>,
+}
+
+/// Times from which a mechanism may act, as shares of the longest suspect drive; the first is its beginning.
+const ONSETS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Time constants of heat that are tried [s].
+const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
+/// Winds that are tried [m/s], in eight directions.
+const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
+
+/// All candidates beside mechanisms that act already.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn all(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted_w: &[f64],
+) -> Result<Vec<Candidate>, Error> {
+    let mut probes = Vec::new();
+    for mechanism in mechanism::ALL {
+        if applied.iter().any(|a| a.mechanism.name() == mechanism.name()) {
+            continue;
+        }
+        for from_s in onsets(series, mechanism.name()) {
+            for (values, linear) in grids(mechanism) {
+                probes.push((Applied { mechanism, values, from_s }, linear));
+            }
+        }
+    }
+    probes
+        .into_par_iter()
+        .map(|(probe, linear)| of(series, robot, applied, predicted_w, probe, linear))
+        .collect()
+}
+
+/// The sensitivities of one mechanism about a probe whose linear parameters are at nothing.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn of(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted_w: &[f64],
+    probe: Applied,
+    linear: Vec<usize>,
+) -> Result<Candidate, Error> {
+    let mut columns = Vec::new();
+    for &parameter in &linear {
+        let mut with = applied.to_vec();
+        let mut there = probe.clone();
+        let by = probe.mechanism.parameters()[parameter].probe;
+        there.values[parameter] += by;
+        with.push(there);
+        let seen = series.predict(robot, &with)?;
+        columns.push(seen.iter().zip(predicted_w).map(|(a, b)| (a - b) / by).collect());
+    }
+    Ok(Candidate { applied: probe, linear, columns })
+}
+
+/// Times from which a mechanism is tried.
+fn onsets(series: &Series, name: &str) -> Vec<f64> {
+    let longest_s = series.longest_s();
+    match name {
+        // These are how the robot or its sensors are built.
+        "clock_offset"
+        | "wheel_radius"
+        | "center_of_mass"
+        | "load_transfer"
+        | "motor_heating"
+        | "inertia"
+        | "speed_dependent_friction"
+        | "grade_dependent_friction"
+        | "regeneration"
+        | "wheel_slip" => vec![0.0],
+        _ => ONSETS.iter().map(|share| share * longest_s).collect(),
+    }
+}
+
+/// Values of the parameters that power does not follow in proportion, with the others at nothing.
+fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f64>, Vec<usize>)> {
+    match mechanism.name() {
+        "motor_heating" => MEMORIES_S.iter().map(|tau_s| (vec![0.0, *tau_s], vec![0])).collect(),
+        "wind" => {
+            let mut winds = vec![(vec![0.0; 3], vec![0])];
+            for wind_mps in WINDS_MPS {
+                for eighth in 0..8 {
+                    let (sin, cos) = (f64::from(eighth) * std::f64::consts::FRAC_PI_4).sin_cos();
+                    winds.push((vec![0.0, wind_mps * cos, wind_mps * sin], vec![0]));
+                }
+            }
+            winds
+        }
+        _ => {
+            let count = mechanism.parameters().len();
+            vec![(vec![0.0; count], (0..count).collect())]
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Why drives cannot be diagnosed.
+
+use model::Robot;
+
+/// Why drives cannot be diagnosed.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// They cannot be prepared or fitted.
+    #[error(transparent)]
+    Calibration(#[from] calibration::Error),
+    /// Motor currents, or drives that tell power in different forms.
+    #[error(
+        "a diagnosis needs power in watts, by side or of the battery, in the same columns of all recordings; \
+         motor currents are first turned into power by `joulepath calibrate` and `force_n_per_a`"
+    )]
+    Form,
+    /// Ground that the robot does not know.
+    #[error(
+        "the recording names the surface {surface:?}, which the robot lacks; it knows {known}; calibrate on it first"
+    )]
+    Surface {
+        /// What the recording calls it.
+        surface: String,
+        /// Surfaces of the robot.
+        known: String,
+    },
+    /// Not enough to decide anything.
+    #[error(
+        "{seconds} s of driving are too little for a diagnosis, which compares at least {needed} s of it"
+    )]
+    TooShort {
+        /// Seconds that could be judged.
+        seconds: usize,
+        /// Seconds that are needed.
+        needed: usize,
+    },
+}
+
+impl Error {
+    pub(crate) fn surface(name: &str, robot: &Robot) -> Self {
+        let known: Vec<&str> = robot.surfaces.keys().map(String::as_str).collect();
+        Error::Surface { surface: name.to_owned(), known: known.join(", ") }
+    }
+}

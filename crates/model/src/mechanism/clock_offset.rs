@@ -1,0 +1,36 @@
+//! `clock_offset`: power that was recorded by another clock than speeds.
+
+use crate::mechanism::{Kind, Mechanism, Parameter};
+
+/// Power that was recorded by another clock than speeds.
+pub(super) struct ClockOffset;
+
+impl Mechanism for ClockOffset {
+    fn name(&self) -> &'static str {
+        "clock_offset"
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Measurement
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter { name: "delay_s", unit: "s", bounds: [-3.0, 3.0], probe: 0.05 }]
+    }
+
+    fn equation(&self) -> &'static str {
+        "recorded power(t) = true power(t − d)"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!(
+            "power was recorded {:.2} s {} than speeds",
+            values[0].abs(),
+            if values[0] > 0.0 { "later" } else { "earlier" }
+        )
+    }
+
+    fn delay_s(&self, values: &[f64]) -> f64 {
+        values[0]
+    }
+}

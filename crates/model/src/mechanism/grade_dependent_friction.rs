@@ -1,0 +1,36 @@
+//! `grade_dependent_friction`: rolling resistance that grows with the steepness of the ground.
+
+use crate::{
+    Robot, Sides,
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+};
+
+/// Rolling resistance that grows with the steepness of the ground.
+pub(super) struct GradeDependentFriction;
+
+impl Mechanism for GradeDependentFriction {
+    fn name(&self) -> &'static str {
+        "grade_dependent_friction"
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Physics
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter { name: "per_slope", unit: "1", bounds: [-20.0, 40.0], probe: 0.3 }]
+    }
+
+    fn equation(&self) -> &'static str {
+        "μ_R(γ) = μ_R (1 + c sin γ)"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!("rolling resistance changes by {:.1} % for each per cent of slope", values[0])
+    }
+
+    fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
+        let (along, across) = (moment.attitude.pitch_rad.sin(), moment.attitude.roll_rad.sin());
+        Adjustment { mu_roll: Sides::both(1.0 + values[0] * along.hypot(across)), ..Adjustment::default() }
+    }
+}

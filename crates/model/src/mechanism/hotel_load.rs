@@ -1,0 +1,35 @@
+//! `hotel_load`: electronics that take power whatever the robot does.
+
+use crate::{
+    Robot,
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+};
+
+/// Electronics that take power whatever the robot does.
+pub(super) struct HotelLoad;
+
+impl Mechanism for HotelLoad {
+    fn name(&self) -> &'static str {
+        "hotel_load"
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Physics
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter { name: "power_w", unit: "W", bounds: [-300.0, 1000.0], probe: 1.0 }]
+    }
+
+    fn equation(&self) -> &'static str {
+        "P = P_drive + P_hotel"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!("electronics take {:.1} W more than the robot's file says", values[0])
+    }
+
+    fn adjust(&self, _: &Robot, values: &[f64], _: &Moment) -> Adjustment {
+        Adjustment { standing_w: values[0], ..Adjustment::default() }
+    }
+}

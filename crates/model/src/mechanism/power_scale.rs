@@ -1,0 +1,36 @@
+//! `power_scale`: a power meter that reads too much or too little.
+
+use crate::mechanism::{Kind, Mechanism, Parameter};
+
+/// A power meter that reads too much or too little.
+pub(super) struct PowerScale;
+
+impl Mechanism for PowerScale {
+    fn name(&self) -> &'static str {
+        "power_scale"
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Measurement
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter { name: "gain", unit: "1", bounds: [-0.6, 1.0], probe: 0.02 }]
+    }
+
+    fn equation(&self) -> &'static str {
+        "recorded power = (1 + g) true power"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!(
+            "recorded power is {:.1} % too {}",
+            100.0 * values[0].abs(),
+            if values[0] > 0.0 { "high" } else { "low" }
+        )
+    }
+
+    fn reading_w(&self, values: &[f64], true_w: f64) -> f64 {
+        (1.0 + values[0]) * true_w
+    }
+}

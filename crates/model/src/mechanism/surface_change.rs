@@ -1,0 +1,46 @@
+//! `surface_change`: other ground than the recording says.
+
+use crate::{
+    Robot, Sides,
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+};
+
+/// Other ground than the recording says.
+pub(super) struct SurfaceChange;
+
+impl Mechanism for SurfaceChange {
+    fn name(&self) -> &'static str {
+        "surface_change"
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Physics
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[
+            Parameter { name: "roll_change", unit: "1", bounds: [-0.9, 10.0], probe: 0.05 },
+            Parameter { name: "skid_change", unit: "1", bounds: [-0.9, 5.0], probe: 0.05 },
+        ]
+    }
+
+    fn equation(&self) -> &'static str {
+        "μ_R → μ_R (1 + c_R), μ_S → μ_S (1 + c_S)"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!(
+            "the ground is another: it rolls {:+.0} % and skids {:+.0} % against what was fitted",
+            100.0 * values[0],
+            100.0 * values[1]
+        )
+    }
+
+    fn adjust(&self, _: &Robot, values: &[f64], _: &Moment) -> Adjustment {
+        Adjustment {
+            mu_roll: Sides::both(1.0 + values[0]),
+            mu_skid: 1.0 + values[1],
+            ..Adjustment::default()
+        }
+    }
+}

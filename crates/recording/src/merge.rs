@@ -1,0 +1,204 @@
+//! From the streams of topics to one table: which source is taken, whose stamps become the rows.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
+    align::{Between, interpolate},
+    gap,
+    limit::refuse_too_many,
+    map::{Place, Target},
+    reading::{Part, Reading},
+    report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
+    stream::Stream,
+    topic::{Topic, Topics},
+};
+
+impl Topics<'_> {
+    /// Brings what was read onto one clock.
+    pub(crate) fn finish(mut self, name: &str, format: &'static str) -> Result<Reading, Error> {
+        refuse_too_many(self.numbers, 1)?;
+        let mut report = ReadingReport::default();
+        let mut streams = Vec::new();
+        for topic in std::mem::take(&mut self.topics) {
+            if let Some(reason) = &topic.first_bad {
+                self.refuse_or_tell(&topic, reason)?;
+            }
+            if topic.samples.log_ns.is_empty() {
+                self.ignored.push(Ignored { name: topic.name, reason: "it has no message".into() });
+                continue;
+            }
+            let messages = topic.samples.log_ns.len();
+            let stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
+            let step_s = gap::median_step_s(&stream.t_s(stream.t_ns.first().copied().unwrap_or(0)));
+            let rate_hz = step_s.map(|step_s| 1.0 / step_s);
+            let step_s = step_s.unwrap_or(f64::INFINITY);
+            let (topic_name, clock, type_name) = (topic.name.clone(), stream.clock, topic.type_name);
+            report.streams.push(StreamReport { topic: topic_name, type_name, messages, rate_hz, clock });
+            streams.push(Named { topic: topic.name, sources: topic.sources, stream, step_s });
+        }
+        let chosen = self.choose(&streams);
+        if chosen.is_empty() {
+            let found = match self.names.as_slice() {
+                [] => "the file names no topic".to_owned(),
+                names => format!(
+                    "the file has {}, but map `{}` reads none of them",
+                    names.join(", "),
+                    self.map.name
+                ),
+            };
+            return Err(Error::Empty { found });
+        }
+        let base = self.base(&streams, &chosen)?;
+        let recording = self.align(&streams, &chosen, base, name, &mut report);
+        report.ignored = self.ignored;
+        report.repairs = self.repairs;
+        let part = Part { recording, report, found: self.names, format };
+        Reading::finish(part, name, Some(self.map))
+    }
+
+    fn refuse_or_tell(&mut self, topic: &Topic, reason: &str) -> Result<(), Error> {
+        if topic.samples.log_ns.is_empty() {
+            return Err(Error::Undecodable {
+                topic: topic.name.clone(),
+                type_name: topic.type_name.clone(),
+                messages: topic.bad,
+                reason: reason.to_owned(),
+            });
+        }
+        let what = format!(
+            "{} messages are not what their definition says ({reason}); they were left out",
+            topic.bad
+        );
+        self.repairs.push(Repair { place: format!("topic {}", topic.name), what });
+        Ok(())
+    }
+
+    /// For each target the first source of the map that has a value: (source, stream, column).
+    fn choose(&mut self, streams: &[Named]) -> Vec<(usize, usize, usize)> {
+        let mut chosen: Vec<(usize, usize, usize)> = Vec::new();
+        for (index, source) in self.map.sources.iter().enumerate() {
+            for (at, named) in streams.iter().enumerate() {
+                let Some(column) = named.sources.iter().position(|(source, _)| *source == index) else {
+                    continue;
+                };
+                let taken = chosen.iter().any(|(other, ..)| self.map.sources[*other].target == source.target);
+                let holds = named.stream.columns[column].iter().any(|value| !value.is_nan());
+                let reason = match (holds, taken) {
+                    (true, false) => {
+                        chosen.push((index, at, column));
+                        continue;
+                    }
+                    (true, true) => "an earlier source gives the same channel",
+                    (false, _) => "it holds no number",
+                };
+                let name = format!("{}, {}", named.topic, fields(&source.place));
+                self.ignored.push(Ignored { name, reason: reason.into() });
+            }
+        }
+        chosen
+    }
+
+    /// The stream whose stamps become the rows: the map's, or the slowest of those that tell power.
+    fn base(&self, streams: &[Named], chosen: &[(usize, usize, usize)]) -> Result<usize, Error> {
+        if let Some(base) = &self.map.base {
+            let named = streams.iter().position(|named| Map::topic_matches(base, &named.topic));
+            return named.ok_or_else(|| {
+                Error::missing_names(&[format!("the map's base {base}")], &[base], &self.names)
+            });
+        }
+        let power =
+            |source: usize| matches!(&self.map.sources[source].target, Target::Channel(c) if c.tells_power());
+        let tells = chosen.iter().filter(|(source, ..)| power(*source)).map(|(_, stream, _)| *stream);
+        let slowest = tells.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s));
+        Ok(slowest.or(chosen.first().map(|(_, stream, _)| *stream)).unwrap_or(0))
+    }
+
+    fn align(
+        &mut self,
+        streams: &[Named],
+        chosen: &[(usize, usize, usize)],
+        base: usize,
+        name: &str,
+        report: &mut ReadingReport,
+    ) -> Recording {
+        let origin_ns = streams[base].stream.t_ns.first().copied().unwrap_or(0);
+        let t_s = streams[base].stream.t_s(origin_ns);
+        let mut recording = Recording::default();
+        let mut max_gaps = BTreeMap::new();
+        for &(source, at, column) in chosen {
+            let (source, named) = (&self.map.sources[source], &streams[at]);
+            let values = &named.stream.columns[column];
+            let values = if at == base {
+                values.clone()
+            } else {
+                let own_s = named.stream.t_s(origin_ns);
+                let max_gap_s = self.map.max_gap_s.unwrap_or_else(|| gap::threshold_s(&own_s));
+                max_gaps.insert(named.topic.clone(), max_gap_s);
+                let between = if source.target == Target::Channel(Channel::Heading) {
+                    Between::ShorterArc
+                } else {
+                    Between::Line
+                };
+                interpolate(&own_s, values, &t_s, max_gap_s, between)
+            };
+            if values.iter().all(|value| value.is_nan()) {
+                let reason = format!("its stamps do not meet those of {}", streams[base].topic);
+                self.ignored.push(Ignored { name: named.topic.clone(), reason });
+                continue;
+            }
+            match &source.target {
+                Target::Channel(channel) => {
+                    let from = format!("{} {}", named.topic, fields(&source.place));
+                    report.channels.push(ChannelReport::new(*channel, from, source.unit.clone()));
+                    recording.channels.insert(*channel, values);
+                }
+                Target::Aside(name) => {
+                    recording.aside.insert(name.clone(), values);
+                }
+                Target::Time | Target::Run | Target::Surface => {}
+            }
+        }
+        let start_unix_s = (origin_ns > 0).then_some(origin_ns as f64 / 1e9);
+        recording.runs = vec![Run::new(name.to_owned(), 0..t_s.len(), &t_s, start_unix_s)];
+        recording.surface = self.map.surface.as_ref().map(|surface| Labels::constant(surface, t_s.len()));
+        recording.t_s = t_s;
+        report.alignment = Some(alignment(&streams[base].topic, max_gaps));
+        recording
+    }
+}
+
+/// A topic's stream, and the sources of the map that its columns are.
+struct Named {
+    topic: String,
+    sources: Vec<(usize, usize)>,
+    stream: Stream,
+    /// Its median step \[s\]; infinite for a single message.
+    step_s: f64,
+}
+
+fn fields(place: &Place) -> String {
+    match place {
+        Place::Topic { fields, .. } => fields.join(", "),
+        Place::Columns(names) => names.join(", "),
+    }
+}
+
+fn alignment(base: &str, max_gaps: BTreeMap<String, f64>) -> AlignmentReport {
+    let max_gap_s: Vec<(String, f64)> = max_gaps.into_iter().collect();
+    let gaps: Vec<String> =
+        max_gap_s.iter().map(|(topic, gap_s)| format!("{gap_s:.3} s of {topic}")).collect();
+    let others = match gaps.as_slice() {
+        [] => "no other topic is used".to_owned(),
+        _ => format!(
+            "others interpolated linearly, headings on the shorter arc, between neighbours at most {} apart; nothing \
+             beyond either end",
+            gaps.join(", ")
+        ),
+    };
+    AlignmentReport {
+        base: base.to_owned(),
+        method: format!("rows are the stamps of {base}; {others}"),
+        max_gap_s,
+    }
+}

@@ -1,0 +1,85 @@
+//! A body that goes to disk as it comes, with its hash, and never as a whole into memory.
+
+use axum::{
+    body::Body,
+    http::{HeaderMap, header},
+};
+use futures_util::StreamExt;
+use sha2::{Digest, Sha256};
+use tempfile::NamedTempFile;
+use tokio::io::{AsyncWriteExt, BufWriter};
+
+use crate::{
+    Engine,
+    problem::{Problem, ProblemType},
+    recordings::{ID_CHARACTERS, cannot},
+};
+
+/// Bytes that are collected before they are written.
+const BUFFER_BYTES: usize = 1 << 20;
+
+/// What was received.
+pub(crate) struct Received {
+    pub(crate) file: NamedTempFile,
+    pub(crate) bytes: u64,
+    /// Of the content.
+    pub(crate) id: String,
+}
+
+/// Writes a body into the store's folder, refused once it exceeds the limits.
+pub(crate) async fn receive(engine: &Engine, headers: &HeaderMap, body: Body) -> Result<Received, Problem> {
+    let room = Room::of(engine).await?;
+    let declared =
+        headers.get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok()).and_then(|v| v.parse().ok());
+    room.refuse_beyond(declared.unwrap_or(0))?;
+    let own = engine.clone();
+    let file = engine.on_disk(move || own.recordings().receive()).await?;
+    let reopened = file.reopen().map_err(|error| cannot("write to", &error))?;
+    let mut writer = BufWriter::with_capacity(BUFFER_BYTES, tokio::fs::File::from_std(reopened));
+    let (mut hash, mut bytes) = (Sha256::new(), 0u64);
+    let mut chunks = body.into_data_stream();
+    while let Some(chunk) = chunks.next().await {
+        let chunk = chunk.map_err(|error| {
+            Problem::new(ProblemType::InvalidRequest, format!("the body ended early: {error}; send it again"))
+        })?;
+        bytes += chunk.len() as u64;
+        room.refuse_beyond(bytes)?;
+        hash.update(&chunk);
+        writer.write_all(&chunk).await.map_err(|error| cannot("write to", &error))?;
+    }
+    writer.flush().await.map_err(|error| cannot("write to", &error))?;
+    let id: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(Received { file, bytes, id: id.chars().take(ID_CHARACTERS).collect() })
+}
+
+/// How many bytes may still come.
+struct Room {
+    one: u64,
+    free: u64,
+}
+
+impl Room {
+    async fn of(engine: &Engine) -> Result<Room, Problem> {
+        let own = engine.clone();
+        let held = engine.on_disk(move || own.recordings().bytes()).await?;
+        let limits = engine.limits();
+        Ok(Room { one: limits.recording_bytes, free: limits.stored_recording_bytes.saturating_sub(held) })
+    }
+
+    fn refuse_beyond(&self, bytes: u64) -> Result<(), Problem> {
+        if bytes > self.one {
+            let detail = format!(
+                "the recording exceeds {} bytes: cut it into several, or write it as Parquet, MCAP with compression or \
+                 with fewer topics",
+                self.one
+            );
+            return Err(Problem::new(ProblemType::TooLarge, detail));
+        }
+        if bytes > self.free {
+            let detail =
+                format!("the recording exceeds the {} bytes that are free: delete one first", self.free);
+            return Err(Problem::new(ProblemType::StoreFull, detail));
+        }
+        Ok(())
+    }
+}

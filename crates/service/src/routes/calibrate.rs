@@ -1,0 +1,151 @@
+//! `POST /v1/calibrate`: fit a robot to recordings, as a job.
+
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use axum::{
+    Json,
+    extract::State,
+    http::{HeaderName, StatusCode, header},
+};
+use calibration::{Method, Options, lift};
+use model::Robot;
+use recording::{Map, Recording, Watch};
+use serde::Deserialize;
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::{jobs::JobAnswer, robots::RobotChoice};
+use crate::{
+    Engine,
+    body::JsonBody,
+    job::Job,
+    problem::{Problem, ProblemType},
+    recordings::{Note, map_from},
+};
+
+/// Most recordings of one calibration.
+const MOST_RECORDINGS: usize = 1000;
+
+/// What to fit to what.
+#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CalibrateRequest {
+    /// Name of a built-in robot, or a robot: what is known before.
+    pub robot: RobotChoice,
+    /// Ids of stored recordings.
+    #[schema(min_items = 1, max_items = 1000)]
+    pub recordings: Vec<String>,
+    /// Which procedure: `fit` fits everything at once, `dogru-marques` is the paper's own. Default: `fit`.
+    #[serde(default)]
+    #[schema(value_type = String, example = "fit")]
+    pub method: Method,
+    /// For motor currents: the surface that what belongs to the robot is fitted on. Default: the one that tells most.
+    pub reference_surface: Option<String>,
+    /// Name of a built-in map, or a map, to read all recordings with. Default: the one that each was stored with.
+    #[schema(value_type = Option<Object>)]
+    pub map: Option<Value>,
+    /// Lifting test as CSV: a table of side, force_n, rim_speed_mps, power_w, which gives k1 and k2.
+    pub lift: Option<String>,
+}
+
+/// Start fitting a robot to recordings. The job's result has `parameters` (name, value, unit, interval_95, determined),
+/// `held_out` (how well runs are predicted that were not fitted), `notes`, and the fitted `robot`.
+#[utoipa::path(
+    post, path = "/v1/calibrate", tag = "jobs",
+    request_body = CalibrateRequest,
+    responses(
+        (status = 202, description = "Started; `Location` is the job", body = JobAnswer, headers(("location" = String))),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "No such robot or recording", body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "Too many jobs", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn handler(
+    State(engine): State<Engine>,
+    JsonBody(request): JsonBody<CalibrateRequest>,
+) -> Result<(StatusCode, [(HeaderName, String); 1], Json<JobAnswer>), Problem> {
+    let own = engine.clone();
+    let work = engine.on_disk(move || Work::prepare(&own, request)).await?;
+    let own = engine.clone();
+    let job = engine.start("calibrate", move |job| work.run(&own, job))?;
+    let location = format!("/v1/jobs/{}", job.id);
+    let status = job.status();
+    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(JobAnswer::of(&job, status))))
+}
+
+/// A calibration whose request was found right.
+struct Work {
+    robot: Robot,
+    notes: Vec<Note>,
+    map: Option<Map>,
+    method: Method,
+    options: Options,
+}
+
+impl Work {
+    /// Refuses at once what can be known without reading a recording.
+    fn prepare(engine: &Engine, request: CalibrateRequest) -> Result<Work, Problem> {
+        let CalibrateRequest { robot, recordings, method, reference_surface, map, lift } = request;
+        let count = recordings.len();
+        if !(1..=MOST_RECORDINGS).contains(&count) {
+            let detail = format!("{count} recordings are named, but it must be 1 to {MOST_RECORDINGS}");
+            return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/recordings"));
+        }
+        let mut robot = robot.robot()?;
+        if let Some(text) = lift {
+            let lifted = lift::read(&text).and_then(|lifts| lift::apply(&robot, &lifts));
+            robot = lifted.map_err(|error| {
+                Problem::new(ProblemType::InvalidRequest, format!("the lifting test: {error}")).at("/lift")
+            })?;
+        }
+        let note = |(i, id): (usize, &String)| {
+            engine.recordings().note(id).map_err(|problem| problem.at(format!("/recordings/{i}")))
+        };
+        Ok(Work {
+            robot,
+            notes: recordings.iter().enumerate().map(note).collect::<Result<_, _>>()?,
+            map: map.as_ref().map(map_from).transpose()?,
+            method,
+            options: Options { reference_surface },
+        })
+    }
+
+    fn run(self, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
+        let mut parts = Vec::with_capacity(self.notes.len());
+        for (i, note) in self.notes.iter().enumerate() {
+            let step = format!("reading recording {} of {}", i + 1, self.notes.len());
+            let watch = watch(job, step, note.bytes);
+            let reading = engine.recordings().read(note, self.map.as_ref(), &watch);
+            parts.push(reading.map_err(|problem| problem.at(format!("/recordings/{i}")))?.recording);
+        }
+        job.tell("fitting", None);
+        let recording = Recording::join(parts);
+        let found = self.method.calibrate(&self.robot, &recording, &self.options);
+        let found = found.map_err(|error| Problem::no_calibration(&error))?;
+        serde_json::to_value(&found).map_err(|error| {
+            Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))
+        })
+    }
+}
+
+/// Tells the job, by whole percents, how much of a recording has been read; stops reading when the job is called off.
+fn watch(job: &Arc<Job>, step: String, bytes: u64) -> Watch {
+    let (job, read) = (Arc::clone(job), AtomicU64::new(0));
+    let percent = move |read: u64| (100.0 * read as f64 / bytes.max(1) as f64).floor().min(100.0);
+    Arc::new(move |more| {
+        let before = read.fetch_add(more, Ordering::Relaxed);
+        let now = percent(before + more);
+        if before == 0 || now > percent(before) {
+            job.tell(&step, Some(now / 100.0));
+        }
+        if job.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+}

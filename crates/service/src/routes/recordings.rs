@@ -1,0 +1,209 @@
+//! `/v1/recordings`: drive logs at hand.
+
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use axum::{
+    Json,
+    extract::{Query, Request, State},
+    http::{StatusCode, Uri},
+};
+use recording::{Format, ReadingReport};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::{IntoParams, ToSchema};
+
+use crate::{
+    Engine,
+    body::{Id, content_type},
+    problem::{Problem, ProblemType},
+    receive::{Received, receive},
+    recordings::{Note, map_from},
+};
+
+/// How a recording is to be read.
+#[derive(Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct ReadingQuery {
+    /// Name of a built-in map (`husky`, `borealtc`), or a map as JSON, which names columns or topics and their units.
+    /// Default: columns are what their names say, topics those of a Husky.
+    pub map: Option<String>,
+    /// What the run is called where the file does not say. Default: `recording`.
+    pub name: Option<String>,
+}
+
+/// A recording in brief.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct RecordingSummary {
+    /// Content hash: the same file always has the same id.
+    #[schema(example = "0f3a86b2c1d94e7785aa01c2b3d4e5f6")]
+    pub id: String,
+    /// Its format.
+    pub format: Format,
+    /// Its size [bytes].
+    pub bytes: u64,
+    /// Rows of the table that it was read into.
+    pub rows: u64,
+    /// Names of its drives.
+    pub runs: Vec<String>,
+}
+
+/// Recordings at hand.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct RecordingList {
+    /// In the order of their ids.
+    pub recordings: Vec<RecordingSummary>,
+}
+
+/// A recording with what reading it found.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct RecordingAnswer {
+    /// The recording in brief.
+    #[serde(flatten)]
+    pub summary: RecordingSummary,
+    /// What was found, used, left aside, repaired, missing and suspicious.
+    #[schema(value_type = ReadingReport)]
+    pub report: Value,
+}
+
+impl From<&Note> for RecordingSummary {
+    fn from(note: &Note) -> Self {
+        let runs = note.report["runs"].as_array().map_or(&[][..], Vec::as_slice);
+        RecordingSummary {
+            id: note.id.clone(),
+            format: note.format,
+            bytes: note.bytes,
+            rows: note.report["rows"].as_u64().unwrap_or(0),
+            runs: runs.iter().filter_map(|run| run["run"].as_str().map(str::to_owned)).collect(),
+        }
+    }
+}
+
+impl From<Note> for RecordingAnswer {
+    fn from(note: Note) -> Self {
+        RecordingAnswer { summary: (&note).into(), report: note.report }
+    }
+}
+
+/// Store a recording: CSV (text/csv), Parquet (application/vnd.apache.parquet), MCAP (application/mcap) or a ROS 1 bag
+/// (application/x-rosbag). The body goes to disk as it comes, and is read once to be checked.
+#[utoipa::path(
+    post, path = "/v1/recordings", tag = "recordings",
+    params(ReadingQuery),
+    request_body(content(
+        (String = "text/csv"),
+        (Vec<u8> = "application/vnd.apache.parquet"),
+        (Vec<u8> = "application/mcap"),
+        (Vec<u8> = "application/x-rosbag")
+    )),
+    responses(
+        (status = 201, description = "Stored", body = RecordingAnswer),
+        (status = 200, description = "Was at hand already; it was read anew", body = RecordingAnswer),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 507, body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn create(
+    State(engine): State<Engine>,
+    request: Request,
+) -> Result<(StatusCode, Json<RecordingAnswer>), Problem> {
+    let format = format_of(&content_type(&request))?;
+    let ReadingQuery { map, name } = query(request.uri())?;
+    let map = map.map(|text| serde_json::from_str(&text).unwrap_or(Value::String(text)));
+    map.as_ref().map(map_from).transpose()?;
+    let (parts, body) = request.into_parts();
+    let received = receive(&engine, &parts.headers, body).await?;
+    let name = name.unwrap_or_else(|| "recording".into());
+    let note =
+        Note { id: received.id.clone(), format, bytes: received.bytes, name, map, report: Value::Null };
+    let own = engine.clone();
+    let (note, new) = engine.work(move |left| checked(&own, received, note, left)).await?;
+    Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
+}
+
+/// Reads what was received and keeps it if it is a recording.
+fn checked(
+    engine: &Engine,
+    received: Received,
+    mut note: Note,
+    left: &Arc<AtomicBool>,
+) -> Result<(Note, bool), Problem> {
+    let map = note.map.as_ref().map(map_from).transpose()?;
+    let file = received.file.reopen().map_err(|error| crate::recordings::cannot("read", &error))?;
+    let left = Arc::clone(left);
+    let watch: recording::Watch = Arc::new(move |_| {
+        if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let reading = recording::read_file(file, note.format, &note.name, map.as_ref(), &watch)
+        .map_err(|error| Problem::invalid_recording(&error))?;
+    note.report = serde_json::to_value(&reading.report).map_err(|error| {
+        Problem::new(ProblemType::Internal, format!("the report cannot be written: {error}"))
+    })?;
+    let new = engine.recordings().keep(received.file, &note)?;
+    Ok((note, new))
+}
+
+fn query(uri: &Uri) -> Result<ReadingQuery, Problem> {
+    Query::try_from_uri(uri).map(|Query(query)| query).map_err(|error| {
+        let detail = format!("the query cannot be read: {error}; it may hold `map` and `name`");
+        Problem::new(ProblemType::InvalidRequest, detail)
+    })
+}
+
+/// The format that a content type stands for.
+fn format_of(kind: &str) -> Result<Format, Problem> {
+    Ok(match kind {
+        "text/csv" | "text/tab-separated-values" => Format::Csv,
+        "application/vnd.apache.parquet" | "application/x-parquet" | "application/parquet" => Format::Parquet,
+        "application/mcap" | "application/x-mcap" => Format::Mcap,
+        "application/x-rosbag" | "application/rosbag" => Format::Bag,
+        _ => {
+            let found = if kind.is_empty() { "no content type".to_owned() } else { format!("`{kind}`") };
+            let detail = format!(
+                "a recording is text/csv, application/vnd.apache.parquet, application/mcap or application/x-rosbag, but \
+                 the request has {found}"
+            );
+            return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
+        }
+    })
+}
+
+/// Recordings at hand.
+#[utoipa::path(get, path = "/v1/recordings", tag = "recordings", responses((status = 200, body = RecordingList)))]
+pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingList>, Problem> {
+    let own = engine.clone();
+    let notes = engine.on_disk(move || own.recordings().list()).await?;
+    Ok(Json(RecordingList { recordings: notes.iter().map(RecordingSummary::from).collect() }))
+}
+
+/// One recording and what reading it found.
+#[utoipa::path(
+    get, path = "/v1/recordings/{id}", tag = "recordings",
+    params(("id" = String, Path, description = "Content hash of the recording")),
+    responses((status = 200, body = RecordingAnswer), (status = 404, body = Problem, content_type = "application/problem+json"))
+)]
+pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<RecordingAnswer>, Problem> {
+    let own = engine.clone();
+    let note = engine.on_disk(move || own.recordings().note(&id)).await?;
+    Ok(Json(note.into()))
+}
+
+/// Forget a recording. Jobs that read it already finish.
+#[utoipa::path(
+    delete, path = "/v1/recordings/{id}", tag = "recordings",
+    params(("id" = String, Path, description = "Content hash of the recording")),
+    responses((status = 204, description = "Forgotten"), (status = 404, body = Problem, content_type = "application/problem+json"))
+)]
+pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
+    let own = engine.clone();
+    engine.on_disk(move || own.recordings().remove(&id)).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,12 @@
+#![no_main]
+//! Any bytes are read as a GeoTIFF or refused.
+
+use libfuzzer_sys::fuzz_target;
+use terrain::io;
+
+/// Small, so that a claim of many cells is refused before it is believed.
+const MOST_CELLS: u64 = 1 << 16;
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = io::geotiff::read(bytes, MOST_CELLS);
+});

@@ -1,0 +1,243 @@
+//! Calibration as a job of the running service: its answer, its events, its end, and what is refused.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+
+use std::{fs::OpenOptions, io::Write, path::PathBuf, process::Command};
+
+use joulepath_tests::{Server, drive_csv, program};
+use serde_json::{Value, json};
+
+const RUNS: usize = 4;
+const ROWS: usize = 300;
+
+fn stored(server: &Server) -> String {
+    let answer = server.post("/v1/recordings", "text/csv", drive_csv(RUNS, ROWS).as_bytes());
+    assert_eq!(answer.status, 201, "{}", answer.text);
+    answer.json()["id"].as_str().unwrap().to_owned()
+}
+
+fn started(server: &Server, body: &Value) -> String {
+    let answer = server.post_json("/v1/calibrate", body);
+    assert_eq!(answer.status, 202, "{}", answer.text);
+    let id = answer.json()["id"].as_str().unwrap().to_owned();
+    assert_eq!(answer.location.as_deref(), Some(format!("/v1/jobs/{id}").as_str()));
+    id
+}
+
+fn ended(server: &Server, job: &str) -> Value {
+    let last = server.events(&format!("/v1/jobs/{job}/events"), None).last().unwrap();
+    assert_eq!(
+        server.get(&format!("/v1/jobs/{job}")).json(),
+        last.data,
+        "the last event is the job as it stays"
+    );
+    last.data
+}
+
+#[test]
+fn the_service_and_the_command_fit_the_same_robot_and_answer_with_the_same_document() {
+    let server = Server::start();
+    let id = stored(&server);
+    for method in ["fit", "dogru-marques"] {
+        let job = started(&server, &json!({ "robot": "husky-a200", "recordings": [id], "method": method }));
+        let job = ended(&server, &job);
+        assert_eq!((&job["kind"], &job["state"]), (&json!("calibrate"), &json!("done")), "{job}");
+        let folder = tempfile::tempdir().unwrap();
+        let (file, out) = (folder.path().join("drive.csv"), folder.path().join("robot.json"));
+        std::fs::write(&file, drive_csv(RUNS, ROWS)).unwrap();
+        let output = Command::new(program())
+            .args(["calibrate", "--json", "--method", method, "--recording"])
+            .args([&file])
+            .args(["--out".as_ref(), out.as_os_str()])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(printed, job["result"]);
+        let robot: Value = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
+        assert_eq!(robot, job["result"]["robot"], "the file is the robot of the document");
+    }
+}
+
+#[test]
+fn a_fitted_robot_can_be_planned_with() {
+    let server = Server::start();
+    let id = stored(&server);
+    let job = ended(&server, &started(&server, &json!({ "robot": "husky-a200", "recordings": [id] })));
+    for field in ["name", "value", "unit", "interval_95", "determined"] {
+        assert!(job["result"]["parameters"][0].get(field).is_some(), "parameters have no {field}");
+    }
+    assert!(job["result"]["held_out"]["rmse_w"].is_f64() && job["result"]["held_out"]["r2"].is_f64());
+    let flat: Vec<Vec<f64>> = vec![vec![0.0; 12]; 8];
+    let plan = server.post_json(
+        "/v1/plan",
+        &json!({
+            "map": { "cell_size_m": 1.0, "rows": 8, "columns": 12, "elevation_m": flat }, "robot": job["result"]["robot"],
+            "start": { "x_m": 2.5, "y_m": 2.5 }, "goal": { "x_m": 9.5, "y_m": 5.5 }
+        }),
+    );
+    assert_eq!(plan.status, 200, "{}", plan.text);
+}
+
+#[test]
+fn wrong_requests_are_refused_at_once_with_the_pointer_to_the_field() {
+    let server = Server::start();
+    let id = stored(&server);
+    let good = json!({ "robot": "husky-a200", "recordings": [id] });
+    let unit = json!({ "name": "m", "sources": [{ "channel": "power_w", "column": "p", "unit": "A" }] });
+    for (field, value, status, kind, at) in [
+        (
+            "recordings",
+            json!([id, "0123456789abcdef0123456789abcdef"]),
+            404,
+            "unknown-recording",
+            "/recordings/1",
+        ),
+        ("recordings", json!(["../../etc/passwd"]), 404, "unknown-recording", "/recordings/0"),
+        ("recordings", json!([]), 400, "invalid-request", "/recordings"),
+        ("recordings", json!(7), 400, "invalid-request", "/recordings"),
+        ("robot", json!("jackal"), 404, "unknown-robot", "/robot"),
+        ("robot", json!({ "name": "x" }), 400, "invalid-request", "/robot"),
+        ("method", json!("guess"), 400, "invalid-request", "/method"),
+        ("map", json!("rover"), 400, "invalid-request", "/map"),
+        ("map", unit, 400, "invalid-request", "/map/sources/0/unit"),
+        ("lift", json!("side,force_n\nleft,3\n"), 400, "invalid-request", "/lift"),
+        ("colour", json!("red"), 400, "invalid-request", "/colour"),
+    ] {
+        let mut body = good.clone();
+        body[field] = value;
+        let problem = server.post_json("/v1/calibrate", &body).problem(status, kind);
+        assert_eq!(problem["errors"][0]["pointer"], at, "{problem}");
+    }
+    server.get("/v1/jobs/nothing").problem(404, "unknown-job");
+    server.delete("/v1/jobs/nothing").problem(404, "unknown-job");
+    server.get("/v1/jobs/nothing/events").problem(404, "unknown-job");
+    server.post("/v1/calibrate", "text/csv", b"robot\n").problem(415, "unsupported-media-type");
+}
+
+#[test]
+fn what_only_reading_can_tell_fails_the_job_with_a_problem() {
+    let server = Server::start();
+    let id = stored(&server);
+    let currents = "t_s,v_left_mps,v_right_mps,motor_current_left_a,motor_current_right_a\n".to_owned()
+        + &(0..200)
+            .map(|row| format!("{},0.5,0.5,2.{},2.1\n", row as f64 / 10.0, row % 10))
+            .collect::<String>();
+    let currents = server.post("/v1/recordings", "text/csv", currents.as_bytes()).json()["id"].clone();
+    let weave = "t_s,v_left_mps,v_right_mps,power_left_w,power_right_w\n".to_owned()
+        + &(0..200)
+            .map(|row| format!("{0},0.{1},0.5,2{1},31\n", row as f64 / 10.0, row % 10))
+            .collect::<String>();
+    let weave = server.post("/v1/recordings", "text/csv", weave.as_bytes()).json()["id"].clone();
+    let map = json!({ "name": "m", "sources": [{ "channel": "pitch_rad", "column": "power_left_w" }] });
+    for (body, kind, at, said) in [
+        (
+            json!({ "recordings": [currents], "reference_surface": "lava" }),
+            "unknown-surface",
+            "/reference_surface",
+            "`lava`",
+        ),
+        (json!({ "recordings": [currents] }), "insufficient-recording", "/recordings", "record two or more"),
+        (
+            json!({ "recordings": [weave], "method": "dogru-marques" }),
+            "insufficient-recording",
+            "/recordings",
+            "clearly different turning radii",
+        ),
+        (
+            json!({ "recordings": [id], "map": map }),
+            "invalid-recording",
+            "/recordings/0",
+            "power_left_w is missing",
+        ),
+    ] {
+        let mut request = body.clone();
+        request["robot"] = json!("husky-a200");
+        let job = ended(&server, &started(&server, &request));
+        assert_eq!((&job["state"], &job["problem"]["type"]), (&json!("failed"), &json!(kind)), "{job}");
+        assert_eq!(job["problem"]["errors"][0]["pointer"], at, "{job}");
+        assert!(job["problem"]["detail"].as_str().unwrap().contains(said), "{job}");
+    }
+}
+
+/// A server whose recording is a pipe: jobs that read it wait for what the test writes.
+struct Held {
+    server: Server,
+    recording: String,
+    pipe: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+fn held() -> Held {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start_with(&["--store", &folder.path().display().to_string()]);
+    let recording = stored(&server);
+    let pipe = folder.path().join("recordings").join(format!("{recording}.data"));
+    std::fs::remove_file(&pipe).unwrap();
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    Held { server, recording, pipe, _folder: folder }
+}
+
+#[test]
+fn who_comes_back_to_the_events_of_a_job_is_told_the_rest() {
+    let Held { server, recording, pipe, _folder } = held();
+    let job = started(&server, &json!({ "robot": "husky-a200", "recordings": [recording] }));
+    let path = format!("/v1/jobs/{job}/events");
+    let text = drive_csv(RUNS, ROWS);
+    let (first, rest) = text.split_at(text.len() / 2);
+    let mut pipe = OpenOptions::new().write(true).open(pipe).unwrap();
+    pipe.write_all(first.as_bytes()).unwrap();
+    let reading = server.events(&path, None).find(|event| event.data["state"] == "running").unwrap();
+    assert_eq!(
+        (reading.name.as_str(), &reading.data["progress"]["step"]),
+        ("progress", &json!("reading recording 1 of 1"))
+    );
+    let fraction = reading.data["progress"]["fraction"].as_f64().unwrap();
+    assert!((0.0..=0.51).contains(&fraction), "{fraction}");
+    pipe.write_all(rest.as_bytes()).unwrap();
+    drop(pipe);
+
+    let later: Vec<_> = server.events(&path, Some(&reading.id)).collect();
+    let number = |id: &str| id.parse::<u64>().unwrap();
+    assert!(later.iter().all(|event| number(&event.id) > number(&reading.id)), "{later:?}");
+    let last = later.last().unwrap();
+    assert_eq!((last.name.as_str(), &last.data["state"]), ("done", &json!("done")));
+    assert_eq!(server.events(&path, Some(&last.id)).status, 204, "there is no more to tell");
+    let again: Vec<_> = server.events(&path, Some("no number")).collect();
+    assert_eq!(again.len(), 1, "who lost its place is told the end");
+}
+
+#[test]
+fn a_cancelled_job_stays_cancelled_and_can_then_be_forgotten() {
+    let Held { server, recording, pipe, _folder } = held();
+    let body = json!({ "robot": "husky-a200", "recordings": [recording] });
+    let job = started(&server, &body);
+    let path = format!("/v1/jobs/{job}");
+    let mut events = server.events(&format!("{path}/events"), None);
+    assert_eq!(events.next().unwrap().name, "progress");
+    let cancelled = server.delete(&path);
+    assert_eq!((cancelled.status, &cancelled.json()["state"]), (200, &json!("cancelled")));
+    assert_eq!(events.last().unwrap().name, "cancelled");
+    // The work itself ends at the next bytes that it reads: the writer is then alone.
+    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
+    let endless = std::iter::repeat_n(drive_csv(1, ROWS), 10_000);
+    let refused = endless.map(|text| writer.write_all(text.as_bytes())).find_map(Result::err);
+    assert_eq!(refused.map(|error| error.kind()), Some(std::io::ErrorKind::BrokenPipe));
+    assert_eq!(server.get(&path).json()["state"], "cancelled");
+    assert_eq!(server.delete(&path).status, 204);
+    server.get(&path).problem(404, "unknown-job");
+}
+
+#[test]
+fn jobs_are_bounded_and_do_not_keep_plans_or_the_end_waiting() {
+    let Held { mut server, recording, pipe: _, _folder } = held();
+    let body = json!({ "robot": "husky-a200", "recordings": [recording] });
+    let jobs: Vec<String> = (0..32).map(|_| started(&server, &body)).collect();
+    server.post_json("/v1/calibrate", &body).problem(503, "too-many-jobs");
+    assert_eq!(server.get(&format!("/v1/jobs/{}", jobs[31])).json()["state"], "queued");
+    assert_eq!(server.delete(&format!("/v1/jobs/{}", jobs[31])).status, 200);
+    started(&server, &body);
+    let events = server.events(&format!("/v1/jobs/{}/events", jobs[0]), None);
+    assert!(server.terminate().success());
+    assert_eq!(events.last().unwrap().name, "cancelled", "who follows a job is told that the service ends");
+}
