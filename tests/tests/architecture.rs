@@ -32,6 +32,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-bench",
         "joulepath-recording",
         "joulepath-calibration",
+        "joulepath-diagnosis",
         "joulepath-service",
         "joulepath",
     ];
@@ -87,6 +88,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
             "joulepath-planner",
             "joulepath-recording",
             "joulepath-calibration",
+            "joulepath-diagnosis",
             "joulepath-bench",
         ]
         .contains(&package.name.as_str());
