@@ -185,8 +185,10 @@ fn strength_of_share(
         return Ok(strength);
     }
     let [_, most] = effect.effect.range();
-    let mut strength = effect.strength;
-    for _ in 0..6 {
+    let (mut strength, mut before) = (effect.strength, None::<[f64; 2]>);
+    // How steeply the share grows with strength on logarithmic scales: wind by its square, most effects in proportion.
+    let mut steepness = 1.0;
+    for _ in 0..8 {
         let acting = World { effects: vec![Effect { strength, ..effect.clone() }], ..quiet.clone() };
         let log = simulate(&acting, robot, drive)?;
         let pairs = log.rows.iter().zip(&plain.rows).filter(|(row, _)| row.t_s >= effect.onset_s);
@@ -197,7 +199,12 @@ fn strength_of_share(
         if (factor - 1.0).abs() < NEAR {
             break;
         }
-        strength = (strength * factor.clamp(0.2, 5.0)).min(most);
+        if let Some([earlier, earlier_found]) = before {
+            let (rise, run) = ((found / earlier_found).ln(), f64::ln(strength / earlier));
+            steepness = if run.abs() > 1e-9 { (rise / run).clamp(0.5, 3.0) } else { 1.0 };
+        }
+        before = Some([strength, found.max(1e-6)]);
+        strength = (strength * factor.clamp(0.1, 10.0).powf(1.0 / steepness)).min(most);
     }
     // A delay below one row cannot be told from none.
     let least = if effect.effect == EffectName::ClockOffset { 1.0 / world.sensors.rate_hz } else { 0.0 };
