@@ -9,11 +9,16 @@ mod baseline;
 mod candidates;
 mod error;
 mod evidence;
+mod gates;
 mod knobs;
 mod noise;
 mod nuisance;
+mod null;
+mod parts;
+mod polish;
 mod search;
 mod series;
+mod weigh;
 
 pub use error::Error;
 pub use search::{Found, Search, search};

@@ -136,14 +136,34 @@ impl Series {
         self.averages.iter().filter(|a| a.suspect).map(|a| a.t_s).fold(0.0, f64::max)
     }
 
+    /// Time between rows of the drives under suspicion [s].
+    pub fn row_s(&self) -> f64 {
+        let rows = &self.parts[0].drives.rows;
+        let mut steps: Vec<f64> = rows.iter().map(|row| row.step_s).filter(|step_s| *step_s > 0.0).collect();
+        crate::noise::median(&mut steps)
+    }
+
     /// What would have been recorded of a robot on which mechanisms act in the drives under suspicion.
     ///
     /// # Errors
     /// A surface that the robot does not know.
     pub fn predict(&self, robot: &Robot, applied: &[Applied]) -> Result<Vec<f64>, Error> {
+        self.predict_with(robot, applied, &[])
+    }
+
+    /// The same with mechanisms in healthy drives too.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub fn predict_with(
+        &self,
+        robot: &Robot,
+        suspect: &[Applied],
+        healthy: &[Applied],
+    ) -> Result<Vec<f64>, Error> {
         let mut seen = Vec::with_capacity(self.recorded.len());
         for part in &self.parts {
-            let rows = part.predict(robot, if part.suspect { applied } else { &[] }, self.form)?;
+            let rows = part.predict(robot, if part.suspect { suspect } else { healthy }, self.form)?;
             let channels = 0..self.channels;
             channels.for_each(|channel| seen.extend(part.drives.averaged_by(|row| rows[row][channel])));
         }
