@@ -8,7 +8,7 @@ use crate::{
     Drives, Error, SlipTrack, current_calibration,
     current_judge::SurfaceVerdict,
     folds,
-    power::{PowerModel, seen_w},
+    power::{by_row, seen_w},
     power_fit::{PowerFit, fit_power, fit_thinned},
     score::{Score, median},
     stuck,
@@ -169,8 +169,9 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
             }
         }
         let form = others.form.unwrap_or(PowerForm::Battery);
-        let seen = PowerModel::new(others)
-            .by_row(&judging, |row, power| seen_w(&judging, form, row, power).iter().sum::<f64>())?;
+        let seen = by_row(others, &judging, |i, power| {
+            seen_w(&judging, form, &others.rows[i], power).iter().sum::<f64>()
+        })?;
         let predicted = others.averaged(&seen);
         let recorded = others.averaged_by(|row| others.recorded.iter().map(|column| column[row]).sum());
         for run in others.judged_runs() {

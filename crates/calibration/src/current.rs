@@ -6,8 +6,8 @@ use model::{Robot, Sides, rolling, skid};
 
 use crate::{
     Drives,
-    drives::Row,
     lag::{self, ATTITUDE_TIME_S},
+    row::Row,
     slip_law,
 };
 

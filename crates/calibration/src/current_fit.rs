@@ -154,7 +154,7 @@ fn turns_both_ways(drives: &Drives) -> bool {
     const LEAST_SHARE: f64 = 0.1;
     let used = || drives.rows.iter().filter(|row| row.used && !row.stuck);
     let least = LEAST_SHARE * used().count() as f64;
-    let both = |side: fn(&crate::drives::Row) -> f64| {
+    let both = |side: fn(&crate::row::Row) -> f64| {
         let forwards = used().filter(|row| side(row) > TURNING_MPS).count() as f64;
         let backwards = used().filter(|row| side(row) < -TURNING_MPS).count() as f64;
         forwards.min(backwards) > least

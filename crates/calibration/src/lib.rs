@@ -3,7 +3,9 @@
 //! SI units; axes and signs are those of the `model` and `recording` crates. What is fitted and what is judged are averages over
 //! one second ([`Drives`]); runs are kept apart, and no run is judged by a fit that saw it.
 
+pub mod average;
 pub mod calibrate;
+mod copies;
 pub mod current;
 pub mod current_calibration;
 pub mod current_fit;
@@ -19,6 +21,7 @@ pub mod power;
 pub mod power_fit;
 pub mod predict;
 pub mod report;
+pub mod row;
 pub mod score;
 pub mod slip_law;
 mod stuck;

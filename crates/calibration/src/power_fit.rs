@@ -86,7 +86,7 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
         }
     }
     let model = PowerModel::new(drives);
-    model.by_row(&robot, |_, _| ())?;
+    model.averages(&robot, |_, _| [])?;
     let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);
@@ -112,14 +112,10 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
 
 /// One-second averages of what a recording of a candidate would show, column behind column.
 fn predicted(model: &PowerModel<'_>, candidate: &Robot, drives: &Drives, form: PowerForm) -> Vec<f64> {
-    let Ok(seen) = model.by_row(candidate, |row, power| seen_w(candidate, form, row, power)) else {
+    let Ok(seen) = model.averages(candidate, |row, power| seen_w(candidate, form, row, power)) else {
         return Vec::new();
     };
-    let mut averages = drives.averaged_by(|row| seen[row][0]);
-    if drives.recorded.len() == 2 {
-        averages.extend(drives.averaged_by(|row| seen[row][1]));
-    }
-    averages
+    (0..drives.recorded.len()).flat_map(|column| seen.iter().map(move |watts| watts[column])).collect()
 }
 
 /// How far errors scatter, and by how much their hanging together widens what follows from them.

@@ -16,7 +16,7 @@ const MOST_POINTS: usize = 1500;
 /// and surface. Residuals are one-second averages of recorded less predicted power.
 pub fn html(robot: &Robot, found: &PredictedDrives) -> String {
     let drives = &found.drives;
-    let mean = |f: &dyn Fn(usize) -> f64| drives.averaged_by(f);
+    let mean = |f: &(dyn Fn(usize) -> f64 + Sync)| drives.averaged_by(f);
     let residual_w = mean(&|i| found.recorded_w[i] - found.predicted_w[i]);
     let speed_mps = mean(&|i| drives.rows[i].speed_mps());
     let yaw_radps = mean(&|i| drives.rows[i].difference_mps() / robot.slip_track_m);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use calibration::{
     Drives, Options, calibrate,
-    power::{PowerModel, seen_w},
+    power::{by_row, seen_w},
     power_fit::fit_power,
     predict,
 };
@@ -72,8 +72,7 @@ fn with_power(robot: &Robot, mut recording: Recording, random: &mut Pcg64Mcg) ->
         recording.channels.insert(channel, vec![0.0; recording.t_s.len()]);
     }
     let prepared = Drives::new(robot, &recording).unwrap();
-    let seen = PowerModel::new(&prepared)
-        .by_row(robot, |row, power| seen_w(robot, PowerForm::Sides, row, power))
+    let seen = by_row(&prepared, robot, |i, power| seen_w(robot, PowerForm::Sides, &prepared.rows[i], power))
         .unwrap();
     for (side, channel) in [Channel::LeftPower, Channel::RightPower].into_iter().enumerate() {
         let noisy = |watts: &[f64; 2]| watts[side] + (2.0 + 0.03 * watts[side].abs()) * normal(random);
@@ -246,4 +245,20 @@ proptest! {
         prop_assert!(again.rmse_w < 1e-9);
         prop_assert!((again.predicted_j - again.recorded_j).abs() < 1e-6 * again.recorded_j.abs().max(1.0));
     }
+}
+
+#[test]
+fn one_thread_and_two_find_the_same_robot() {
+    let mut random = Pcg64Mcg::new(11);
+    let truth = truth(&mut random);
+    let plain = drives(&mut random, RUNS, ROWS);
+    let recording = with_power(&truth, plain, &mut random);
+    let found = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let calibration = calibrate(&file(), &recording, &Options::default()).unwrap();
+            (predict(&calibration.robot, &recording).unwrap().prediction, calibration)
+        })
+    });
+    assert_eq!(found[0], found[1], "to the last bit");
 }
