@@ -87,8 +87,9 @@ pub fn jacobian(
     DMatrix::from_columns(&columns)
 }
 
-/// The search ends when a step lowers the sum of squares by less than this share: a hundred-thousandth of a sigma in n rows.
-const COST_CHANGE: f64 = 1e-10;
+/// The search ends when a step lowers the sum of squares by less than this share. Of n values that is n/1e8 in χ², for 100 000 of
+/// them a parameter's thirtieth of a sigma.
+const COST_CHANGE: f64 = 1e-8;
 const MAX_ITERATIONS: u64 = 200;
 /// Step of the central differences, as a fraction of a parameter's range: near the cube root of the rounding.
 const DIFFERENCE_STEP: f64 = 1e-5;
