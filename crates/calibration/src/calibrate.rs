@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::{
     Drives, Error, SlipTrack, current_calibration,
     current_judge::SurfaceVerdict,
+    fit::NORMAL_975,
     folds,
     power::{by_row, seen_w},
     power_fit::{PowerFit, fit_power, fit_thinned},
@@ -88,12 +89,20 @@ pub fn calibrate(robot: &Robot, recording: &Recording, options: &Options) -> Res
     let mut parameters = vec![track];
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
     let held_out = power_held_out(&robot, &drives)?;
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = held_note(&parameters).into_iter().collect();
     if held_out.is_none() {
         notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
     }
     let robot = with_uncertainty(&found);
     Ok(Calibration { parameters, held_out, notes, robot })
+}
+
+/// Names what the recording does not determine, for a person to read.
+pub(crate) fn held_note(parameters: &[FittedParameter]) -> Option<String> {
+    let held: Vec<&str> = parameters.iter().filter(|p| !p.determined).map(|p| p.name.as_str()).collect();
+    let note =
+        || format!("not determined by these drives, held at what was known before: {}", held.join(", "));
+    (!held.is_empty()).then(note)
 }
 
 /// The robot with the slip track that its gyroscope and wheels agree on, where both turned.
@@ -116,9 +125,6 @@ pub(crate) fn with_slip_track(robot: &Robot, drives: &Drives) -> (Robot, FittedP
         _ => (robot.clone(), parameter(robot.slip_track_m, None, false)),
     }
 }
-
-/// 97.5 % quantile of the normal distribution.
-pub(crate) const NORMAL_975: f64 = 1.959_964;
 
 fn fitted(found: &PowerFit, i: usize) -> FittedParameter {
     let (parameter, fit) = (&found.fit.parameters[i], &found.fit);

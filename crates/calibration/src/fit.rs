@@ -185,17 +185,23 @@ impl Fit {
 
     /// The recording says more about the parameter than was known before.
     ///
-    /// A sigma above [`LEAST_GAIN`] of the prior's, or one that spans the whole range of the parameter, says nothing.
+    /// A sigma above [`LEAST_GAIN`] of the prior's, or one that spans the whole range of the parameter, says nothing; a value
+    /// outside the prior's own 95 % interval contradicts it, which says something all the same.
     pub fn determined(&self, index: usize) -> bool {
         let parameter = &self.parameters[index];
-        let before = parameter.prior.map_or(parameter.bounds[1] - parameter.bounds[0], |[_, sigma]| sigma);
-        !parameter.held && self.sigma(index) < LEAST_GAIN * before
+        let range = parameter.bounds[1] - parameter.bounds[0];
+        let [mean, before] = parameter.prior.unwrap_or([self.values[index], range]);
+        let contradicts = (self.values[index] - mean).abs() > NORMAL_975 * before;
+        !parameter.held && (self.sigma(index) < LEAST_GAIN * before || contradicts)
     }
 }
 
 /// A posterior sigma above this share of the prior's counts as no gain: the recording then holds less than 0.6 of the
 /// information that the prior does (1/0.8² − 1).
 pub const LEAST_GAIN: f64 = 0.8;
+
+/// 97.5 % quantile of the normal distribution.
+pub(crate) const NORMAL_975: f64 = 1.959_964;
 
 /// The pseudo-Huber error: e for small e, √(2δ|e|) for large ones, so that its square is the loss.
 fn huber(error: f64, delta: f64) -> f64 {
@@ -207,7 +213,7 @@ fn huber(error: f64, delta: f64) -> f64 {
 /// The 97.5 % quantile of Student's t by the Cornish-Fisher series (Abramowitz & Stegun 26.7.5), good to 1 % from 3 degrees of
 /// freedom on; fewer are taken for 3.
 fn student_975(freedom: f64) -> f64 {
-    let (x, n) = (1.959_964_f64, freedom.max(3.0));
+    let (x, n) = (NORMAL_975, freedom.max(3.0));
     let terms = [
         (x.powi(3) + x) / 4.0,
         (5.0 * x.powi(5) + 16.0 * x.powi(3) + 3.0 * x) / 96.0,

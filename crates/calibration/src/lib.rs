@@ -17,6 +17,7 @@ pub mod fit;
 pub mod folds;
 pub mod lag;
 pub mod lift;
+mod noise;
 pub mod power;
 pub mod power_fit;
 pub mod predict;

@@ -10,21 +10,19 @@ use crate::{
     Drives, Error,
     fit::{Fit, Parameter, Problem},
     folds,
+    noise::Noise,
     power::{PowerModel, seen_w},
-    score::median,
 };
 
 /// What is known of ground that the robot file does not name: rolling 0.1 ± 0.1 and skid 0.4 ± 0.3 span hard floor to loose
 /// sand (Dogru & Marques 2018, Fig. 13; BorealTC: 0.10 to 0.15 and 0.11 to 0.61); the scale is the file's default.
 const NEW_GROUND: [[f64; 2]; 3] = [[0.1, 0.1], [0.4, 0.3], [0.3, 0.15]];
 /// Relative sigma of a slip-angle scale that the robot file gives; its `uncertainty` has no such entry.
-const SCALE_SIGMA: f64 = 0.5;
+pub(crate) const SCALE_SIGMA: f64 = 0.5;
 /// Sigma of the fraction that comes back: that of a fraction of which nothing is known, √(1/12).
 const REGENERATION_SIGMA: f64 = 0.29;
 /// Sigma of a standing power that the robot file gives as zero \[W\]: a computer and its sensors.
 const STANDING_SIGMA_W: f64 = 30.0;
-/// Errors beyond so many sigma count linearly: Huber's choice of 1.5 to 3 keeps 95 % efficiency or more on normal errors.
-const LARGEST_SIGMAS: f64 = 2.5;
 
 /// The robot as fitted to recordings of power.
 #[derive(Clone, Debug)]
@@ -93,8 +91,8 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
     let problem = |noise: Noise| Problem {
         recorded: &recorded,
         block: &block,
-        noise: noise.sigma_w * noise.inflation.sqrt(),
-        largest: LARGEST_SIGMAS * noise.sigma_w,
+        noise: noise.weight(),
+        largest: noise.largest(),
         predict: &predict,
     };
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
@@ -116,38 +114,6 @@ fn predicted(model: &PowerModel<'_>, candidate: &Robot, drives: &Drives, form: P
         return Vec::new();
     };
     (0..drives.recorded.len()).flat_map(|column| seen.iter().map(move |watts| watts[column])).collect()
-}
-
-/// How far errors scatter, and by how much their hanging together widens what follows from them.
-#[derive(Clone, Copy)]
-struct Noise {
-    sigma_w: f64,
-    inflation: f64,
-}
-
-impl Noise {
-    /// From the median error, and the correlation ρ of neighbouring seconds as (1 + ρ) / (1 − ρ), the variance of a mean of a
-    /// first-order process over that of white noise.
-    fn of(predicted: &[f64], recorded: &[f64], drives: &Drives) -> Noise {
-        /// Ratio of sigma to the median absolute error of a normal distribution.
-        const SIGMA_PER_MEDIAN: f64 = 1.4826;
-        let errors: Vec<f64> = predicted.iter().zip(recorded).map(|(p, r)| p - r).collect();
-        let magnitudes: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
-        let floor_w = 1e-6 * median(&recorded.iter().map(|r| r.abs()).collect::<Vec<_>>()).max(1e-3);
-        let sigma_w = (SIGMA_PER_MEDIAN * median(&magnitudes)).max(floor_w);
-        let clip = |e: f64| e.clamp(-3.0 * sigma_w, 3.0 * sigma_w);
-        let (mut product, mut square) = (0.0, 0.0);
-        for (i, pair) in errors.windows(2).enumerate() {
-            let n = drives.averages.len();
-            let together = (i + 1) % n != 0 && drives.averages[i % n].run == drives.averages[(i + 1) % n].run;
-            if together {
-                product += clip(pair[0]) * clip(pair[1]);
-                square += clip(pair[0]).powi(2);
-            }
-        }
-        let correlation = if square > 0.0 { (product / square).clamp(0.0, 0.9) } else { 0.0 };
-        Noise { sigma_w, inflation: (1.0 + correlation) / (1.0 - correlation) }
-    }
 }
 
 /// The robot with the ground that the recording names and it lacks.
