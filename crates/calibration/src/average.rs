@@ -83,6 +83,15 @@ impl Drives {
         sums.map(|sum| sum / average.used as f64)
     }
 
+    /// 100 (predicted − recorded) / recorded energy of a run, from averages of power \[%\].
+    pub(crate) fn energy_error_percent(&self, run: usize, predicted_w: &[f64], recorded_w: &[f64]) -> f64 {
+        let energy_j = |watts: &[f64]| -> f64 {
+            let of_run = self.averages.iter().zip(watts).filter(|(average, _)| average.run == run);
+            of_run.map(|(average, w)| w * average.duration_s).sum()
+        };
+        100.0 * (energy_j(predicted_w) / energy_j(recorded_w) - 1.0)
+    }
+
     /// Averages of what was recorded, column behind column.
     pub fn recorded_averages(&self) -> Vec<f64> {
         self.recorded.iter().flat_map(|column| self.averaged(column)).collect()

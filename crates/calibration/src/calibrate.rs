@@ -180,13 +180,8 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
         })?;
         let predicted = others.averaged(&seen);
         let recorded = others.averaged_by(|row| others.recorded.iter().map(|column| column[row]).sum());
-        for run in others.judged_runs() {
-            let energy_j = |watts: &[f64]| -> f64 {
-                let of_run = others.averages.iter().zip(watts).filter(|(average, _)| average.run == run);
-                of_run.map(|(average, w)| w * average.duration_s).sum()
-            };
-            energies.push(100.0 * (energy_j(&predicted) / energy_j(&recorded) - 1.0).abs());
-        }
+        let error = |run: usize| others.energy_error_percent(run, &predicted, &recorded).abs();
+        energies.extend(others.judged_runs().into_iter().map(error));
         predicted_w.extend(predicted);
         recorded_w.extend(recorded);
     }

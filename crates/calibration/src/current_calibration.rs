@@ -9,9 +9,9 @@ use crate::{
     current::YawSource,
     current_fit::{CurrentFit, LIFTING, SCALE, fit_force_alone, fit_reference, fit_surface},
     current_judge::{SurfaceVerdict, judge},
+    field::SCALE_SIGMA,
     fit::NORMAL_975,
     folds,
-    power_fit::SCALE_SIGMA,
     score::median,
     slip_law,
 };
@@ -200,7 +200,7 @@ fn rest_of_the_model(found: &CurrentCalibration) -> Vec<FittedParameter> {
         name: format!("current_model.{}", fit.parameters[i].name),
         value: fit.values[i],
         unit: fit.parameters[i].unit.into(),
-        interval_95: (fit.sigma(i) > 0.0).then(|| fit.interval_95(i)),
+        interval_95: Some(fit.interval_95(i)),
         determined: fit.determined(i),
     })
     .collect()

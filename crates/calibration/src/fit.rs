@@ -41,7 +41,7 @@ pub struct Fit {
     pub parameters: Vec<Parameter>,
     /// Values, one a parameter.
     pub values: Vec<f64>,
-    /// Covariance of the values; zero where held.
+    /// Covariance of the values; the prior's variance where held.
     pub covariance: DMatrix<f64>,
     /// Quantile of Student's t that makes a 95 % interval of a sigma.
     pub student: f64,
@@ -82,6 +82,10 @@ impl Problem<'_> {
         let jacobian = least_squares::jacobian(residuals, &x, &lower, &upper);
         let (covariance, student) = self.covariance(&jacobian, &errors);
         let mut whole = DMatrix::zeros(parameters.len(), parameters.len());
+        for (i, parameter) in parameters.iter().enumerate().filter(|(_, parameter)| parameter.held) {
+            // What is held keeps the width of what was known before.
+            whole[(i, i)] = parameter.prior.map_or(0.0, |[_, sigma]| sigma * sigma);
+        }
         for (a, &i) in free.iter().enumerate() {
             for (b, &j) in free.iter().enumerate() {
                 whole[(i, j)] = covariance[(a, b)];
@@ -147,19 +151,19 @@ impl Problem<'_> {
                 scores[(j, block)] += jacobian[(row, j)] * errors[row];
             }
         }
+        let bread = (jacobian.transpose() * jacobian)
+            .pseudo_inverse(1e-14)
+            .unwrap_or_else(|_| DMatrix::zeros(count, count));
         let mut middle = &scores * scores.transpose();
-        // Fitted errors are smaller than true ones: Cameron & Miller (2015), *A practitioner's guide to cluster-robust inference*, eq. 12.
-        let rows = self.recorded.len() as f64;
-        let scale =
-            blocks as f64 / (blocks as f64 - 1.0).max(1.0) * (rows - 1.0) / (rows - count as f64).max(1.0);
-        middle *= scale;
+        // Fitted errors are smaller than true ones by the share of the blocks that the parameters take up, the mean leverage of a
+        // block: Bell & McCaffrey (2002), *Bias reduction in standard errors with multi-stage samples*, of which this is the mean.
+        let data = jacobian.rows(0, self.recorded.len());
+        let taken_up = (&bread * data.transpose() * data).trace();
+        middle *= blocks as f64 / (blocks as f64 - taken_up).max(1.0);
         for row in self.recorded.len()..errors.len() {
             let gradient = DVector::from_iterator(count, jacobian.row(row).iter().copied());
             middle += &gradient * gradient.transpose() * self.noise * self.noise;
         }
-        let bread = (jacobian.transpose() * jacobian)
-            .pseudo_inverse(1e-14)
-            .unwrap_or_else(|_| DMatrix::zeros(count, count));
         let sandwich = &bread * middle * &bread;
         let stretch = DVector::from_fn(count, |i, _| {
             let trusting = self.noise * self.noise * bread[(i, i)];

@@ -13,6 +13,7 @@ pub mod current_judge;
 pub mod dogru_marques;
 pub mod drives;
 mod error;
+mod field;
 pub mod fit;
 pub mod folds;
 pub mod lag;

@@ -63,12 +63,14 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
     let at = |values: Option<&[f64]>, row: usize, absent: f64| values.map_or(absent, |v| v[row]);
     let (left, right) = (channel(Channel::LeftSpeed), channel(Channel::RightSpeed));
     let (yaw, pitch, roll) = (channel(Channel::YawRate), channel(Channel::Pitch), channel(Channel::Roll));
-    let warm = (channel(Channel::LeftMotorTemperature), channel(Channel::RightMotorTemperature));
     let reference_c = robot.motors.reference_temperature_c;
+    let warm = [Channel::LeftMotorTemperature, Channel::RightMotorTemperature]
+        .map(|side| channel(side).map(|values_c| nearest(values_c, recording)));
+    let [left_c, right_c] = warm.each_ref().map(Option::as_deref);
     let row = |i: usize| {
         let rim_mps = Sides { left: at(left, i, f64::NAN), right: at(right, i, f64::NAN) };
         let (pitch_rad, roll_rad) = (at(pitch, i, 0.0), at(roll, i, 0.0));
-        let motor_c = Sides { left: at(warm.0, i, reference_c), right: at(warm.1, i, reference_c) };
+        let motor_c = Sides { left: at(left_c, i, reference_c), right: at(right_c, i, reference_c) };
         let whole = recorded.iter().all(|column| column[i].is_finite())
             && [rim_mps.left, rim_mps.right, pitch_rad, roll_rad].iter().all(|x| x.is_finite());
         let or = |x: f64, other: f64| if x.is_finite() { x } else { other };
@@ -84,6 +86,22 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
         }
     };
     (0..recording.rows()).into_par_iter().map(row).collect()
+}
+
+/// Gaps filled with the nearest value of the same run: a motor warms over minutes, and its sensor may be read once a second.
+fn nearest(values: &[f64], recording: &Recording) -> Vec<f64> {
+    let mut filled = values.to_vec();
+    for run in &recording.runs {
+        let measured: Vec<usize> = run.rows.clone().filter(|&i| values[i].is_finite()).collect();
+        let mut next = 0;
+        for i in run.rows.clone() {
+            while next + 1 < measured.len() && measured[next + 1].abs_diff(i) <= measured[next].abs_diff(i) {
+                next += 1;
+            }
+            filled[i] = measured.get(next).map_or(f64::NAN, |&at| values[at]);
+        }
+    }
+    filled
 }
 
 /// Fills in the accelerations of a stretch, by central differences.

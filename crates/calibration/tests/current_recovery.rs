@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::collections::BTreeMap;
-
 use calibration::{
     Drives, Options, calibrate,
     current::{CurrentModel, CurrentParameters, YawSource},
@@ -15,7 +13,7 @@ use rayon::prelude::*;
 use recording::{Channel, Recording};
 
 mod simulated;
-use simulated::{drives, normal, seeded};
+use simulated::{Coverage, drives, normal, seeded};
 
 /// Numbers of a robot of a Husky's size: what is known of them before is what they are drawn from.
 fn truth(random: &mut Pcg64Mcg) -> CurrentParameters {
@@ -77,21 +75,17 @@ fn determined_numbers_lie_in_their_95_per_cent_intervals_about_as_often_as_promi
         (0..found.values.len()).filter_map(of).collect::<Vec<_>>()
     };
     let trials: Vec<_> = (2000..2000 + TRIALS).into_par_iter().map(trial).collect();
-    let mut hits: BTreeMap<String, (u64, u64)> = BTreeMap::new();
-    for (name, inside) in trials.into_iter().flatten() {
-        let entry = hits.entry(name).or_default();
-        *entry = (entry.0 + u64::from(inside), entry.1 + 1);
-    }
-    println!("{hits:#?}");
-    let always: Vec<_> = hits.iter().filter(|(_, (_, trials))| *trials > TRIALS / 2).collect();
-    assert!(always.len() >= 6, "most numbers are determined by such drives: {hits:?}");
-    let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
-    let share = inside as f64 / trials as f64;
-    assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
-    for (name, (inside, trials)) in always {
-        // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
-        assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
-    }
+    let mut coverage = Coverage::default();
+    trials.into_iter().for_each(|trial| coverage.add(trial));
+    coverage.assert_as_promised(&[
+        "rolling_current",
+        "rolling_split",
+        "skid_current",
+        "slip_angle_scale",
+        "slip_shape",
+        "lifting_current",
+        "inertia",
+    ]);
 }
 
 #[test]

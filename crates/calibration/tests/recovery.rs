@@ -2,16 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::collections::BTreeMap;
-
 use calibration::{Drives, Options, calibrate, power_fit::fit_power, predict};
 use model::{Attitude, Motion, Robot, Sides, builtin, power};
 use proptest::prelude::*;
 use rand_pcg::Pcg64Mcg;
-use recording::Channel;
+use rayon::prelude::*;
+use recording::{Channel, Recording};
 
 mod simulated;
-use simulated::{ROWS, RUNS, drives, normal, seeded, with_power};
+use simulated::{
+    Coverage, ROWS, RUNS, drives, normal, over_two_grounds, seeded, with_battery_power, with_heat, with_power,
+};
 
 /// What the robot file says; the truth of each trial is drawn from it with its own uncertainty.
 fn file() -> Robot {
@@ -39,52 +40,103 @@ fn truth(random: &mut Pcg64Mcg) -> Robot {
 }
 
 fn value(robot: &Robot, name: &str) -> f64 {
-    let marble = &robot.surfaces["marble"];
-    match name {
-        "surfaces.marble.mu_roll" => marble.mu_roll,
-        "surfaces.marble.mu_skid" => marble.mu_skid,
-        "surfaces.marble.slip_angle_scale_rad" => marble.slip_angle_scale_rad,
-        "motors.left.k1_w_per_n2" => robot.motors.left.k1_w_per_n2,
-        "motors.left.k2" => robot.motors.left.k2,
-        "motors.right.k1_w_per_n2" => robot.motors.right.k1_w_per_n2,
-        "motors.right.k2" => robot.motors.right.k2,
-        "motors.regeneration" => robot.motors.regeneration,
-        "drive_electronics_w" => robot.drive_electronics_w,
-        other => unreachable!("{other}"),
-    }
+    let json = serde_json::to_value(robot).unwrap();
+    json.pointer(&format!("/{}", name.replace('.', "/"))).unwrap().as_f64().unwrap()
+}
+
+/// Fits a hundred recordings of robots that are drawn from what the file says of them.
+fn coverage(seeds: u64, simulate: impl Fn(&mut Pcg64Mcg) -> (Robot, Recording) + Sync) -> Coverage {
+    let trial = |seed: u64| {
+        let (truth, recording) = simulate(&mut seeded(seed));
+        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
+        let inside = |i: usize| {
+            let name = &fit.parameters[i].name;
+            let [low, high] = fit.interval_95(i);
+            fit.determined(i).then(|| (name.clone(), (low..=high).contains(&value(&truth, name))))
+        };
+        (0..fit.values.len()).filter_map(inside).collect::<Vec<_>>()
+    };
+    let trials: Vec<_> = (seeds..seeds + 100).into_par_iter().map(trial).collect();
+    let mut coverage = Coverage::default();
+    trials.into_iter().for_each(|trial| coverage.add(trial));
+    coverage
 }
 
 #[test]
 fn determined_parameters_lie_in_their_95_per_cent_intervals_about_as_often_as_promised() {
-    const TRIALS: usize = 100;
-    let mut hits: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     // Other seeds than those that the intervals were worked out on.
-    for seed in 1000..1000 + TRIALS as u64 {
-        let mut random = seeded(seed);
-        let truth = truth(&mut random);
-        let plain = drives(&mut random, RUNS, ROWS);
-        let recording = with_power(&truth, plain, &mut random);
-        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
-        for i in 0..fit.values.len() {
-            if fit.determined(i) {
-                let name = &fit.parameters[i].name;
-                let [low, high] = fit.interval_95(i);
-                let entry = hits.entry(name.clone()).or_default();
-                entry.0 += usize::from((low..=high).contains(&value(&truth, name)));
-                entry.1 += 1;
-            }
-        }
+    let coverage = coverage(1000, |random| {
+        let truth = truth(random);
+        let plain = drives(random, RUNS, ROWS);
+        let recording = with_power(&truth, plain, random);
+        (truth, recording)
+    });
+    let names = [
+        "surfaces.marble.mu_roll",
+        "surfaces.marble.mu_skid",
+        "surfaces.marble.slip_angle_scale_rad",
+        "motors.left.k1_w_per_n2",
+        "motors.right.k1_w_per_n2",
+        "motors.regeneration",
+        "drive_electronics_w",
+    ];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn motors_that_warm_tell_their_temperature_coefficients_and_each_ground_its_friction() {
+    let coverage = coverage(3000, |random| {
+        let mut truth = truth(random);
+        truth.motors.resistance_per_k += 0.001 * normal(random);
+        truth.motors.motor_constant_per_k = (-0.0012 + 0.0006 * normal(random)).min(0.0);
+        let plain = over_two_grounds(drives(random, RUNS, ROWS), ["marble", "sandy_loam"]);
+        let recording = with_power(&truth, with_heat(plain, random), random);
+        (truth, recording)
+    });
+    let names = [
+        "motors.resistance_per_k",
+        "motors.motor_constant_per_k",
+        "surfaces.marble.mu_roll",
+        "surfaces.sandy_loam.mu_roll",
+        "surfaces.sandy_loam.mu_skid",
+    ];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn the_battery_alone_tells_hotel_power_and_friction() {
+    let coverage = coverage(4000, |random| {
+        let mut truth = truth(random);
+        truth.hotel_power_w = 40.0 + 10.0 * normal(random);
+        let plain = drives(random, RUNS, ROWS);
+        let recording = with_battery_power(&truth, plain, random);
+        (truth, recording)
+    });
+    let names =
+        ["hotel_power_w", "drive_electronics_w", "surfaces.marble.mu_roll", "surfaces.marble.mu_skid"];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn cold_motors_hold_their_temperature_coefficients_and_say_so() {
+    let mut random = seeded(1);
+    let truth = truth(&mut random);
+    let plain = drives(&mut random, RUNS, ROWS);
+    let mut warm = with_power(&truth, plain, &mut random);
+    let held = |recording: &Recording| {
+        let found = calibrate(&file(), recording, &Options::default()).unwrap();
+        let of = |name: &str| found.parameters.iter().find(|p| p.name == name).unwrap().clone();
+        let (copper, magnets) = (of("motors.resistance_per_k"), of("motors.motor_constant_per_k"));
+        assert_eq!((copper.value, copper.determined), (0.0039, false));
+        assert_eq!((magnets.value, magnets.determined), (-0.0012, false));
+        assert!(found.notes.iter().any(|note| note.contains("motors.resistance_per_k")), "{:?}", found.notes);
+    };
+    held(&warm);
+    for channel in [Channel::LeftMotorTemperature, Channel::RightMotorTemperature] {
+        let lukewarm = (0..warm.t_s.len()).map(|i| 40.0 + 4.0 * (i as f64 / 100.0).sin().abs());
+        warm.channels.insert(channel, lukewarm.collect());
     }
-    println!("{hits:#?}");
-    let always: Vec<_> = hits.iter().filter(|(_, (_, trials))| *trials > TRIALS / 2).collect();
-    assert!(always.len() >= 6, "most parameters are determined by such drives: {hits:?}");
-    let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
-    let share = inside as f64 / trials as f64;
-    assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
-    for (name, (inside, trials)) in always {
-        // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
-        assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
-    }
+    held(&warm);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use calibration::{
 use model::Robot;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
-use recording::{Channel, PowerForm, Recording, Run};
+use recording::{Channel, Labels, PowerForm, Recording, Run};
 
 pub(crate) const RUNS: usize = 12;
 pub(crate) const ROWS: usize = 400;
@@ -83,4 +83,81 @@ pub(crate) fn with_power(robot: &Robot, mut recording: Recording, random: &mut P
         recording.channels.insert(channel, seen.iter().map(noisy).collect());
     }
     recording
+}
+
+/// The same recording with the power of the battery alone, hotel load included, and noise of 4 W and 3 %.
+pub(crate) fn with_battery_power(
+    robot: &Robot,
+    mut recording: Recording,
+    random: &mut Pcg64Mcg,
+) -> Recording {
+    recording.channels.insert(Channel::Power, vec![0.0; recording.t_s.len()]);
+    let prepared = Drives::new(robot, &recording).unwrap();
+    let seen =
+        by_row(&prepared, robot, |i, power| seen_w(robot, PowerForm::Battery, &prepared.rows[i], power))
+            .unwrap();
+    let noisy = |[watts, _]: &[f64; 2]| watts + (4.0 + 0.03 * watts.abs()) * normal(random);
+    recording.channels.insert(Channel::Power, seen.iter().map(noisy).collect());
+    recording
+}
+
+/// Motors that warm from 15-30 °C by up to 60 K in each run.
+pub(crate) fn with_heat(mut recording: Recording, random: &mut Pcg64Mcg) -> Recording {
+    for channel in [Channel::LeftMotorTemperature, Channel::RightMotorTemperature] {
+        let mut warm_c = Vec::with_capacity(recording.t_s.len());
+        for run in &recording.runs {
+            let (start_c, rise_k): (f64, f64) =
+                (random.random_range(15.0..30.0), random.random_range(0.0..60.0));
+            let rows = run.rows.len() as f64;
+            warm_c.extend((0..run.rows.len()).map(|i| start_c + rise_k * i as f64 / rows));
+        }
+        recording.channels.insert(channel, warm_c);
+    }
+    recording
+}
+
+/// Every second run on another ground.
+pub(crate) fn over_two_grounds(mut recording: Recording, names: [&str; 2]) -> Recording {
+    let mut index = vec![0; recording.t_s.len()];
+    recording.runs.iter().skip(1).step_by(2).for_each(|run| index[run.rows.clone()].fill(1));
+    recording.surface = Some(Labels { names: names.map(String::from).to_vec(), index });
+    recording
+}
+
+/// How often determined parameters lay in their intervals.
+#[derive(Debug, Default)]
+pub(crate) struct Coverage {
+    trials: usize,
+    /// Inside, determined.
+    hits: BTreeMap<String, (usize, usize)>,
+}
+
+impl Coverage {
+    /// Adds one trial: what it determined, and whether the truth lay inside.
+    pub(crate) fn add(&mut self, determined: impl IntoIterator<Item = (String, bool)>) {
+        self.trials += 1;
+        for (name, inside) in determined {
+            let entry = self.hits.entry(name).or_default();
+            *entry = (entry.0 + usize::from(inside), entry.1 + 1);
+        }
+    }
+
+    /// What most trials determined lay inside in 90 to 99 % of them all, and these names are among it.
+    pub(crate) fn assert_as_promised(&self, names: &[&str]) {
+        println!("{self:#?}");
+        let always: Vec<_> = self.hits.iter().filter(|(_, (_, trials))| *trials > self.trials / 2).collect();
+        for name in names {
+            assert!(
+                always.iter().any(|(known, _)| known == name),
+                "{name} is determined by such drives: {self:?}"
+            );
+        }
+        let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
+        let share = inside as f64 / trials as f64;
+        assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
+        for (name, (inside, trials)) in always {
+            // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
+            assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
+        }
+    }
 }
