@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::{
     Drives,
     current::{COUNT, CurrentModel, CurrentParameters, YawSource, idle_a},
+    field::SCALE_SIGMA,
     fit::{Fit, Parameter, Problem},
     folds,
     noise::Noise,
@@ -77,15 +78,22 @@ const FIRST: [Before; COUNT] = {
 const SCALE_STARTS_RAD: [f64; 2] = [0.08, 0.3];
 
 /// How far the numbers of another surface may lie from those of the reference: what belongs to the robot is nearly fixed,
-/// what belongs to the ground is open.
-fn after(reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
+/// what belongs to the ground is open, but for a slip-angle scale that the robot file has.
+fn after(robot: &Robot, drives: &Drives, reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
+    /// C of rubber on most ground.
+    const SHAPE: f64 = 1.4;
     let r = reference;
+    let ground = drives.stretches.first().map(|stretch| &drives.surfaces[stretch.surface]);
+    let in_the_file = ground.and_then(|name| robot.surfaces.get(name)).map(|s| s.slip_angle_scale_rad);
+    let scale = in_the_file
+        .filter(|scale_rad| *scale_rad > 0.0)
+        .map_or([0.08, 0.056], |scale_rad| [SHAPE * scale_rad, SCALE_SIGMA * SHAPE * scale_rad]);
     [
         Some([2.0, 5.0]),
         Some([r.split_a, 0.2]),
         None,
-        Some([0.08, 0.056]),
-        Some([1.4, 0.25]),
+        Some(scale),
+        Some([SHAPE, 0.25]),
         Some([r.lifting_a, 0.25 * r.lifting_a]),
         Some([r.inertia_a_per_mps2, 0.15]),
         Some([r.turning_inertia_a_per_mps2, 0.1]),
@@ -117,13 +125,13 @@ pub fn fit_reference(robot: &Robot, drives: &Drives) -> CurrentFit {
 
 /// Fits another surface of the same robot.
 pub fn fit_surface(robot: &Robot, drives: &Drives, reference: &CurrentFit, yaw: YawSource) -> CurrentFit {
-    let parameters = parameters(&after(&reference.parameters), drives);
+    let parameters = parameters(&after(robot, drives, &reference.parameters), drives);
     solve(robot, drives, reference.slip_track_m, yaw, &[parameters])
 }
 
 /// Fits with the lifting current left open: what one surface alone says about newtons per ampere.
 pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -> CurrentFit {
-    let mut priors = after(&reference.parameters);
+    let mut priors = after(robot, drives, &reference.parameters);
     priors[LIFTING] = None;
     let parameters = parameters(&priors, drives);
     solve(robot, drives, reference.slip_track_m, reference.yaw, &[parameters])

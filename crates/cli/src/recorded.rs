@@ -41,7 +41,7 @@ impl Recorded {
             }
             for doubt in &report.suspicions {
                 let run = doubt.run.as_deref().map_or(String::new(), |run| format!(", run {run}"));
-                eprintln!("{}{run}: {}", report.source, doubt.statement);
+                eprintln!("{}{run}: {}: {}", report.source, doubt.channel, doubt.statement);
             }
         }
         Ok((robot, recording))
