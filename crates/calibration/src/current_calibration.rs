@@ -13,7 +13,7 @@ use crate::{
     fit::NORMAL_975,
     folds,
     score::median,
-    slip_law,
+    slip_law::{TanhLaw, nearest_tanh},
 };
 
 /// The current model of a robot: one surface that what belongs to the robot was fitted on, and the others.
@@ -38,6 +38,8 @@ pub struct SurfaceFit {
     pub surface: String,
     /// The fit of all of its runs.
     pub fit: CurrentFit,
+    /// Its slip law as a robot file has it.
+    pub law: TanhLaw,
     /// The same with force per ampere left to this surface alone.
     pub force_alone: CurrentFit,
     /// How each half of the runs is judged by the other; `None` where there is one run.
@@ -85,7 +87,9 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         let verdict =
             judged.then(|| judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels).0);
         let force_alone = fit_force_alone(&robot, &here, &whole);
-        SurfaceFit { surface: drives.surfaces[i].clone(), fit, force_alone, verdict }
+        let p = &fit.parameters;
+        let law = nearest_tanh(&robot, &here, p.slip_angle_scale_rad, p.slip_shape);
+        SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict }
     });
     let surfaces = surfaces.collect();
     Ok(CurrentCalibration {
@@ -146,7 +150,8 @@ fn force_parameter(found: &CurrentCalibration) -> FittedParameter {
     }
 }
 
-/// μ_R = i0/G, μ_S = S/G and the tanh scale α_s/C of one surface, with the lifting current of the reference.
+/// μ_R = i0/G, μ_S = S/G and the slip-angle scale of one surface by the tanh law nearest to its own, with the lifting current of
+/// the reference.
 ///
 /// What the recording does not determine keeps the value of the robot file, where that knows the ground.
 fn friction_parameters(
@@ -174,14 +179,14 @@ fn friction_parameters(
     let share = |i: usize| fit.sigma(i) / fit.values[i].max(f64::MIN_POSITIVE);
     let force_known = reference.fit.determined(LIFTING) || file.motors.left.force_n_per_a.is_some();
     let friction = |field: &str, i: usize, before: Option<[f64; 2]>| {
-        let value = [fit.values[i] / lifting_a, share(i).hypot(lifting_share)];
+        let height = if i == SKID { surface.law.share } else { 1.0 };
+        let value = [height * fit.values[i] / lifting_a, share(i).hypot(lifting_share)];
         parameter(field, "1", value, fit.determined(i) && force_known, before)
     };
-    let scale_rad = slip_law::tanh_scale_rad(fit.values[SCALE], fit.values[SHAPE]);
     // Scale and shape move together: of their ratio, what they share cancels.
     let together = fit.covariance[(SCALE, SHAPE)] / (fit.values[SCALE] * fit.values[SHAPE]);
     let variance = share(SCALE).powi(2) + share(SHAPE).powi(2) - 2.0 * together;
-    let scale = [scale_rad, variance.max(0.0).sqrt()];
+    let scale = [surface.law.scale_rad, variance.max(0.0).sqrt()];
     let u = &file.uncertainty;
     let scale_before = known.map(|s| [s.slip_angle_scale_rad, SCALE_SIGMA]);
     [

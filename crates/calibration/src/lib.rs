@@ -24,6 +24,7 @@ pub mod power_fit;
 pub mod predict;
 pub mod report;
 pub mod row;
+mod scatter;
 pub mod score;
 pub mod slip_law;
 mod stuck;
