@@ -108,11 +108,7 @@ impl Judged {
         };
         let (predicted_w, recorded_w) = (watts(&predicted_a), watts(&recorded_a));
         let energy_error = |run: &usize| {
-            let energy_j = |watts: &[f64]| -> f64 {
-                let of_run = drives.averages.iter().zip(watts).filter(|(average, _)| average.run == *run);
-                of_run.map(|(average, w)| w * average.duration_s).sum()
-            };
-            (drives.runs[*run].clone(), 100.0 * (energy_j(&predicted_w) / energy_j(&recorded_w) - 1.0))
+            (drives.runs[*run].clone(), drives.energy_error_percent(*run, &predicted_w, &recorded_w))
         };
         let energies = drives.judged_runs().iter().map(energy_error).collect();
         Judged { predicted_a, recorded_a, predicted_w, recorded_w, energies }
