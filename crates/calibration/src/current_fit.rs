@@ -3,6 +3,8 @@
 //! The structure of the model, the widths of the priors and their centres for α_s and C were chosen on all runs of BorealTC;
 //! the numbers themselves are fitted to the runs at hand only.
 
+use std::borrow::Cow;
+
 use model::{Robot, STANDARD_GRAVITY_MPS2};
 use rayon::prelude::*;
 
@@ -21,6 +23,8 @@ const ROUGH_NOISE_A: f64 = 2.0;
 
 /// Rows that a fit looks at, evenly spread: what is left on real drives is no chance, which more rows would not average out.
 const MOST_ROWS: usize = 20_000;
+/// Rows that the rough fits look at, which only choose where to begin.
+const ROUGH_ROWS: usize = 5_000;
 
 /// The fit of one surface.
 #[derive(Clone, Debug)]
@@ -183,16 +187,12 @@ fn solve(
     yaw: YawSource,
     starts: &[Vec<Parameter>],
 ) -> CurrentFit {
-    let part = (drives.rows.len() > MOST_ROWS).then(|| drives.thinned(MOST_ROWS));
-    let drives = part.as_ref().filter(|part| !part.averages.is_empty()).unwrap_or(drives);
-    let idle_a = idle_a(drives);
-    let recorded: Vec<f64> = drives.recorded_averages();
-    let block = folds::blocks(drives);
-    let model = || CurrentModel::new(robot, drives, slip_track_m, yaw, idle_a);
+    let (part, some) = (thinned(drives, MOST_ROWS), thinned(drives, ROUGH_ROWS));
     let rough = |parameters: &Vec<Parameter>| {
-        let model = model();
-        let predict = |values: &[f64]| model.averages_a(&numbers(values));
         let (noise, largest) = (ROUGH_NOISE_A, ROUGH_NOISE_A);
+        let model = CurrentModel::new(robot, &some, slip_track_m, yaw, idle_a(&some));
+        let predict = |values: &[f64]| model.averages_a(&numbers(values));
+        let (recorded, block) = (some.recorded_averages(), folds::blocks(&some));
         Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict }.solve(parameters)
     };
     let rough: Vec<Fit> = starts.par_iter().map(rough).collect();
@@ -201,14 +201,22 @@ fn solve(
     for (parameter, value) in parameters.iter_mut().zip(best.iter().flat_map(|fit| &fit.values)) {
         parameter.start = *value;
     }
-    let model = model();
+    let idle_a = idle_a(&part);
+    let model = CurrentModel::new(robot, &part, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
+    let (recorded, block) = (part.recorded_averages(), folds::blocks(&part));
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
-    let noise = Noise::of(&predict(&start), &recorded, drives);
+    let noise = Noise::of(&predict(&start), &recorded, &part);
     let (noise, largest) = (noise.weight(), noise.largest());
     let problem = Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict };
     let fit = problem.solve_determined(&parameters);
     CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
+}
+
+/// About so many rows, or all where those are none that count.
+fn thinned(drives: &Drives, most_rows: usize) -> Cow<'_, Drives> {
+    let part = (drives.rows.len() > most_rows).then(|| drives.thinned(most_rows));
+    part.filter(|part| !part.averages.is_empty()).map_or(Cow::Borrowed(drives), Cow::Owned)
 }
 
 fn numbers(values: &[f64]) -> CurrentParameters {

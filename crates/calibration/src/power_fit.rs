@@ -22,7 +22,7 @@ pub struct PowerFit {
 }
 
 /// Rows on which a first fit of a long recording is made, before all of them have their say.
-const FIRST_ROWS: usize = 50_000;
+const FIRST_ROWS: usize = 20_000;
 
 /// Rounds of fit and noise at most, and the share of the noise before that counts as no change.
 const MOST_ROUNDS: usize = 5;

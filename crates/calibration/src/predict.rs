@@ -197,9 +197,8 @@ fn judge(
     }
     let by_row = Score::of(&predicted, &recorded);
     let places: Vec<usize> = (0..drives.averages.len()).filter(|&i| wanted(drives.averages[i].run)).collect();
-    let missed = |&i: &usize| (averages.predicted_w[i] - averages.recorded_w[i]).abs();
-    let missed: f64 = places.iter().map(missed).sum();
-    let amount: f64 = places.iter().map(|&i| averages.recorded_w[i].abs()).sum();
+    let of = |watts: &[f64]| places.iter().map(|&i| watts[i]).collect::<Vec<f64>>();
+    let by_second = Score::of(&of(&averages.predicted_w), &of(&averages.recorded_w));
     let current = (!averages.currents_a.is_empty()).then(|| {
         let column = |which: usize| {
             let sides = averages.currents_a.iter();
@@ -216,7 +215,8 @@ fn judge(
         r2: by_row.r2.is_finite().then_some(by_row.r2),
         recorded_j,
         predicted_j,
-        normalized_error_percent: (amount > 0.0).then(|| 100.0 * missed / amount),
+        normalized_error_percent: Some(by_second.normalized_error_percent)
+            .filter(|percent| percent.is_finite()),
         rmse_a: current.map(|score| score.rmse),
         r2_a: current.map(|score| score.r2),
     }
