@@ -1,0 +1,105 @@
+//! How much of what is left of the errors smooth functions of the inputs explain: none, where nothing is missing.
+
+use crate::{
+    baseline::Baseline,
+    linear::{FOLDS, Folded},
+    search::blocks,
+    series::{Average, Series},
+};
+
+/// Errors beyond count as this many sigma: a few outliers explain nothing.
+const MOST_SIGMAS: f64 = 5.0;
+/// Weights of "nothing" on each share, in rows, of which the best is taken.
+const RIDGES: [f64; 3] = [10.0, 100.0, 1000.0];
+
+/// Share of the squared whitened errors of the drives under suspicion that functions of the inputs explain where they were
+/// not fitted; beside healthy drives, what the same functions explain of both does not count.
+pub(crate) fn explained_share(series: &Series, base: &Baseline, left: &[f64]) -> f64 {
+    let errors: Vec<f64> = left.iter().map(|z| z.clamp(-MOST_SIGMAS, MOST_SIGMAS)).collect();
+    // Neighbouring blocks are judged by each other's fits, so that time itself may be followed.
+    let fold: Vec<usize> = blocks(series).iter().map(|block| block % FOLDS).collect();
+    let smooth = smooth(series, base);
+    let own = |column: &Vec<f64>| {
+        let suspect = column.iter().zip(&series.averages).map(|(x, a)| if a.suspect { *x } else { 0.0 });
+        suspect.collect::<Vec<f64>>()
+    };
+    let mut columns: Vec<Vec<f64>> = smooth.iter().map(own).collect();
+    let whole = squared(series, &errors, None);
+    let mut shared = whole;
+    if series.has_healthy() {
+        shared = unexplained(series, &errors, &smooth, &fold).min(whole);
+        columns.extend(smooth);
+    }
+    let left = unexplained(series, &errors, &columns, &fold);
+    ((shared - left) / whole.max(1e-300)).max(0.0)
+}
+
+/// Squared errors that remain where columns were not fitted.
+fn unexplained(series: &Series, errors: &[f64], columns: &[Vec<f64>], fold: &[usize]) -> f64 {
+    let folded = Folded::new(columns, errors, fold);
+    let nothing = vec![0.0; columns.len()];
+    let rest = |ridge: &f64| {
+        let explained = folded.held_out(columns, &vec![*ridge; columns.len()], &nothing);
+        squared(series, errors, Some(&explained))
+    };
+    RIDGES.iter().map(rest).fold(f64::INFINITY, f64::min)
+}
+
+fn squared(series: &Series, errors: &[f64], explained: Option<&[f64]>) -> f64 {
+    let rest = |i: usize| errors[i] - explained.map_or(0.0, |explained| explained[i]);
+    (0..errors.len()).filter(|i| series.averages[*i].suspect).map(|i| rest(i).powi(2)).sum()
+}
+
+/// Inputs, their squares and products, each channel's own, whitened and of mean square 1.
+fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
+    let longest_s = series.longest_s().max(1.0);
+    let inputs: Vec<Vec<f64>> = standardised(&series.averages, longest_s);
+    let mut products: Vec<Vec<f64>> = inputs.clone();
+    for (i, a) in inputs.iter().enumerate() {
+        for b in &inputs[i..] {
+            products.push(a.iter().zip(b).map(|(a, b)| a * b).collect());
+        }
+    }
+    products.push(vec![1.0; series.averages.len()]);
+    let mut columns = Vec::new();
+    for channel in 0..series.channels() {
+        for product in &products {
+            let own = product.iter().zip(&series.averages);
+            let values: Vec<f64> = own.map(|(x, a)| if a.channel == channel { *x } else { 0.0 }).collect();
+            let column = base.noise.whiten(&values, &base.predicted_w, &series.averages);
+            let size = (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt();
+            if size > 1e-9 {
+                columns.push(column.iter().map(|x| x / size).collect());
+            }
+        }
+    }
+    columns
+}
+
+/// Each input less its mean, over its spread.
+fn standardised(averages: &[Average], longest_s: f64) -> Vec<Vec<f64>> {
+    let of: [&dyn Fn(&Average) -> f64; 10] = [
+        &|a| a.input.speed_mps,
+        &|a| a.input.speed_mps.abs(),
+        &|a| a.input.difference_mps,
+        &|a| a.input.difference_mps.abs(),
+        &|a| a.input.pitch_rad,
+        &|a| a.input.roll_rad,
+        &|a| a.input.accel_mps2,
+        &|a| a.t_s / longest_s,
+        &|a| if a.input.heading_rad.is_finite() { a.input.heading_rad.cos() } else { 0.0 },
+        &|a| if a.input.heading_rad.is_finite() { a.input.heading_rad.sin() } else { 0.0 },
+    ];
+    let mut inputs = Vec::new();
+    for of in of {
+        let values: Vec<f64> = averages.iter().map(of).collect();
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let spread = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
+        if spread > 1e-6 {
+            // Rare extremes would rule the products.
+            inputs.push(values.iter().map(|x| ((x - mean) / spread).clamp(-3.0, 3.0)).collect());
+        }
+    }
+    inputs
+}
