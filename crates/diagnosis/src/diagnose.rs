@@ -116,11 +116,11 @@ impl Judged {
             held_out_rmse_w: held_out_rmse_w[0],
             noise_floor_w: floor_w(series, &found.after).min(corrected.rmse_w),
         };
-        let before = explained_share(series, &found.before, &found.left[0]);
+        let before = explained_share(series, &found.before, &steps[0].errors_w);
         let after = if found.found.is_empty() {
             before
         } else {
-            explained_share(series, &found.after, &found.left[1])
+            explained_share(series, &found.after, &steps[last].errors_w)
         };
         Ok(Judged { baseline, corrected, steps, held_out_rmse_w, explainable: [before, after], filed_w })
     }

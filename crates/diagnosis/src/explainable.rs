@@ -9,37 +9,41 @@ use crate::{
 
 /// Errors beyond count as this many sigma: a few outliers explain nothing.
 const MOST_SIGMAS: f64 = 5.0;
-/// Weights of "nothing" on each share, in rows, of which the best is taken.
-const RIDGES: [f64; 3] = [10.0, 100.0, 1000.0];
+/// Weights of "nothing" on each share, in rows, of which the best is taken; fewer overfit a drive of twenty minutes.
+const RIDGES: [f64; 3] = [300.0, 1000.0, 3000.0];
 
-/// Share of the squared whitened errors of the drives under suspicion that functions of the inputs explain where they were
-/// not fitted; beside healthy drives, what the same functions explain of both does not count.
-pub(crate) fn explained_share(series: &Series, base: &Baseline, left: &[f64]) -> f64 {
-    let errors: Vec<f64> = left.iter().map(|z| z.clamp(-MOST_SIGMAS, MOST_SIGMAS)).collect();
+/// Share of the squared errors of the drives under suspicion that functions of the inputs explain where they were not
+/// fitted; beside healthy drives, what a fit to those alone explains of the suspect ones does not count.
+///
+/// Errors count in sigma, but what a second tells of the next stays in: taking it out hides whatever lasts for a manoeuvre.
+pub(crate) fn explained_share(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
+    let sigmas = errors_w.iter().zip(&base.predicted_w).map(|(e, p)| e / base.noise.sigma_w(*p));
+    let errors: Vec<f64> = sigmas.map(|z| z.clamp(-MOST_SIGMAS, MOST_SIGMAS)).collect();
     // Neighbouring blocks are judged by each other's fits, so that time itself may be followed.
     let fold: Vec<usize> = blocks(series).iter().map(|block| block % FOLDS).collect();
     let smooth = smooth(series, base);
-    let own = |column: &Vec<f64>| {
-        let suspect = column.iter().zip(&series.averages).map(|(x, a)| if a.suspect { *x } else { 0.0 });
-        suspect.collect::<Vec<f64>>()
+    let of = |suspect: bool, column: &Vec<f64>| {
+        let own = column.iter().zip(&series.averages);
+        own.map(|(x, a)| if a.suspect == suspect { *x } else { 0.0 }).collect::<Vec<f64>>()
     };
-    let mut columns: Vec<Vec<f64>> = smooth.iter().map(own).collect();
+    let mut columns: Vec<Vec<f64>> = smooth.iter().map(|column| of(true, column)).collect();
     let whole = squared(series, &errors, None);
     let mut shared = whole;
     if series.has_healthy() {
-        shared = unexplained(series, &errors, &smooth, &fold).min(whole);
+        let healthy: Vec<Vec<f64>> = smooth.iter().map(|column| of(false, column)).collect();
+        let told = Folded::new(&healthy, &of(false, &errors), &fold);
+        shared = unexplained(series, &errors, &told, &smooth).min(whole);
         columns.extend(smooth);
     }
-    let left = unexplained(series, &errors, &columns, &fold);
+    let left = unexplained(series, &errors, &Folded::new(&columns, &errors, &fold), &columns);
     ((shared - left) / whole.max(1e-300)).max(0.0)
 }
 
-/// Squared errors that remain where columns were not fitted.
-fn unexplained(series: &Series, errors: &[f64], columns: &[Vec<f64>], fold: &[usize]) -> f64 {
-    let folded = Folded::new(columns, errors, fold);
+/// Squared errors that remain of what a fit, at its best ridge, says of columns.
+fn unexplained(series: &Series, errors: &[f64], fit: &Folded<'_>, columns: &[Vec<f64>]) -> f64 {
     let nothing = vec![0.0; columns.len()];
     let rest = |ridge: &f64| {
-        let explained = folded.held_out(columns, &vec![*ridge; columns.len()], &nothing);
+        let explained = fit.held_out(columns, &vec![*ridge; columns.len()], &nothing);
         squared(series, errors, Some(&explained))
     };
     RIDGES.iter().map(rest).fold(f64::INFINITY, f64::min)
@@ -50,7 +54,7 @@ fn squared(series: &Series, errors: &[f64], explained: Option<&[f64]>) -> f64 {
     (0..errors.len()).filter(|i| series.averages[*i].suspect).map(|i| rest(i).powi(2)).sum()
 }
 
-/// Inputs, their squares and products, each channel's own, whitened and of mean square 1.
+/// Inputs, their squares and products, each channel's own, in sigma and of mean square 1.
 fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
     let longest_s = series.longest_s().max(1.0);
     let inputs: Vec<Vec<f64>> = standardised(&series.averages, longest_s);
@@ -65,8 +69,11 @@ fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
     for channel in 0..series.channels() {
         for product in &products {
             let own = product.iter().zip(&series.averages);
-            let values: Vec<f64> = own.map(|(x, a)| if a.channel == channel { *x } else { 0.0 }).collect();
-            let column = base.noise.whiten(&values, &base.predicted_w, &series.averages);
+            let own = own.zip(&base.predicted_w);
+            let value = |((x, a), p): ((&f64, &Average), &f64)| {
+                if a.channel == channel { x / base.noise.sigma_w(*p) } else { 0.0 }
+            };
+            let column: Vec<f64> = own.map(value).collect();
             let size = (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt();
             if size > 1e-9 {
                 columns.push(column.iter().map(|x| x / size).collect());

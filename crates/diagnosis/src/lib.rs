@@ -8,6 +8,7 @@
 mod alternatives;
 mod baseline;
 mod candidates;
+mod chart;
 mod corrected;
 mod diagnose;
 mod doubts;
