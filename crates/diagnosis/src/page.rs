@@ -20,7 +20,10 @@ impl Diagnosis {
             escaped(&self.sentence),
             self.scope(robot)
         );
-        body += &section("Power over time", &(chart::power(self) + &self.places_text()));
+        body += &section(
+            "Power over time",
+            &(chart::power(self) + &chart::differences(self) + &self.places_text() + &chart::way(self)),
+        );
         if !self.findings.is_empty() {
             let parts: String = self.findings.iter().map(finding).collect();
             body += &section("What was left out, and how much", &parts);
@@ -45,10 +48,11 @@ impl Diagnosis {
 
     fn scope(&self, robot: &str) -> String {
         let drives = self.trace.runs.len();
+        let behind = if drives == 1 { "" } else { " (drawn behind one another)" };
         let minutes = self.trace.t_s.len() as f64 / 60.0;
         let plural = if drives == 1 { "drive" } else { "drives" };
         format!(
-            "{}: {drives} {plural}, {minutes:.0} minutes of driving compared with the model",
+            "{}: {drives} {plural}{behind}, {minutes:.0} minutes of driving compared with the model",
             escaped(robot)
         )
     }
@@ -98,7 +102,7 @@ fn finding(found: &Finding) -> String {
         let interval = parameter.interval_95.map_or(String::new(), |[low, high]| {
             format!("between {} and {} {unit}, 95 % sure", number(low), number(high))
         });
-        let name = parameter.name.replace('_', " ");
+        let name = without_unit(parameter.name);
         let _ =
             write!(rows, "<tr><td>{name}<td class=number>{} {unit}<td>{interval}", number(parameter.value));
     }
@@ -118,6 +122,17 @@ fn finding(found: &Finding) -> String {
         found.fit.held_out_rmse_after_w,
         odds(found.evidence.p_value),
     )
+}
+
+/// A parameter's name as people say it; its unit stands beside its value.
+fn without_unit(name: &str) -> String {
+    if name == "from_s" {
+        return "acts from".into();
+    }
+    const UNITS: [&str; 11] =
+        ["_kg", "_n", "_w", "_s", "_m", "_rad", "_mps", "_k_per_w", "_per_mps", "_kg_per_m", "_per_rad"];
+    let unit = UNITS.iter().filter(|unit| name.ends_with(**unit)).max_by_key(|unit| unit.len());
+    name.strip_suffix(unit.copied().unwrap_or("")).unwrap_or(name).replace('_', " ")
 }
 
 /// Three figures that count.
@@ -145,7 +160,7 @@ main{max-width:60rem;margin:0 auto;padding:2rem 1rem}
 h1{font-size:1.6rem;line-height:1.3;margin:.3rem 0}h2{font-size:1.1rem;margin:2rem 0 .6rem}h3{margin:0;font-size:1rem}
 .verdict{display:inline-block;margin:0;padding:.1rem .7rem;border-radius:1rem;border:2px solid;font-weight:600}
 .consistent,.explained{color:var(--good)}.ambiguous{color:var(--doubt)}.unexplained{color:var(--bad)}
-.quiet{color:var(--quiet);font-size:.9rem}.equation{font-family:ui-monospace,monospace;font-size:.9rem;color:var(--quiet)}
+figure{margin:1rem 0}.quiet{color:var(--quiet);font-size:.9rem}.equation{font-family:ui-monospace,monospace;font-size:.9rem;color:var(--quiet)}
 article{background:var(--card);border-radius:.6rem;padding:1rem;margin:.6rem 0}article p{margin:.4rem 0}
 table{border-collapse:collapse}td{padding:.15rem 1.2rem .15rem 0;vertical-align:top}.number{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 svg{display:block;width:100%;height:auto}svg text{fill:var(--quiet);font-size:12px}ul{margin:.2rem 0;padding-left:1.3rem}";
