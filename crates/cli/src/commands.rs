@@ -4,6 +4,7 @@ pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod demo;
+pub(crate) mod diagnose;
 pub(crate) mod plan;
 pub(crate) mod predict;
 pub(crate) mod serve;

@@ -30,6 +30,8 @@ enum Command {
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
     Calibrate(commands::calibrate::Arguments),
+    /// Find where drives differ from the model, and which physics was left out
+    Diagnose(commands::diagnose::Arguments),
     /// Record a drive through a world of its own, which may conceal effects
     Simulate(commands::simulate::Arguments),
     /// Print what plans take, beside general-purpose searches on the same graphs
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
+        Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),

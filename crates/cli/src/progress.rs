@@ -19,3 +19,14 @@ pub(crate) fn working(what: &'static str) -> ProgressBar {
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
 }
+
+/// A bar over all of a long computation, with the step that it is at.
+pub(crate) fn steps() -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {percent} % {msg} {elapsed}");
+    let bar = ProgressBar::new(STEPS).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+/// Steps of a bar over shares.
+pub(crate) const STEPS: u64 = 1000;

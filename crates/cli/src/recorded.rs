@@ -1,4 +1,4 @@
-//! The robot and the recordings that `predict` and `calibrate` are given.
+//! The robot and the recordings that `predict`, `calibrate` and `diagnose` are given.
 
 use std::{fs, ops::ControlFlow, path::PathBuf, sync::Arc};
 
@@ -8,7 +8,7 @@ use recording::{Map, ReadingReport, Recording, Watch, read_paths_watched};
 
 use crate::{failure::BadInput, progress};
 
-/// What `predict` and `calibrate` share.
+/// What `predict`, `calibrate` and `diagnose` share.
 #[derive(Args)]
 pub(crate) struct Recorded {
     /// Name of a built-in robot, or a robot file
@@ -28,23 +28,27 @@ pub(crate) struct Recorded {
 impl Recorded {
     /// Reads the robot and all recordings; doubts about them go to stderr.
     pub(crate) fn read(&self) -> anyhow::Result<(Robot, Recording)> {
-        let robot = robot(&self.robot)?;
+        Ok((robot(&self.robot)?, self.read_files(&self.recording)?))
+    }
+
+    /// Reads other recordings in the same way.
+    pub(crate) fn read_files(&self, files: &[PathBuf]) -> anyhow::Result<Recording> {
         let map = self.map.as_deref().map(map).transpose()?;
-        let bar = progress::reading(&self.recording);
+        let bar = progress::reading(files);
         let told = bar.clone();
         let watch: Watch = Arc::new(move |bytes| {
             told.inc(bytes);
             ControlFlow::Continue(())
         });
-        let read = read_paths_watched(&self.recording, map.as_ref(), &watch);
+        let read = read_paths_watched(files, map.as_ref(), &watch);
         bar.finish_and_clear();
         let (recording, reports) = read.map_err(|error| BadInput(error.to_string()))?;
         reports.iter().for_each(warn);
-        Ok((robot, recording))
+        Ok(recording)
     }
 
-    /// An error of the calibration crate, with the files it is about.
-    pub(crate) fn refuse(&self, error: &calibration::Error) -> BadInput {
+    /// An error of a fit or a diagnosis, with the files it is about.
+    pub(crate) fn refuse(&self, error: &dyn std::error::Error) -> BadInput {
         let files: Vec<String> = self.recording.iter().map(|path| path.display().to_string()).collect();
         BadInput(format!("{}: {error}", files.join(", ")))
     }

@@ -111,7 +111,7 @@ fn onsets(series: &Series, name: &str) -> Vec<f64> {
 }
 
 /// Values of the parameters that power does not follow in proportion, with the others at nothing.
-fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f64>, Vec<usize>)> {
+pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f64>, Vec<usize>)> {
     match mechanism.name() {
         "motor_heating" => MEMORIES_S.iter().map(|tau_s| (vec![0.0, *tau_s], vec![0])).collect(),
         "wind" => {

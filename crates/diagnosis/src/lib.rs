@@ -5,12 +5,21 @@
 //! lowers the error, which with thousands of correlated rows every term does, but by what it explains beside everything else,
 //! by blocks of time, and on drives that were held out.
 
+mod alternatives;
 mod baseline;
 mod candidates;
+mod chart;
+mod corrected;
+mod diagnose;
+mod doubts;
 mod error;
 mod evidence;
 mod gates;
+mod explainable;
 mod knobs;
+mod linear;
+mod locate;
+mod next_drive;
 mod noise;
 mod nuisance;
 mod null;
@@ -19,7 +28,15 @@ mod polish;
 mod search;
 mod series;
 mod weigh;
+mod page;
+mod refitted;
+pub mod report;
+mod search;
+mod series;
+mod words;
 
+pub use diagnose::diagnose;
 pub use error::Error;
+pub use report::{Diagnosis, Verdict};
 pub use search::{Found, Search, search};
 pub use series::{Applied, Average, Input, Series};

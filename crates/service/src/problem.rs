@@ -227,6 +227,18 @@ impl Problem {
         Problem::new(kind, error.to_string()).at(at)
     }
 
+    /// Why drives cannot be diagnosed.
+    pub fn no_diagnosis(error: &diagnosis::Error) -> Self {
+        use diagnosis::Error as E;
+        match error {
+            E::Calibration(error) => Problem::no_calibration(error),
+            E::Surface { .. } => {
+                Problem::new(ProblemType::UnknownSurface, error.to_string()).at("/robot/surfaces")
+            }
+            _ => Problem::new(ProblemType::InsufficientRecording, error.to_string()).at("/recordings"),
+        }
+    }
+
     /// Why the planner has no path.
     pub fn no_plan(error: &planner::Error) -> Self {
         use planner::Error as E;

@@ -23,7 +23,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 use crate::{
     Engine,
     problem::{Problem, ProblemType},
-    routes::{calibrate, compare, health, jobs, maps, plan, recordings, robots},
+    routes::{calibrate, compare, diagnose, health, jobs, maps, plan, recordings, robots},
 };
 
 #[derive(OpenApi)]
@@ -54,6 +54,7 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(recordings::create, recordings::list))
         .routes(routes!(recordings::read, recordings::remove))
         .routes(routes!(calibrate::handler))
+        .routes(routes!(diagnose::handler))
         .routes(routes!(jobs::read, jobs::remove))
         .routes(routes!(jobs::events))
         .routes(routes!(health::healthz))

@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod compare;
+pub mod diagnose;
 pub mod health;
 pub mod jobs;
 pub mod maps;

@@ -30,7 +30,7 @@ use crate::{
 };
 
 /// Most recordings of one calibration.
-const MOST_RECORDINGS: usize = 1000;
+pub(super) const MOST_RECORDINGS: usize = 1000;
 
 /// What to fit to what.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
@@ -106,12 +106,9 @@ impl Work {
                 Problem::new(ProblemType::InvalidRequest, format!("the lifting test: {error}")).at("/lift")
             })?;
         }
-        let note = |(i, id): (usize, &String)| {
-            engine.recordings().note(id).map_err(|problem| problem.at(format!("/recordings/{i}")))
-        };
         Ok(Work {
             robot,
-            notes: recordings.iter().enumerate().map(note).collect::<Result<_, _>>()?,
+            notes: notes(engine, &recordings, "/recordings")?,
             map: map.as_ref().map(map_from).transpose()?,
             method,
             options: Options { reference_surface },
@@ -119,21 +116,40 @@ impl Work {
     }
 
     fn run(self, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
-        let mut parts = Vec::with_capacity(self.notes.len());
-        for (i, note) in self.notes.iter().enumerate() {
-            let step = format!("reading recording {} of {}", i + 1, self.notes.len());
-            let watch = watch(job, step, note.bytes);
-            let reading = engine.recordings().read(note, self.map.as_ref(), &watch);
-            parts.push(reading.map_err(|problem| problem.at(format!("/recordings/{i}")))?.recording);
-        }
+        let recording = read(engine, job, &self.notes, self.map.as_ref(), "/recordings")?;
         job.tell("fitting", None);
-        let recording = Recording::join(parts);
         let found = self.method.calibrate(&self.robot, &recording, &self.options);
         let found = found.map_err(|error| Problem::no_calibration(&error))?;
         serde_json::to_value(&found).map_err(|error| {
             Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))
         })
     }
+}
+
+/// What is known of the recordings of a request's field.
+pub(super) fn notes(engine: &Engine, ids: &[String], field: &str) -> Result<Vec<Note>, Problem> {
+    let note = |(i, id): (usize, &String)| {
+        engine.recordings().note(id).map_err(|problem| problem.at(format!("{field}/{i}")))
+    };
+    ids.iter().enumerate().map(note).collect()
+}
+
+/// Reads them behind one another, telling the job.
+pub(super) fn read(
+    engine: &Engine,
+    job: &Arc<Job>,
+    notes: &[Note],
+    map: Option<&Map>,
+    field: &str,
+) -> Result<Recording, Problem> {
+    let mut parts = Vec::with_capacity(notes.len());
+    for (i, note) in notes.iter().enumerate() {
+        let step = format!("reading recording {} of {}", i + 1, notes.len());
+        let watch = watch(job, step, note.bytes);
+        let reading = engine.recordings().read(note, map, &watch);
+        parts.push(reading.map_err(|problem| problem.at(format!("{field}/{i}")))?.recording);
+    }
+    Ok(Recording::join(parts))
 }
 
 /// Tells the job, by whole percents, how much of a recording has been read; stops reading when the job is called off.

@@ -1,0 +1,136 @@
+//! What else a finding could be, fitted in its place, and the least sizes that would have been noticed at all.
+
+use model::{Robot, mechanism};
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    candidates,
+    evidence::System,
+    report::Detectable,
+    search::{Found, system},
+    series::{Applied, Series},
+};
+
+/// An explanation with the robot fitted beside it.
+pub(crate) struct Explanation {
+    /// The mechanism in question.
+    pub(crate) name: &'static str,
+    /// All mechanisms that act.
+    pub(crate) applied: Vec<Applied>,
+    /// The robot.
+    pub(crate) robot: Robot,
+}
+
+/// Alternatives that are compared at most; beyond, no single drive would decide.
+const MOST_ALTERNATIVES: usize = 4;
+
+/// The mechanisms that cannot be told from a finding, each fitted in its place.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn alternatives(
+    series: &Series,
+    file: &Robot,
+    found: &[Found],
+    which: usize,
+) -> Result<Vec<Explanation>, Error> {
+    let others: Vec<Applied> =
+        found.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, f)| f.applied.clone()).collect();
+    let without = Baseline::fit(series, file, &others)?;
+    let mut explanations = Vec::new();
+    for name in found[which].indistinguishable_from.iter().take(MOST_ALTERNATIVES) {
+        let Some(mechanism) = mechanism::by_name(name) else { continue };
+        let from_s = found[which].applied.from_s;
+        let Some(applied) = fitted(series, &without, &others, mechanism, from_s)? else { continue };
+        let mut all = others.clone();
+        all.push(applied);
+        let robot = Baseline::fit(series, file, &all)?.robot;
+        explanations.push(Explanation { name: mechanism.name(), applied: all, robot });
+    }
+    Ok(explanations)
+}
+
+/// A mechanism at its best values beside a baseline; `None` where the drives tell nothing of it.
+fn fitted(
+    series: &Series,
+    base: &Baseline,
+    others: &[Applied],
+    mechanism: &'static dyn mechanism::Mechanism,
+    from_s: f64,
+) -> Result<Option<Applied>, Error> {
+    let system = system(series, base);
+    let mut best: Option<(f64, Applied)> = None;
+    for (values, linear) in candidates::grids(mechanism) {
+        let probe = Applied { mechanism, values, from_s };
+        let at = candidates::of(series, &base.robot, others, &base.predicted_w, probe, linear)?;
+        let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) else { continue };
+        if best.as_ref().is_none_or(|(wald, _)| evidence.wald > *wald) {
+            let mut applied = at.applied;
+            for (parameter, value) in at.linear.iter().zip(&evidence.values) {
+                let [low, high] = mechanism.parameters()[*parameter].bounds;
+                applied.values[*parameter] = (applied.values[*parameter] + value).clamp(low, high);
+            }
+            best = Some((evidence.wald, applied));
+        }
+    }
+    Ok(best.map(|(_, applied)| applied))
+}
+
+fn whitened(series: &Series, base: &Baseline, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    columns.iter().map(|c| base.noise.whiten(c, &base.predicted_w, &series.averages)).collect()
+}
+
+/// Standard errors that an effect needs to be noticed: some four for the correction for all that is tried, and one more for
+/// it to happen in most drives.
+const NOTICED_SIGMAS: f64 = 5.0;
+
+/// For each mechanism the least size, from the beginning on, that would have been noticed, or its name where no size would.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn detectable(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+) -> Result<(Vec<Detectable>, Vec<&'static str>), Error> {
+    let system = system(series, base);
+    let (mut sizes, mut none) = (Vec::new(), Vec::new());
+    for mechanism in mechanism::ALL {
+        if applied.iter().any(|a| a.mechanism.name() == mechanism.name()) {
+            continue;
+        }
+        let least = least_size(series, base, applied, &system, mechanism)?;
+        match least {
+            Some(size) => sizes.push(size),
+            None => none.push(mechanism.name()),
+        }
+    }
+    Ok((sizes, none))
+}
+
+/// The least size of a mechanism's first number that would have been noticed, over all grid values of the others.
+fn least_size(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    system: &System,
+    mechanism: &'static dyn mechanism::Mechanism,
+) -> Result<Option<Detectable>, Error> {
+    let parameter = &mechanism.parameters()[0];
+    let mut least = parameter.bounds[1];
+    for (values, _) in candidates::grids(mechanism) {
+        let probe = Applied { mechanism, values, from_s: 0.0 };
+        let at = candidates::of(series, &base.robot, applied, &base.predicted_w, probe, vec![0])?;
+        if let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) {
+            least = least.min(NOTICED_SIGMAS * evidence.covariance[(0, 0)].max(0.0).sqrt());
+        }
+    }
+    let size = || Detectable {
+        mechanism: mechanism.name(),
+        parameter: parameter.name,
+        value: least,
+        unit: parameter.unit,
+    };
+    Ok((least < parameter.bounds[1]).then(size))
+}

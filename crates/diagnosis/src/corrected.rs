@@ -1,0 +1,98 @@
+//! The robot with what was found: its own numbers as fitted, and those mechanisms that its file has fields for.
+
+use model::{Robot, mechanism::Kind};
+
+use crate::series::Applied;
+
+/// The corrected robot, and notes on what its file cannot hold.
+pub(crate) fn corrected(fitted: &Robot, applied: &[Applied], surfaces: &[String]) -> (Robot, Vec<String>) {
+    let mut robot = fitted.clone();
+    let mut notes = Vec::new();
+    for one in applied {
+        let name = one.mechanism.name();
+        if one.mechanism.kind() == Kind::Measurement {
+            notes.push(format!(
+                "`{name}` is a fault of the recording, not of the robot: mend it there, the robot's file stays as it is"
+            ));
+        } else if !apply(&mut robot, one, surfaces) {
+            notes.push(format!("a robot's file cannot hold `{name}` yet: the corrected robot is without it"));
+        } else if one.from_s > 0.0 {
+            let from_s = one.from_s;
+            notes.push(format!("the corrected robot is as from {from_s:.0} s on, with `{name}`"));
+        }
+    }
+    keep_possible(&mut robot);
+    if let Err(error) = robot.validate() {
+        notes
+            .push(format!("the corrected robot cannot be ({error}): its file has only the refitted numbers"));
+        robot = fitted.clone();
+        keep_possible(&mut robot);
+    }
+    (robot, notes)
+}
+
+/// Puts a mechanism into the robot's fields; false where there is none for it.
+fn apply(robot: &mut Robot, one: &Applied, surfaces: &[String]) -> bool {
+    let values = &one.values;
+    match one.mechanism.name() {
+        "payload" => robot.mass_kg += values[0],
+        "hotel_load" => robot.hotel_power_w += values[0],
+        "regeneration" => robot.motors.regeneration += values[0],
+        // Ground that changes on the way is not the robot's.
+        "surface_change" if one.from_s == 0.0 => {
+            for name in surfaces {
+                let Some(surface) = robot.surfaces.get_mut(name) else { continue };
+                surface.mu_roll *= 1.0 + values[0];
+                surface.mu_skid *= 1.0 + values[1];
+            }
+        }
+        _ => match one.mechanism.robot(robot, values) {
+            Some(changed) => *robot = changed,
+            None => return false,
+        },
+    }
+    true
+}
+
+/// Fits may leave standing loads a little below nothing, and returns a little above all.
+fn keep_possible(robot: &mut Robot) {
+    robot.hotel_power_w = robot.hotel_power_w.max(0.0);
+    robot.drive_electronics_w = robot.drive_electronics_w.max(0.0);
+    robot.motors.regeneration = robot.motors.regeneration.clamp(0.0, 1.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model::{builtin, mechanism};
+
+    fn applied(name: &str, values: Vec<f64>, from_s: f64) -> Applied {
+        Applied { mechanism: mechanism::by_name(name).unwrap_or(mechanism::ALL[0]), values, from_s }
+    }
+
+    #[test]
+    fn what_the_file_has_a_field_for_is_put_there_and_the_rest_is_said() {
+        let husky = builtin::husky_a200();
+        let all = [
+            applied("payload", vec![12.0], 300.0),
+            applied("surface_change", vec![0.5, 0.2], 0.0),
+            applied("wind", vec![0.5, 3.0, 0.0], 0.0),
+            applied("pitch_bias", vec![0.02], 0.0),
+        ];
+        let (robot, notes) = corrected(&husky, &all, &["marble".into()]);
+        assert!((robot.mass_kg - husky.mass_kg - 12.0).abs() < 1e-9);
+        let ratio = robot.surfaces["marble"].mu_roll / husky.surfaces["marble"].mu_roll;
+        assert!((ratio - 1.5).abs() < 1e-9);
+        assert_eq!(notes.len(), 3, "{notes:?}");
+        assert!(notes[1].contains("`wind`") && notes[2].contains("fault of the recording"), "{notes:?}");
+        assert!(robot.validate().is_ok());
+    }
+
+    #[test]
+    fn a_robot_that_cannot_be_is_not_written() {
+        let husky = builtin::husky_a200();
+        let (robot, notes) = corrected(&husky, &[applied("payload", vec![-500.0], 0.0)], &[]);
+        assert!(robot.validate().is_ok() && robot.mass_kg == husky.mass_kg);
+        assert!(notes.iter().any(|note| note.contains("cannot be")), "{notes:?}");
+    }
+}

@@ -1,0 +1,127 @@
+//! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
+
+use model::Robot;
+use recording::{Channel, Recording};
+
+use crate::{Error, baseline::Baseline, series::Series};
+
+/// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
+const CLEARLY_BETTER: f64 = 0.5;
+/// And when predictions then follow the recording at least so well (r²).
+const FOLLOWS: f64 = 0.5;
+/// Ratios of recorded to predicted power beyond which the file is another robot's: friction of any hard ground is within.
+const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
+/// Widths of the file that a fitted number may move before it is told.
+const FAR_SIGMAS: f64 = 5.0;
+
+/// What is doubtful about the drives under suspicion, in sentences.
+///
+/// # Errors
+/// As [`Series::new`] and [`Series::predict`].
+pub(crate) fn doubts(
+    robot: &Robot,
+    recording: &Recording,
+    series: &Series,
+    before: &Baseline,
+) -> Result<Vec<String>, Error> {
+    let mut said = Vec::new();
+    let given = follows(robot, series)?;
+    for (change, words) in CHANGES {
+        let Some(changed) = change(recording) else { continue };
+        let other = follows(robot, &Series::new(robot, &changed, None)?)?;
+        if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
+            said.push(format!(
+                "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
+                100.0 * other.r2,
+                100.0 * given.r2
+            ));
+        }
+    }
+    let [least, most] = OTHER_ROBOT;
+    if said.is_empty() && !(least..most).contains(&given.ratio) {
+        said.push(format!(
+            "recorded power is {:.2} times what the robot's file predicts: the recording may be another robot's, or in other units",
+            given.ratio
+        ));
+    }
+    for (knob, moved) in before.knobs.iter().zip(&before.moved) {
+        if moved.abs() > FAR_SIGMAS {
+            said.push(format!(
+                "to describe the drives, `{}` had to move by {:.0} times the uncertainty of the robot's file",
+                knob.name,
+                moved.abs()
+            ));
+        }
+    }
+    Ok(said)
+}
+
+/// How predictions of the robot's file follow what was recorded.
+struct Follows {
+    /// Squared correlation with its sign.
+    r2: f64,
+    /// Recorded over predicted, at best.
+    ratio: f64,
+}
+
+fn follows(robot: &Robot, series: &Series) -> Result<Follows, Error> {
+    let predicted = series.predict(robot, &[])?;
+    let pairs = || {
+        let all = series.averages.iter().zip(series.recorded.iter().zip(&predicted));
+        all.filter(|(a, _)| a.suspect).map(|(_, (r, p))| (*r, *p))
+    };
+    let count = pairs().count().max(1) as f64;
+    let (r0, p0) = pairs().fold((0.0, 0.0), |(r0, p0), (r, p)| (r0 + r / count, p0 + p / count));
+    let mut sums = [0.0; 5];
+    for (r, p) in pairs() {
+        let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
+        sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+    }
+    let r = sums[0] / (sums[1] * sums[2]).sqrt().max(1e-300);
+    Ok(Follows { r2: r * r.abs(), ratio: sums[3] / sums[4].max(1e-300) })
+}
+
+type Change = fn(&Recording) -> Option<Recording>;
+
+const CHANGES: [(Change, &str); 4] = [
+    (swapped_power, "power of the left and the right side seem swapped"),
+    (swapped_speeds, "wheel speeds of the left and the right side seem swapped"),
+    (turned_pitch, "pitch seems to have the wrong sign (nose up must be positive)"),
+    (turned_power, "power seems to have the wrong sign (drawn from the battery must be positive)"),
+];
+
+fn swapped_power(recording: &Recording) -> Option<Recording> {
+    swapped(recording, Channel::LeftPower, Channel::RightPower)
+}
+
+fn swapped_speeds(recording: &Recording) -> Option<Recording> {
+    swapped(recording, Channel::LeftSpeed, Channel::RightSpeed)
+}
+
+fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let (a, b) = (changed.channels.remove(&left)?, changed.channels.remove(&right)?);
+    changed.channels.insert(left, b);
+    changed.channels.insert(right, a);
+    Some(changed)
+}
+
+fn turned_pitch(recording: &Recording) -> Option<Recording> {
+    turned(recording, &[Channel::Pitch])
+}
+
+fn turned_power(recording: &Recording) -> Option<Recording> {
+    turned(recording, &[Channel::LeftPower, Channel::RightPower, Channel::Power, Channel::Current])
+}
+
+fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let mut any = false;
+    for channel in channels {
+        if let Some(values) = changed.channels.get_mut(channel) {
+            values.iter_mut().for_each(|x| *x = -*x);
+            any = true;
+        }
+    }
+    any.then_some(changed)
+}

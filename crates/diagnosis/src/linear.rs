@@ -1,0 +1,83 @@
+//! Least squares of many columns, judged by blocks that were left out.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Tenths that are left out in turn.
+pub(crate) const FOLDS: usize = 10;
+
+/// Columns and errors as their products, fold by fold.
+pub(crate) struct Folded<'a> {
+    fold: &'a [usize],
+    square: Vec<DMatrix<f64>>,
+    right: Vec<DVector<f64>>,
+}
+
+impl<'a> Folded<'a> {
+    /// Adds up the products of all rows of each fold.
+    pub(crate) fn new(columns: &[Vec<f64>], errors: &[f64], fold: &'a [usize]) -> Self {
+        let count = columns.len();
+        let mut square = vec![DMatrix::zeros(count, count); FOLDS];
+        let mut right = vec![DVector::zeros(count); FOLDS];
+        for out in 0..FOLDS {
+            let rows: Vec<usize> = (0..errors.len()).filter(|i| fold[*i] == out).collect();
+            let part = DMatrix::from_fn(rows.len(), count, |i, j| columns[j][rows[i]]);
+            let own = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
+            right[out] = part.tr_mul(&own);
+            square[out] = part.tr_mul(&part);
+        }
+        Folded { fold, square, right }
+    }
+
+    /// What columns, those of the fit or the same in another scale, say of every row when fitted to the rows of other folds.
+    /// Each has a weight of what is known of its share before, and that share.
+    pub(crate) fn held_out(&self, columns: &[Vec<f64>], known: &[f64], before: &[f64]) -> Vec<f64> {
+        let shares: Vec<Vec<f64>> = (0..FOLDS).map(|out| self.shares(Some(out), known, before)).collect();
+        (0..self.fold.len()).map(|i| at(columns, i, &shares[self.fold[i]])).collect()
+    }
+
+    /// The same when fitted to all rows.
+    pub(crate) fn fitted(&self, columns: &[Vec<f64>], known: &[f64], before: &[f64]) -> Vec<f64> {
+        let shares = self.shares(None, known, before);
+        (0..self.fold.len()).map(|i| at(columns, i, &shares)).collect()
+    }
+
+    fn shares(&self, without: Option<usize>, known: &[f64], before: &[f64]) -> Vec<f64> {
+        let count = known.len();
+        let mut square = DMatrix::from_diagonal(&DVector::from_column_slice(known));
+        let mut right = DVector::from_fn(count, |j, _| known[j] * before[j]);
+        for fold in (0..FOLDS).filter(|fold| Some(*fold) != without) {
+            square += &self.square[fold];
+            right += &self.right[fold];
+        }
+        // Columns that nothing excites take no share.
+        for j in 0..count {
+            square[(j, j)] += 1e-9 * (1.0 + square[(j, j)]);
+        }
+        match square.cholesky() {
+            Some(root) => root.solve(&right).iter().copied().collect(),
+            None => vec![0.0; count],
+        }
+    }
+}
+
+fn at(columns: &[Vec<f64>], row: usize, shares: &[f64]) -> f64 {
+    columns.iter().zip(shares).map(|(column, share)| column[row] * share).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_does_not_tell_what_it_is_predicted_by() {
+        let fold: Vec<usize> = (0..100).map(|i| i / 10).collect();
+        let mut errors = vec![0.0; 100];
+        errors[5] = 100.0;
+        let columns = vec![vec![1.0; 100]];
+        let folded = Folded::new(&columns, &errors, &fold);
+        let (held_out, fitted) =
+            (folded.held_out(&columns, &[0.0], &[0.0]), folded.fitted(&columns, &[0.0], &[0.0]));
+        assert!(held_out[5].abs() < 1e-9, "its own fold was left out: {}", held_out[5]);
+        assert!((held_out[50] - 100.0 / 90.0).abs() < 1e-6 && (fitted[5] - 1.0).abs() < 1e-6);
+    }
+}

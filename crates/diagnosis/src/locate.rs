@@ -1,0 +1,191 @@
+//! Where model and recording differ: times, ways of driving and sides that hold more than their share of the difference.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::{
+    report::{Place, Range},
+    search::blocks,
+    series::{Average, Series},
+};
+
+/// Chance of naming any place where none differs.
+const LEVEL: f64 = 0.01;
+/// Parts that each drive's time is cut into; windows are runs of them.
+const PARTS: usize = 20;
+/// Blocks that a place needs for its scatter to be known.
+const LEAST_BLOCKS: usize = 4;
+/// Averages whose excess is greater count as this much, in variances: single spikes are no place.
+const MOST_VARIANCES: f64 = 50.0;
+
+/// Speeds below are standing [m/s].
+const STANDING_MPS: f64 = 0.02;
+/// Differences of rim speeds below are straight on [m/s].
+const STRAIGHT_MPS: f64 = 0.08;
+/// Slopes below are level [rad].
+const LEVEL_RAD: f64 = 0.04;
+/// Accelerations below are steady driving [m/s²].
+const STEADY_MPS2: f64 = 0.05;
+
+/// A part of the drives that may be told in words.
+struct Cell {
+    place: Place,
+    inside: Box<dyn Fn(&Average) -> bool>,
+}
+
+/// A cell with how far it stands out.
+struct Judged {
+    place: Place,
+    t: f64,
+}
+
+/// Places with significantly more excess than the rest of the drives, the clearest of each kind first.
+///
+/// `excess` is, by average, the squared error beyond what belongs there, in variances of the noise; `runs` names the drives.
+pub(crate) fn places(series: &Series, excess: &[f64], runs: &[String]) -> Vec<Place> {
+    let excess: Vec<f64> = excess.iter().map(|e| e.clamp(-MOST_VARIANCES, MOST_VARIANCES)).collect();
+    let block = blocks(series);
+    let groups = [times(series, runs), regimes(), sides(series)];
+    let tried: usize = groups.iter().map(Vec::len).sum();
+    let mut places = Vec::new();
+    for cells in groups {
+        let judged = cells.into_iter().filter_map(|cell| judge(series, &excess, &block, cell, tried));
+        let mut judged: Vec<Judged> = judged.collect();
+        judged.sort_by(|a, b| b.t.total_cmp(&a.t));
+        // Windows of time overlap, ways of driving may stand out side by side.
+        let most = if judged.first().is_some_and(|j| j.place.kind == "regime") { 2 } else { 1 };
+        places.extend(judged.into_iter().take(most).map(|judged| judged.place));
+    }
+    places
+}
+
+/// A cell's excess against that of the rest, by blocks; `None` where it does not stand out.
+fn judge(series: &Series, excess: &[f64], block: &[usize], cell: Cell, tried: usize) -> Option<Judged> {
+    let blocks = block.iter().max().map_or(0, |b| b + 1);
+    let mut sums = vec![[[0.0; 2]; 2]; blocks];
+    for (i, average) in series.averages.iter().enumerate().filter(|(_, a)| a.suspect) {
+        let sum = &mut sums[block[i]][usize::from((cell.inside)(average))];
+        sum[0] += excess[i];
+        sum[1] += 1.0;
+    }
+    let [outside, inside] = [0, 1].map(|which| Mean::of(sums.iter().map(|sum| sum[which])));
+    if inside.blocks < LEAST_BLOCKS || outside.blocks < LEAST_BLOCKS || inside.mean <= 0.0 {
+        return None;
+    }
+    let t = (inside.mean - outside.mean) / (inside.variance + outside.variance).sqrt().max(1e-300);
+    let freedom = (inside.blocks.min(outside.blocks) - 1) as f64;
+    let chance = StudentsT::new(0.0, 1.0, freedom).ok()?.sf(t) * tried as f64;
+    let share = inside.sum / (inside.sum + outside.sum.max(0.0));
+    let place = Place { share_of_excess: share.clamp(0.0, 1.0), ..cell.place };
+    (chance < LEVEL).then_some(Judged { place, t })
+}
+
+/// A mean over averages with its variance from blocks.
+struct Mean {
+    mean: f64,
+    variance: f64,
+    sum: f64,
+    blocks: usize,
+}
+
+impl Mean {
+    fn of(blocks: impl Iterator<Item = [f64; 2]>) -> Self {
+        let blocks: Vec<[f64; 2]> = blocks.filter(|[_, count]| *count > 0.0).collect();
+        let sum: f64 = blocks.iter().map(|b| b[0]).sum();
+        let count: f64 = blocks.iter().map(|b| b[1]).sum::<f64>().max(1.0);
+        let mean = sum / count;
+        let spread: f64 = blocks.iter().map(|b| (b[0] - mean * b[1]).powi(2)).sum();
+        let few = blocks.len() as f64 / (blocks.len() as f64 - 1.0).max(1.0);
+        Mean { mean, variance: spread * few / (count * count), sum, blocks: blocks.len() }
+    }
+}
+
+/// Windows of each drive's time.
+fn times(series: &Series, runs: &[String]) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    let suspects = series.averages.iter().filter(|a| a.suspect);
+    let count = suspects.clone().map(|a| a.run).max().map_or(0, |run| run + 1);
+    for run in 0..count {
+        let last_s = suspects.clone().filter(|a| a.run == run).map(|a| a.t_s).fold(0.0, f64::max) + 1.0;
+        for from in 0..PARTS {
+            for to in from + 1..=PARTS {
+                if to - from == PARTS && count == 1 {
+                    continue;
+                }
+                let [from_s, to_s] = [from, to].map(|part| (last_s * part as f64 / PARTS as f64).round());
+                let name = runs.get(run).cloned().unwrap_or_default();
+                let whose = if count > 1 { format!(" of drive {name}") } else { String::new() };
+                let range = Range {
+                    quantity: "t_s",
+                    from: Some(from_s),
+                    to: Some(to_s),
+                    name: (count > 1).then(|| name.clone()),
+                };
+                cells.push(Cell {
+                    place: place("time", span(from_s, to_s, last_s) + &whose, range),
+                    inside: Box::new(move |a| a.run == run && a.t_s >= from_s && a.t_s < to_s),
+                });
+            }
+        }
+    }
+    cells
+}
+
+fn span(from_s: f64, to_s: f64, last_s: f64) -> String {
+    match (from_s <= 0.0, to_s >= last_s.round()) {
+        (true, true) => "all the time".into(),
+        (true, false) => format!("until {to_s:.0} s"),
+        (false, true) => format!("from {from_s:.0} s on"),
+        (false, false) => format!("between {from_s:.0} s and {to_s:.0} s"),
+    }
+}
+
+/// Ways of driving.
+fn regimes() -> Vec<Cell> {
+    type Of = fn(&Average) -> f64;
+    const EVER: f64 = f64::INFINITY;
+    let speed: Of = |a| a.input.speed_mps;
+    let turn: Of = |a| a.input.difference_mps;
+    let grade: Of = |a| a.input.pitch_rad * a.input.speed_mps.signum();
+    let gain: Of = |a| a.input.accel_mps2 * a.input.speed_mps.signum();
+    let bins: [(&str, &str, Of, [f64; 2]); 13] = [
+        ("while standing or spinning on the spot", "speed_mps", speed, [-STANDING_MPS, STANDING_MPS]),
+        ("while driving backwards", "speed_mps", speed, [-EVER, -STANDING_MPS]),
+        ("below 0.3 m/s forwards", "speed_mps", speed, [STANDING_MPS, 0.3]),
+        ("between 0.3 and 0.7 m/s", "speed_mps", speed, [0.3, 0.7]),
+        ("above 0.7 m/s", "speed_mps", speed, [0.7, EVER]),
+        ("while turning right", "rim_difference_mps", turn, [-EVER, -STRAIGHT_MPS]),
+        ("while driving straight", "rim_difference_mps", turn, [-STRAIGHT_MPS, STRAIGHT_MPS]),
+        ("while turning left", "rim_difference_mps", turn, [STRAIGHT_MPS, EVER]),
+        ("on descents", "climb_rad", grade, [-EVER, -LEVEL_RAD]),
+        ("on level ground", "climb_rad", grade, [-LEVEL_RAD, LEVEL_RAD]),
+        ("on climbs", "climb_rad", grade, [LEVEL_RAD, EVER]),
+        ("while slowing down", "acceleration_mps2", gain, [-EVER, -STEADY_MPS2]),
+        ("while speeding up", "acceleration_mps2", gain, [STEADY_MPS2, EVER]),
+    ];
+    let cell = |(statement, quantity, of, [from, to]): (&str, &'static str, Of, [f64; 2])| {
+        let bound = |x: f64| x.is_finite().then_some(x);
+        let range = Range { quantity, from: bound(from), to: bound(to), name: None };
+        let inside = move |a: &Average| (from..to).contains(&of(a));
+        Cell { place: place("regime", statement.into(), range), inside: Box::new(inside) }
+    };
+    bins.into_iter().map(cell).collect()
+}
+
+/// Both sides, where power was recorded by side.
+fn sides(series: &Series) -> Vec<Cell> {
+    if series.channels() < 2 {
+        return Vec::new();
+    }
+    let cell = |(channel, name): (usize, &str)| {
+        let range = Range { quantity: "side", from: None, to: None, name: Some(name.into()) };
+        Cell {
+            place: place("channel", format!("on the {name} side"), range),
+            inside: Box::new(move |a| a.channel == channel),
+        }
+    };
+    [(0, "left"), (1, "right")].into_iter().map(cell).collect()
+}
+
+fn place(kind: &'static str, statement: String, range: Range) -> Place {
+    Place { kind, statement, range, share_of_excess: 0.0 }
+}
