@@ -6,5 +6,6 @@ pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod plan;
 pub(crate) mod predict;
+pub(crate) mod prove;
 pub(crate) mod serve;
 pub(crate) mod simulate;

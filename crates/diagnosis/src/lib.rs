@@ -12,9 +12,11 @@ mod evidence;
 mod knobs;
 mod noise;
 mod nuisance;
+mod plain;
 mod search;
 mod series;
 
 pub use error::Error;
+pub use plain::Plain;
 pub use search::{Found, Search, search};
 pub use series::{Applied, Average, Input, Series};
