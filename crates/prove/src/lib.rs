@@ -32,7 +32,7 @@ pub use figures::{Cell, MechanismRow, PeerRow, StrengthRow};
 pub use files::{RECORDING, REFERENCE, ROBOT};
 pub use key::{Kind, Parameter, SealedKey, Truth};
 pub use page::page;
-pub use peer::{Peer, PeerScore};
+pub use peer::{PeerAnswer, PeerScore};
 pub use process::{Diagnosis, Outcome};
 pub use rate::Rate;
 pub use report::{Estimate, Finding, Report, Verdict};

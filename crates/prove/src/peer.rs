@@ -1,18 +1,16 @@
 //! Other ways to the same answer, on the same files.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use crate::{Kind, SealedKey};
 
-/// A method that names mechanisms from the files of a case, most important first; none where it finds nothing.
-pub struct Peer<'a> {
-    /// What it is called.
-    pub name: &'static str,
-    /// The method: the folder of a case in, names out, or why there are none.
-    #[allow(clippy::type_complexity)]
-    pub names: &'a (dyn Fn(&Path) -> Result<Vec<String>, String> + Sync),
+/// What another method said of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PeerAnswer {
+    /// What the method is called.
+    pub peer: &'static str,
+    /// Mechanisms, most important first, or why there are none; empty where it finds nothing.
+    pub names: Result<Vec<String>, String>,
 }
 
 /// How a peer did on one case.
@@ -33,8 +31,8 @@ pub struct PeerScore {
 
 impl PeerScore {
     /// Scores the answer of a peer.
-    pub fn new(peer: &str, answer: Result<Vec<String>, String>, key: &SealedKey) -> Self {
-        let (names, error) = match answer {
+    pub fn new(answer: &PeerAnswer, key: &SealedKey) -> Self {
+        let (names, error) = match answer.names.clone() {
             Ok(names) => (names, None),
             Err(error) => (Vec::new(), Some(error)),
         };
@@ -44,6 +42,6 @@ impl PeerScore {
         };
         let first = &names[..names.len().min(truths.len())];
         let named = truths.iter().filter(|truth| first.contains(truth)).count();
-        PeerScore { peer: peer.to_owned(), error, named, truths: truths.len(), names }
+        PeerScore { peer: answer.peer.to_owned(), error, named, truths: truths.len(), names }
     }
 }

@@ -32,7 +32,9 @@ const BATTERY: Meter =
 
 /// Strength of what differs between a recording and its twin without the effect.
 ///
-///     z = √ Σ (ΔP / σ)²
+/// ```text
+/// z = √ Σ (ΔP / σ)²
+/// ```
 ///
 /// over one-second averages of every power meter, σ being the noise of such an average. Both recordings have the same noise, so
 /// that ΔP is the effect. A detector that knows when and how the effect acts sees it at z standard deviations.

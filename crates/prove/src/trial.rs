@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use world::{Case, RobotFile, World, simulate};
 
 use crate::{
-    CaseScore, Commitments, Dealt, Diagnosis, Error, Misled, Outcome, Peer, PeerScore, Scoreboard, SealedKey,
-    Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
+    CaseScore, Commitments, Dealt, Diagnosis, Error, Misled, Outcome, PeerAnswer, PeerScore, Scoreboard,
+    SealedKey, Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
 };
 
 /// What a trial is doing.
@@ -36,8 +36,8 @@ pub struct Trial<'a> {
     pub out: &'a Path,
     /// How to diagnose.
     pub diagnosis: Diagnosis,
-    /// Other methods on the same files.
-    pub peers: &'a [Peer<'a>],
+    /// Other methods, asked about the folder of each case.
+    pub peers: &'a (dyn Fn(&Path) -> Vec<PeerAnswer> + Sync),
     /// Cases that are worked on at the same time.
     pub at_once: usize,
     /// Told of progress: stage, cases done, cases in all.
@@ -66,8 +66,7 @@ impl Trial<'_> {
         let outcomes = pool.install(|| {
             self.each(Stage::Diagnosing, &dealt, |dealt| {
                 let case = self.case(dealt);
-                let answers = self.peers.iter().map(|peer| (peer.name, (peer.names)(&case))).collect();
-                Ok((self.diagnosis.run(&case)?, answers))
+                Ok((self.diagnosis.run(&case)?, (self.peers)(&case)))
             })
         })?;
         let pairs: Vec<(Dealt, Said)> = dealt.into_iter().zip(outcomes).collect();
@@ -152,8 +151,7 @@ impl Trial<'_> {
         let (strengths_z, twin) =
             if key.kind.conceals() { self.twin(&key, &case, robot)? } else { (Vec::new(), None) };
         let mut scored = score(&key, &strengths_z, outcome, twin);
-        let peer = |(name, answer): &(&str, Result<_, _>)| PeerScore::new(name, answer.clone(), &key);
-        scored.peers = answers.iter().map(peer).collect();
+        scored.peers = answers.iter().map(|answer| PeerScore::new(answer, &key)).collect();
         Ok(scored)
     }
 
@@ -195,4 +193,4 @@ impl Trial<'_> {
 }
 
 /// What the diagnosis and the other methods said of a case.
-type Said = (Outcome, Vec<(&'static str, Result<Vec<String>, String>)>);
+type Said = (Outcome, Vec<PeerAnswer>);

@@ -10,15 +10,16 @@ use std::{
     sync::Mutex,
 };
 
-use prove::{Diagnosis, Error, Peer, Scoreboard, Stage, Trial};
+use prove::{Diagnosis, Error, PeerAnswer, Scoreboard, Stage, Trial};
 
 /// Reports what it sees and finds nothing wrong.
 const SPY: &str = r#"#!/bin/sh
-[ "$1 $2 $3 $4 $5 $6 $7 $8" = "diagnose --robot robot.json --recording recording.csv --reference reference.csv" ] || exit 2
+seen_environment=$(env | grep -v -e ^PWD= -e ^_= -e ^SHLVL= -e ^OLDPWD= | tr '\n' ' ')
+[ "$1 $2 $3 $4 $5 $6 $7" = "diagnose --robot robot.json --recording recording.csv --reference reference.csv" ] || exit 2
 seen=$(ls -a | grep -v '^\.*$' | sort | tr '\n' ' ')
-mkdir -p "${10}"
-printf '%s|%s|%s' "$seen" "$(env | grep -v -e ^PWD= -e ^_= -e ^SHLVL= -e ^OLDPWD= | tr '\n' ' ')" "$PWD" > "${10}/seen.txt"
-printf '{"verdict": "consistent", "baseline": {"rmse_w": 1.5}, "findings": []}' > "${10}/report.json"
+mkdir -p "$9"
+printf '%s|%s|%s' "$seen" "$seen_environment" "$PWD" > "$9/seen.txt"
+printf '{"verdict": "consistent", "baseline": {"rmse_w": 1.5}, "findings": []}' > "$9/report.json"
 "#;
 
 fn script(folder: &Path, text: &str) -> PathBuf {
@@ -44,7 +45,7 @@ fn run(
         robot_json: &robot_json,
         out,
         diagnosis: Diagnosis { program: program.to_owned(), threads: 1 },
-        peers: &[Peer { name: "says payload", names: &|_| Ok(vec!["payload".into()]) }],
+        peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
         progress,
         published: &|_| {},

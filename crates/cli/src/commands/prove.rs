@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::Args;
 use diagnosis::{Plain, Series};
 use model::{Robot, builtin};
-use prove::{Diagnosis, Peer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
+use prove::{Diagnosis, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
 use recording::read_paths;
 
 use crate::{failure::BadInput, progress};
@@ -50,10 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         out: &arguments.out,
         // Cases side by side use the cores better than threads within one.
         diagnosis: Diagnosis { program, threads: 1 },
-        peers: &[
-            Peer { name: "plain BIC", names: &|case| Ok(plain(case)?.by_information()) },
-            Peer { name: "sparse regression", names: &|case| Ok(plain(case)?.by_sparse_regression()) },
-        ],
+        peers: &peers,
         at_once: available_parallelism().map_or(1, usize::from),
         progress: &told,
         published: &|hash| println!("committed to all keys: SHA-256 {hash}"),
@@ -85,7 +82,17 @@ fn doing(stage: Stage) -> &'static str {
     }
 }
 
-/// What simpler methods need of a case.
+/// What simpler methods say of a case.
+fn peers(case: &Path) -> Vec<PeerAnswer> {
+    let plain = plain(case);
+    let say = |peer, names: fn(&Plain) -> Vec<String>| PeerAnswer {
+        peer,
+        names: plain.as_ref().map(names).map_err(Clone::clone),
+    };
+    vec![say("plain BIC", Plain::by_information), say("sparse regression", Plain::by_sparse_regression)]
+}
+
+/// What they need of it.
 fn plain(case: &Path) -> Result<Plain, String> {
     let robot = std::fs::read_to_string(case.join(ROBOT)).map_err(|error| error.to_string())?;
     let robot = Robot::from_json(&robot).map_err(|error| error.to_string())?;
