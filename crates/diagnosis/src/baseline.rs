@@ -11,9 +11,11 @@ use crate::{
 };
 
 /// A robot at its best fit, with the sensitivities that a linear search needs.
-pub(crate) struct Baseline {
+pub struct Baseline {
     /// The robot.
-    pub(crate) robot: Robot,
+    pub robot: Robot,
+    /// What was fitted.
+    pub(crate) knobs: Vec<Knob>,
     /// Fitted less filed values, in widths of the file.
     pub(crate) moved: Vec<f64>,
     /// Predictions at the fit.
@@ -58,7 +60,7 @@ impl Baseline {
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
-        Ok(Baseline { robot, moved, predicted_w, columns, delays, noise })
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, noise })
     }
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn all(
 ///
 /// # Errors
 /// A surface that the robot does not know.
-fn of(
+pub(crate) fn of(
     series: &Series,
     robot: &Robot,
     applied: &[Applied],

@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
-const BLOCK_S: f64 = 20.0;
+pub(crate) const BLOCK_S: f64 = 20.0;
 
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
