@@ -40,7 +40,7 @@ fn sentence(board: &Scoreboard) -> String {
         n => format!(", and {n} of {} diagnoses failed", board.cases),
     };
     format!(
-        "{} of {} concealed effects were named; {} of {} drives that conceal nothing raised a false alarm{failed}.",
+        "{} of {} concealed effects were named; {} of {} drives that conceal nothing were not found healthy{failed}.",
         board.in_two.hits, board.in_two.of, quiet.hits, quiet.of
     )
 }
@@ -67,7 +67,7 @@ fn goals(board: &Scoreboard) -> String {
     let (hits, of) = strong.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
     let lines = [
         rate(
-            "False alarms: healthy drives, decoys, drives without their effect",
+            "False alarms: healthy drives, decoys, drives without their effect, failures included",
             quiet(board),
             "≤ 2 %",
             [0.0, 0.02],

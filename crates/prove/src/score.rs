@@ -93,7 +93,24 @@ pub struct ParameterScore {
     pub covered: Option<bool>,
 }
 
+impl CaseScore {
+    /// Whether the diagnosis ran to its end and found nothing.
+    pub fn is_quiet(&self) -> bool {
+        self.error.is_none() && !self.alarmed
+    }
+
+    /// Whether the diagnosis ran to its end and gave no name that is wrong.
+    pub fn misnames_nothing(&self) -> bool {
+        self.error.is_none() && self.wrong_names == 0
+    }
+}
+
 impl Twin {
+    /// Whether the diagnosis ran to its end and found nothing.
+    pub fn is_quiet(&self) -> bool {
+        self.error.is_none() && !self.alarmed
+    }
+
     /// What came of the twin.
     pub fn new(outcome: &Outcome) -> Self {
         match outcome {

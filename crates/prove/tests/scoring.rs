@@ -105,8 +105,9 @@ fn faults_called_physics_and_the_reverse_are_told_apart() {
 fn effects_outside_the_list_may_be_unknown_but_not_something_else() {
     let unknown = one(EffectName::Puddles, &says("unexplained", &finding("unknown", "")));
     let misnamed = one(EffectName::Puddles, &says("explained", &finding("soft_soil", "")));
-    let board = board(vec![unknown, misnamed]);
-    assert_eq!((board.unlisted_not_misnamed.hits, board.unlisted_not_misnamed.of), (1, 2));
+    let failed = one(EffectName::Puddles, &Outcome::Failed("killed".into()));
+    let board = board(vec![unknown, misnamed, failed]);
+    assert_eq!((board.unlisted_not_misnamed.hits, board.unlisted_not_misnamed.of), (1, 3));
     // The floor is at 4 W, where the twin's drive is; nothing can be explained below it.
     assert_eq!(board.scores[0].discovered, None);
     assert_eq!((board.in_two.of, board.detected.of), (0, 0), "they are no part of the list's figures");
@@ -133,14 +134,19 @@ fn alarms_on_healthy_drives_and_decoys_and_twins_are_false() {
     let alarm = says("unexplained", &finding("unknown", ""));
     let healthy = score(&key("a", Kind::Healthy, &[]), &[], &alarm, None);
     let decoy = score(&key("b", Kind::Decoy, &[]), &[], &says("consistent", ""), None);
+    let failed = score(&key("d", Kind::Healthy, &[]), &[], &Outcome::Failed("killed".into()), None);
     let shaken = score(
         &key("c", Kind::One, &[EffectName::Payload]),
         &[40.0],
         &says("consistent", ""),
         Some(Twin::new(&alarm)),
     );
-    let board = board(vec![healthy, decoy, shaken]);
-    assert_eq!((board.false_alarms_healthy.hits, board.false_alarms_healthy.of), (1, 1));
+    let board = board(vec![healthy, decoy, failed, shaken]);
+    assert_eq!(
+        (board.false_alarms_healthy.hits, board.false_alarms_healthy.of),
+        (2, 2),
+        "failing is not keeping quiet"
+    );
     assert_eq!((board.false_alarms_decoy.hits, board.false_alarms_decoy.of), (0, 1));
     assert_eq!((board.false_alarms_twin.hits, board.false_alarms_twin.of), (1, 1));
 }
