@@ -54,7 +54,7 @@ pub struct Scoreboard {
     pub parameter_error_median: Option<f64>,
     /// Intervals that hold the truth.
     pub interval_coverage: Rate,
-    /// Median of the error after correction over that of the drive without effects.
+    /// Median of the held-out error after correction over that of the drive without effects.
     pub rmse_ratio_median: Option<f64>,
     /// By mechanism and strength.
     pub mechanisms: Vec<MechanismRow>,

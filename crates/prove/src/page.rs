@@ -93,7 +93,7 @@ fn goals(board: &Scoreboard) -> String {
         share("Error of an effect's numbers, median", board.parameter_error_median, "≤ 15 %", [0.0, 0.15]),
         rate("95 % intervals that hold the truth", board.interval_coverage, "90–98 %", [0.9, 0.98]),
         ratio(
-            "Error after correction ÷ error of the drive without the effect, median",
+            "Held-out error after correction ÷ that of the drive without the effect, median",
             board.rmse_ratio_median,
         ),
         rate("Said “consistent” although something acted", board.abstained, "", [0.0, 1.0]),

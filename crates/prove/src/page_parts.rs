@@ -135,7 +135,7 @@ pub(crate) fn cases(board: &Scoreboard) -> String {
         };
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td>{}<td>{verdict}<td>{}</tr>",
+            "<tr><td class=number>{}<td class=number>{}<td>{}<td>{verdict}<td>{}</tr>",
             escape(&case.case),
             kind(case.kind),
             truths.join(", "),
