@@ -20,11 +20,11 @@ pub struct Scoreboard {
     pub commitment: String,
     /// Diagnoses that failed; they count as finding nothing.
     pub errors: Rate,
-    /// Healthy drives in which something was found.
+    /// Healthy drives in which something was found, or whose diagnosis failed.
     pub false_alarms_healthy: Rate,
-    /// Decoys in which something was found.
+    /// Decoys, in the same way.
     pub false_alarms_decoy: Rate,
-    /// Drives of the cases with effects, driven again without, in which something was found.
+    /// Drives of the cases with effects, driven again without, in the same way.
     pub false_alarms_twin: Rate,
     /// Effects of the list, of all that acted, in whose drives something was found.
     pub detected: Rate,
@@ -44,7 +44,7 @@ pub struct Scoreboard {
     pub sensor_called_physics: Rate,
     /// Physics that was called a sensor fault.
     pub physics_called_sensor: Rate,
-    /// Effects without a name to which none was given.
+    /// Effects without a name to which none was given by a diagnosis that did not fail.
     pub unlisted_not_misnamed: Rate,
     /// Effects without a name that were found.
     pub unlisted_detected: Rate,
@@ -54,7 +54,7 @@ pub struct Scoreboard {
     pub parameter_error_median: Option<f64>,
     /// Intervals that hold the truth.
     pub interval_coverage: Rate,
-    /// Median of the error after correction over that of the drive without effects.
+    /// Median of the held-out error after correction over that of the drive without effects.
     pub rmse_ratio_median: Option<f64>,
     /// By mechanism and strength.
     pub mechanisms: Vec<MechanismRow>,
@@ -78,9 +78,11 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         seed,
         commitment,
         errors: Rate::of(scores.iter().map(|case| case.error.is_some())),
-        false_alarms_healthy: Rate::of(of(Kind::Healthy).map(|case| case.alarmed)),
-        false_alarms_decoy: Rate::of(of(Kind::Decoy).map(|case| case.alarmed)),
-        false_alarms_twin: Rate::of(scores.iter().filter_map(|case| Some(case.twin.as_ref()?.alarmed))),
+        false_alarms_healthy: Rate::of(of(Kind::Healthy).map(|case| !case.is_quiet())),
+        false_alarms_decoy: Rate::of(of(Kind::Decoy).map(|case| !case.is_quiet())),
+        false_alarms_twin: Rate::of(
+            scores.iter().filter_map(|case| case.twin.as_ref()).map(|twin| !twin.is_quiet()),
+        ),
         detected: Rate::of(listed(&scores).map(|truth| truth.detected)),
         named_first: Rate::of(listed(&scores).map(|truth| truth.named_first)),
         in_two: Rate::of(listed(&scores).map(|truth| truth.in_two)),
@@ -90,7 +92,7 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         both_of_two: Rate::of(of(Kind::Two).map(|case| case.truths.iter().all(|truth| truth.in_two))),
         sensor_called_physics: swaps(&scores, Family::Measurement),
         physics_called_sensor: swaps(&scores, Family::Physics),
-        unlisted_not_misnamed: Rate::of(of(Kind::Unlisted).map(|case| case.wrong_names == 0)),
+        unlisted_not_misnamed: Rate::of(of(Kind::Unlisted).map(CaseScore::misnames_nothing)),
         unlisted_detected: Rate::of(of(Kind::Unlisted).map(|case| case.alarmed)),
         unlisted_explained_median: median(of(Kind::Unlisted).map(|case| case.discovered.unwrap_or(0.0))),
         parameter_error_median: median(numbers().filter_map(|number| number.relative_error)),
@@ -111,9 +113,12 @@ fn names_given(scores: &[CaseScore]) -> (usize, usize) {
     (right, behind + scores.iter().map(|case| case.wrong_names).sum::<usize>())
 }
 
-/// Cases all of whose truths are of a family, and in which a name of the other was given.
+/// Diagnosed cases all of whose truths are of a family, and in which a name of the other was given.
 fn swaps(scores: &[CaseScore], family: Family) -> Rate {
-    let all =
-        |case: &&CaseScore| !case.truths.is_empty() && case.truths.iter().all(|truth| truth.family == family);
+    let all = |case: &&CaseScore| {
+        case.error.is_none()
+            && !case.truths.is_empty()
+            && case.truths.iter().all(|truth| truth.family == family)
+    };
     Rate::of(scores.iter().filter(all).map(|case| case.swapped))
 }

@@ -6,8 +6,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use world::{CaseKind, EffectName, Family};
 
-/// Strengths asked for: root mean square change of power over its mean. The first is what an ideal detector sees at z = 32 on a
-/// Husky's quarter of an hour; the last is plain to the eye.
+/// Strengths asked for: root mean square change of power over its mean. An ideal detector sees the
+/// first at about z = 40 on a Husky's quarter of an hour; the last is plain to the eye.
 pub const SHARES: [f64; 4] = [0.012, 0.03, 0.06, 0.12];
 /// Shares of healthy drives, decoys, one effect, two effects and effects without a name among the cases.
 const MIX: [f64; 5] = [0.20, 0.10, 0.45, 0.15, 0.10];

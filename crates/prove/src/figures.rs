@@ -55,11 +55,11 @@ pub struct StrengthRow {
 pub struct PeerRow {
     /// Its name.
     pub peer: String,
-    /// Healthy drives and decoys in which it found something.
+    /// Healthy drives and decoys in which it found something, or on which it failed.
     pub false_alarms: Rate,
     /// Truths among as many of its first names.
     pub named: Rate,
-    /// Effects without a name to which it gave one.
+    /// Effects without a name to which it gave one, or on which it failed.
     pub misnamed: Rate,
     /// Cases on which it failed.
     pub errors: usize,
@@ -130,9 +130,11 @@ fn peer_row(name: &str, cases: &[CaseScore]) -> PeerRow {
     };
     PeerRow {
         peer: name.to_owned(),
-        false_alarms: Rate::of(of(|kind| !kind.conceals()).map(|p| !p.names.is_empty())),
+        false_alarms: Rate::of(of(|kind| !kind.conceals()).map(|p| p.error.is_some() || !p.names.is_empty())),
         named: Rate::new(of(|_| true).map(|p| p.named).sum(), of(|_| true).map(|p| p.truths).sum()),
-        misnamed: Rate::of(of(|kind| kind == Kind::Unlisted).map(|p| !p.names.is_empty())),
+        misnamed: Rate::of(
+            of(|kind| kind == Kind::Unlisted).map(|p| p.error.is_some() || !p.names.is_empty()),
+        ),
         errors: of(|_| true).filter(|p| p.error.is_some()).count(),
     }
 }

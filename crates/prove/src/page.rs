@@ -40,7 +40,7 @@ fn sentence(board: &Scoreboard) -> String {
         n => format!(", and {n} of {} diagnoses failed", board.cases),
     };
     format!(
-        "{} of {} concealed effects were named; {} of {} drives that conceal nothing raised a false alarm{failed}.",
+        "{} of {} concealed effects were named; {} of {} drives that conceal nothing were not found healthy{failed}.",
         board.in_two.hits, board.in_two.of, quiet.hits, quiet.of
     )
 }
@@ -67,7 +67,7 @@ fn goals(board: &Scoreboard) -> String {
     let (hits, of) = strong.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
     let lines = [
         rate(
-            "False alarms: healthy drives, decoys, drives without their effect",
+            "False alarms: healthy drives, decoys, drives without their effect, failures included",
             quiet(board),
             "≤ 2 %",
             [0.0, 0.02],
@@ -93,7 +93,7 @@ fn goals(board: &Scoreboard) -> String {
         share("Error of an effect's numbers, median", board.parameter_error_median, "≤ 15 %", [0.0, 0.15]),
         rate("95 % intervals that hold the truth", board.interval_coverage, "90–98 %", [0.9, 0.98]),
         ratio(
-            "Error after correction ÷ error of the drive without the effect, median",
+            "Held-out error after correction ÷ that of the drive without the effect, median",
             board.rmse_ratio_median,
         ),
         rate("Said “consistent” although something acted", board.abstained, "", [0.0, 1.0]),

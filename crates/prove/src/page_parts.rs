@@ -57,8 +57,7 @@ fn unlisted(cell: &Cell, row: &MechanismRow, board: &Scoreboard) -> String {
     let here = |case: &&CaseScore| {
         case.share == cell.share && case.truths.len() == 1 && case.truths[0].effect == row.mechanism
     };
-    let not_misnamed =
-        Rate::of(board.scores.iter().filter(here).map(|c| c.wrong_names == 0 && c.error.is_none()));
+    let not_misnamed = Rate::of(board.scores.iter().filter(here).map(CaseScore::misnames_nothing));
     field(not_misnamed, not_misnamed, cell)
 }
 
@@ -105,7 +104,7 @@ pub(crate) fn peers(board: &Scoreboard) -> String {
             |rate: Rate| format!("{} <small>{} of {}</small>", percent(rate.share()), rate.hits, rate.of);
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td>{}<td>{}<td>{errors}</tr>",
+            "<tr><td>{}<td class=number>{}<td class=number>{}<td class=number>{}<td>{errors}</tr>",
             escape(name),
             cell(alarms),
             cell(named),
@@ -136,7 +135,7 @@ pub(crate) fn cases(board: &Scoreboard) -> String {
         };
         let _ = write!(
             html,
-            "<tr><td>{}<td>{}<td>{}<td>{verdict}<td>{}</tr>",
+            "<tr><td class=number>{}<td class=number>{}<td>{}<td>{verdict}<td>{}</tr>",
             escape(&case.case),
             kind(case.kind),
             truths.join(", "),

@@ -33,9 +33,9 @@ pub enum Verdict {
 /// How well a robot fits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 pub struct Fit {
-    /// On the drives that were fitted [W].
+    /// Root mean square error on drives that were held out [W].
     #[serde(default)]
-    pub rmse_w: Option<f64>,
+    pub held_out_rmse_w: Option<f64>,
 }
 
 /// One mechanism.

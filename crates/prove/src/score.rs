@@ -32,7 +32,7 @@ pub struct CaseScore {
     pub wrong_names: usize,
     /// Whether a name of the other family was given, where all truths are of one.
     pub swapped: bool,
-    /// Root mean square error after correction over that of the drive without effects.
+    /// Root mean square error after correction over that of the drive without effects, both held out.
     pub rmse_ratio: Option<f64>,
     /// Share of the held-out mismatch that a discovered term explains.
     pub discovered: Option<f64>,
@@ -49,8 +49,8 @@ pub struct Twin {
     pub alarmed: bool,
     /// Why it said nothing.
     pub error: Option<String>,
-    /// Error of the robot fitted to it [W].
-    pub rmse_w: Option<f64>,
+    /// Held-out error of the robot fitted to it, with what was falsely found if that lowers it [W].
+    pub held_out_rmse_w: Option<f64>,
 }
 
 /// How one effect fared.
@@ -93,12 +93,33 @@ pub struct ParameterScore {
     pub covered: Option<bool>,
 }
 
+impl CaseScore {
+    /// Whether the diagnosis ran to its end and found nothing.
+    pub fn is_quiet(&self) -> bool {
+        self.error.is_none() && !self.alarmed
+    }
+
+    /// Whether the diagnosis ran to its end and gave no name that is wrong.
+    pub fn misnames_nothing(&self) -> bool {
+        self.error.is_none() && self.wrong_names == 0
+    }
+}
+
 impl Twin {
+    /// Whether the diagnosis ran to its end and found nothing.
+    pub fn is_quiet(&self) -> bool {
+        self.error.is_none() && !self.alarmed
+    }
+
     /// What came of the twin.
     pub fn new(outcome: &Outcome) -> Self {
         match outcome {
-            Outcome::Report(r) => Twin { alarmed: r.alarms(), error: None, rmse_w: r.baseline.rmse_w },
-            Outcome::Failed(why) => Twin { alarmed: false, error: Some(why.clone()), rmse_w: None },
+            Outcome::Report(report) => {
+                let fits = [report.baseline, report.corrected];
+                let rmse_w = fits.iter().filter_map(|fit| fit.held_out_rmse_w).reduce(f64::min);
+                Twin { alarmed: report.alarms(), error: None, held_out_rmse_w: rmse_w }
+            }
+            Outcome::Failed(why) => Twin { alarmed: false, error: Some(why.clone()), held_out_rmse_w: None },
         }
     }
 }
@@ -118,7 +139,7 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
         truth_score(truth, z, alarmed, matched[i].map(|j| &findings[j]))
     };
     let wrong = |(j, finding): (usize, &Finding)| finding.is_named() && !matched.contains(&Some(j));
-    let twin_w = twin.as_ref().and_then(|twin| twin.rmse_w);
+    let twin_w = twin.as_ref().and_then(|twin| twin.held_out_rmse_w);
     CaseScore {
         case: key.case.clone(),
         kind: key.kind,
@@ -130,7 +151,8 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
         truths: key.truths.iter().enumerate().map(truth).collect(),
         wrong_names: findings.iter().enumerate().filter(|finding| wrong(*finding)).count(),
         swapped: is_swapped(key, findings, &matched),
-        rmse_ratio: report.and_then(|r| ratio(r.corrected.rmse_w.or(r.baseline.rmse_w)?, twin_w?)),
+        rmse_ratio: report
+            .and_then(|r| ratio(r.corrected.held_out_rmse_w.or(r.baseline.held_out_rmse_w)?, twin_w?)),
         discovered: discovered(findings, twin_w),
         twin,
         peers: Vec::new(),

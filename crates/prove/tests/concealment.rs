@@ -19,7 +19,7 @@ seen_environment=$(env | grep -v -e ^PWD= -e ^_= -e ^SHLVL= -e ^OLDPWD= | tr '\n
 seen=$(ls -a | grep -v '^\.*$' | sort | tr '\n' ' ')
 mkdir -p "$9"
 printf '%s|%s|%s' "$seen" "$seen_environment" "$PWD" > "$9/seen.txt"
-printf '{"verdict": "consistent", "baseline": {"rmse_w": 1.5}, "findings": []}' > "$9/report.json"
+printf '{"verdict": "consistent", "baseline": {"held_out_rmse_w": 1.5}, "findings": []}' > "$9/report.json"
 "#;
 
 fn script(folder: &Path, text: &str) -> PathBuf {

@@ -28,9 +28,13 @@ fn key(case: &str, kind: Kind, effects: &[EffectName]) -> SealedKey {
 }
 
 fn says(verdict: &str, findings: &str) -> Outcome {
+    fits(verdict, findings, [4.0, 2.1])
+}
+
+fn fits(verdict: &str, findings: &str, [before_w, after_w]: [f64; 2]) -> Outcome {
     let text = format!(
-        r#"{{"verdict": "{verdict}", "baseline": {{"rmse_w": 4.0, "bias_w": 0.1}}, "where": [],
-            "findings": [{findings}], "corrected": {{"rmse_w": 2.1}}, "next_drive": null}}"#
+        r#"{{"verdict": "{verdict}", "baseline": {{"held_out_rmse_w": {before_w}, "bias_w": 0.1}}, "where": [],
+            "findings": [{findings}], "corrected": {{"held_out_rmse_w": {after_w}}}, "next_drive": null}}"#
     );
     Outcome::Report(serde_json::from_str::<Report>(&text).unwrap())
 }
@@ -44,7 +48,7 @@ fn finding(name: &str, others: &str) -> String {
 }
 
 fn twin() -> Option<Twin> {
-    Some(Twin::new(&says("consistent", "")))
+    Some(Twin::new(&fits("consistent", "", [2.0, 2.0])))
 }
 
 fn board(scores: Vec<CaseScore>) -> Scoreboard {
@@ -88,7 +92,7 @@ fn numbers_are_compared_only_by_the_same_name_and_unit() {
     assert!((number.relative_error.unwrap() - 0.1).abs() < 1e-12 && number.covered == Some(true));
     let other_unit = finding("payload", "").replace(r#""unit": "kg""#, r#""unit": "t""#);
     assert!(one(EffectName::Payload, &says("explained", &other_unit)).truths[0].parameters.is_empty());
-    assert_eq!(right.rmse_ratio, Some(2.1 / 4.0));
+    assert_eq!(right.rmse_ratio, Some(2.1 / 2.0));
 }
 
 #[test]
@@ -105,10 +109,11 @@ fn faults_called_physics_and_the_reverse_are_told_apart() {
 fn effects_outside_the_list_may_be_unknown_but_not_something_else() {
     let unknown = one(EffectName::Puddles, &says("unexplained", &finding("unknown", "")));
     let misnamed = one(EffectName::Puddles, &says("explained", &finding("soft_soil", "")));
-    let board = board(vec![unknown, misnamed]);
-    assert_eq!((board.unlisted_not_misnamed.hits, board.unlisted_not_misnamed.of), (1, 2));
-    // The floor is at 4 W, where the twin's drive is; nothing can be explained below it.
-    assert_eq!(board.scores[0].discovered, None);
+    let failed = one(EffectName::Puddles, &Outcome::Failed("killed".into()));
+    let board = board(vec![unknown, misnamed, failed]);
+    assert_eq!((board.unlisted_not_misnamed.hits, board.unlisted_not_misnamed.of), (1, 3));
+    // From 4 W down to 2.5 W, of a mismatch that ends at the 2 W of the twin's drive.
+    assert_eq!(board.scores[0].discovered, Some((16.0 - 6.25) / (16.0 - 4.0)));
     assert_eq!((board.in_two.of, board.detected.of), (0, 0), "they are no part of the list's figures");
 }
 
@@ -133,14 +138,19 @@ fn alarms_on_healthy_drives_and_decoys_and_twins_are_false() {
     let alarm = says("unexplained", &finding("unknown", ""));
     let healthy = score(&key("a", Kind::Healthy, &[]), &[], &alarm, None);
     let decoy = score(&key("b", Kind::Decoy, &[]), &[], &says("consistent", ""), None);
+    let failed = score(&key("d", Kind::Healthy, &[]), &[], &Outcome::Failed("killed".into()), None);
     let shaken = score(
         &key("c", Kind::One, &[EffectName::Payload]),
         &[40.0],
         &says("consistent", ""),
         Some(Twin::new(&alarm)),
     );
-    let board = board(vec![healthy, decoy, shaken]);
-    assert_eq!((board.false_alarms_healthy.hits, board.false_alarms_healthy.of), (1, 1));
+    let board = board(vec![healthy, decoy, failed, shaken]);
+    assert_eq!(
+        (board.false_alarms_healthy.hits, board.false_alarms_healthy.of),
+        (2, 2),
+        "failing is not keeping quiet"
+    );
     assert_eq!((board.false_alarms_decoy.hits, board.false_alarms_decoy.of), (0, 1));
     assert_eq!((board.false_alarms_twin.hits, board.false_alarms_twin.of), (1, 1));
 }
