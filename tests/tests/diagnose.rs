@@ -1,0 +1,226 @@
+//! `joulepath diagnose` and `POST /v1/diagnose` on drives of an independent world, as a person and a program meet them.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use joulepath_tests::{Server, drive_csv, program};
+use serde_json::{Value, json};
+
+fn joulepath(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(program()).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Records a drive of ten minutes over gentle hills, by one robot whatever the seed.
+fn record(folder: &Path, name: &str, seed: u64, effects: &Value) {
+    let world = json!({
+        "terrain": {"rolling": {"grade": 0.04}}, "seed": seed, "robot_seed": 5, "effects": effects
+    });
+    let drive = json!({"kind": "rich", "duration_s": 600, "seed": seed});
+    std::fs::write(folder.join("world.json"), world.to_string()).unwrap();
+    std::fs::write(folder.join("drive.json"), drive.to_string()).unwrap();
+    let out = format!("{name}.csv");
+    let made =
+        joulepath(folder, &["simulate", "--world", "world.json", "--drive", "drive.json", "--out", &out]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+}
+
+/// A folder with a healthy drive, and one of the same robot on which something acts.
+fn folder(effects: &Value) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), "healthy", 21, &json!([]));
+    record(folder.path(), "suspect", 22, effects);
+    folder
+}
+
+fn report(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap()
+}
+
+fn assert_is_of_the_contract(report: &Value) {
+    let verdicts = ["consistent", "explained", "ambiguous", "unexplained"];
+    assert!(verdicts.contains(&report["verdict"].as_str().unwrap()), "{report}");
+    for field in ["rmse_w", "bias_w", "held_out_rmse_w", "noise_floor_w"] {
+        assert!(report["baseline"][field].is_f64(), "{field} in {report}");
+    }
+    for field in ["rmse_w", "held_out_rmse_w"] {
+        assert!(report["corrected"][field].is_f64(), "{field} in {report}");
+    }
+    for place in report["where"].as_array().unwrap() {
+        assert!(place["statement"].is_string() && place["range"].is_object(), "{place}");
+        assert!((0.0..=1.0).contains(&place["share_of_excess"].as_f64().unwrap()), "{place}");
+    }
+    for finding in report["findings"].as_array().unwrap() {
+        for field in ["p_value", "delta_bic", "held_out_gain"] {
+            assert!(finding["evidence"][field].is_f64(), "{field} in {finding}");
+        }
+        for field in ["held_out_rmse_before_w", "held_out_rmse_after_w"] {
+            assert!(finding["fit"][field].is_f64(), "{field} in {finding}");
+        }
+        assert!(finding["statement"].is_string() && finding["equation"].is_string(), "{finding}");
+        assert!(finding["indistinguishable_from"].is_array(), "{finding}");
+        for parameter in finding["parameters"].as_array().unwrap() {
+            assert!(parameter["value"].is_f64() && parameter["unit"].is_string(), "{parameter}");
+        }
+    }
+    assert!(report["next_drive"].is_null() || report["next_drive"].is_string(), "{report}");
+}
+
+#[test]
+fn a_healthy_drive_is_consistent_and_the_report_says_what_would_have_been_seen() {
+    let folder = folder(&json!([]));
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "healthy.csv", "--out", "new/found"];
+    let output = joulepath(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(output.stderr.is_empty(), "a pipe shows no progress: {}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("consistent: "), "{}", text(&output.stdout));
+    let found = folder.path().join("new/found");
+    let report = report(&found);
+    assert_is_of_the_contract(&report);
+    assert_eq!(report["findings"], json!([]));
+    let sizes = report["detectable"].as_array().unwrap();
+    let payload = sizes.iter().find(|size| size["mechanism"] == "payload").unwrap();
+    assert!((0.1..60.0).contains(&payload["value"].as_f64().unwrap()), "{payload}");
+    let page = std::fs::read_to_string(found.join("report.html")).unwrap();
+    assert!(page.contains("Nothing is missing") && !page.contains("<script"), "{page}");
+    let robot = found.join("corrected-robot.json").display().to_string();
+    let after = joulepath(folder.path(), &["predict", "--robot", &robot, "--recording", "suspect.csv"]);
+    assert!(after.status.success(), "the corrected robot is a robot: {}", text(&after.stderr));
+}
+
+#[test]
+fn drag_on_one_side_is_named_or_in_the_set_and_where_it_acts_is_said() {
+    let effects = json!([{"effect": "drivetrain_drag", "strength": 30, "side": "left", "onset_s": 300}]);
+    let folder = folder(&effects);
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "healthy.csv", "--out", "found", "--json"];
+    let output = joulepath(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(printed, report(&folder.path().join("found")), "what is printed is what is written");
+    assert_is_of_the_contract(&printed);
+    assert_ne!(printed["verdict"], "consistent");
+    let finding = &printed["findings"][0];
+    let others = finding["indistinguishable_from"].as_array().unwrap();
+    let is_named = finding["mechanism"] == "drivetrain_drag" || others.contains(&json!("drivetrain_drag"));
+    assert!(is_named, "{finding}");
+    let [before, after] = [&printed["baseline"], &printed["corrected"]];
+    let rmse = |fit: &Value| fit["held_out_rmse_w"].as_f64().unwrap();
+    assert!(rmse(after) < 0.8 * rmse(before), "{before} {after}");
+    let places = printed["where"].as_array().unwrap();
+    let time = places.iter().find(|place| place["kind"] == "time").unwrap();
+    let from_s = time["range"]["from"].as_f64().unwrap();
+    assert!((200.0..=400.0).contains(&from_s), "it began at 300 s: {time}");
+    let side = places.iter().find(|place| place["kind"] == "channel").unwrap();
+    assert_eq!(side["range"]["name"], "left", "{side}");
+}
+
+#[test]
+fn a_load_lowers_the_held_out_error_once_it_is_found() {
+    let folder = folder(&json!([{"effect": "payload", "strength": 25, "onset_s": 200}]));
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "healthy.csv", "--out", "found", "--json"];
+    let output = joulepath(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_ne!(report["verdict"], "consistent", "{report}");
+    let rmse = |part: &str| report[part]["held_out_rmse_w"].as_f64().unwrap();
+    assert!(rmse("corrected") < 0.8 * rmse("baseline"), "{report}");
+}
+
+/// Swaps two columns of a table by renaming them.
+fn swap_columns(folder: &Path, name: &str, out: &str, [a, b]: [&str; 2]) {
+    let table = std::fs::read_to_string(folder.join(name)).unwrap();
+    let (head, rows) = table.split_once('\n').unwrap();
+    assert!(head.contains(a) && head.contains(b), "{head}");
+    let head = head.replace(a, "\0").replace(b, a).replace('\0', b);
+    std::fs::write(folder.join(out), format!("{head}\n{rows}")).unwrap();
+}
+
+#[test]
+fn swapped_sides_and_another_robot_are_said() {
+    let folder = folder(&json!([]));
+    swap_columns(folder.path(), "suspect.csv", "swapped.csv", ["power_left_w", "power_right_w"]);
+    let notes = |arguments: &[&str]| {
+        let mut all = vec!["diagnose", "--out", "found", "--json"];
+        all.extend(arguments);
+        let output = joulepath(folder.path(), &all);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        report(&folder.path().join("found"))["notes"].to_string()
+    };
+    let said = notes(&["--recording", "swapped.csv"]);
+    assert!(said.contains("power of the left and the right side seem swapped"), "{said}");
+    let said = notes(&["--recording", "suspect.csv"]);
+    assert!(!said.contains("swapped"), "{said}");
+    let mut robot: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("found/corrected-robot.json")).unwrap())
+            .unwrap();
+    robot["mass_kg"] = json!(20.0);
+    robot["limits"]["max_side_force_n"] = json!(600.0);
+    std::fs::write(folder.path().join("small.json"), robot.to_string()).unwrap();
+    let said = notes(&["--robot", "small.json", "--recording", "suspect.csv"]);
+    assert!(said.contains("another robot's"), "{said}");
+}
+
+#[test]
+fn too_little_and_wrong_input_get_one_clear_line_and_status_2() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("short.csv"), drive_csv(2, 300)).unwrap();
+    std::fs::write(folder.path().join("taken"), "a file").unwrap();
+    let refused = |arguments: &[&str], word: &str| {
+        let mut all = vec!["diagnose"];
+        all.extend(arguments);
+        let output = joulepath(folder.path(), &all);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.lines().count() == 1 && said.contains(word), "{said}");
+    };
+    refused(&["--recording", "short.csv", "--out", "found"], "at least 120 s");
+    refused(&["--recording", "short.csv", "--out", "taken"], "name a folder");
+    refused(&["--recording", "absent.csv", "--out", "found"], "absent.csv");
+    refused(&["--recording", "short.csv", "--reference", "absent.csv", "--out", "found"], "absent.csv");
+}
+
+#[test]
+fn over_http_a_diagnosis_is_a_job_with_the_same_report() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), "suspect", 22, &json!([]));
+    let server = Server::start();
+    let csv = std::fs::read(folder.path().join("suspect.csv")).unwrap();
+    let stored = server.post("/v1/recordings", "text/csv", &csv);
+    let id = stored.json()["id"].as_str().unwrap().to_owned();
+    let started = server.post_json("/v1/diagnose", &json!({"robot": "husky-a200", "recordings": [id]}));
+    assert_eq!(started.status, 202, "{}", started.text);
+    let job = started.location.unwrap();
+    let last = server.events(&format!("{job}/events"), None).last().unwrap();
+    assert_eq!(last.name, "done", "{}", last.data);
+    assert_is_of_the_contract(&last.data["result"]);
+    assert!(last.data["result"]["robot"]["mass_kg"].is_number(), "{}", last.data);
+    let body = json!({"robot": "husky-a200", "recordings": [id], "reference": ["0".repeat(32)]});
+    let problem = server.post_json("/v1/diagnose", &body).problem(404, "unknown-recording");
+    assert_eq!(problem["errors"][0]["pointer"], "/reference/0", "{problem}");
+    server
+        .post_json("/v1/diagnose", &json!({"robot": "husky-a200", "recordings": []}))
+        .problem(400, "invalid-request");
+}
+
+#[test]
+fn over_http_too_short_a_recording_fails_the_job_with_the_missing_number() {
+    let server = Server::start();
+    let stored = server.post("/v1/recordings", "text/csv", drive_csv(2, 300).as_bytes());
+    let id = stored.json()["id"].as_str().unwrap().to_owned();
+    let started = server.post_json("/v1/diagnose", &json!({"robot": "husky-a200", "recordings": [id]}));
+    let job = started.location.unwrap();
+    let last = server.events(&format!("{job}/events"), None).last().unwrap();
+    assert_eq!(last.name, "failed", "{}", last.data);
+    let detail = last.data["problem"]["detail"].as_str().unwrap();
+    assert!(detail.contains("60 s") && detail.contains("at least 120 s"), "{detail}");
+}
