@@ -59,7 +59,7 @@ pub fn diagnose(
     let (corrected_robot, mut notes) = corrected(&found.after.robot, &applied, &series.surfaces());
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
-    let mut doubts = doubts(robot, suspect, &series, &found.before)?;
+    let mut doubts = doubts(robot, suspect, &series, &found.after)?;
     doubts.append(&mut notes);
     let findings = judged.findings(&found);
     let mut diagnosis = Diagnosis {

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
-pub const BLOCK_S: f64 = 20.0;
+pub(crate) const BLOCK_S: f64 = 20.0;
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
 const LEVEL: f64 = 0.01;
 /// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
@@ -51,9 +51,9 @@ pub struct Search {
     /// What was found, in the order in which it was.
     pub found: Vec<Found>,
     /// The robot with nothing found.
-    pub before: Baseline,
+    pub(crate) before: Baseline,
     /// The robot with all that was found.
-    pub after: Baseline,
+    pub(crate) after: Baseline,
     /// Whitened errors that nothing took, before and after.
     pub left: [Vec<f64>; 2],
 }
