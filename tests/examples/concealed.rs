@@ -44,7 +44,7 @@ fn main() {
             let healthy = read(&case.reference_world, &case.reference_drive, "healthy.csv");
             let began = std::time::Instant::now();
             let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
-            let found = search(&series, &robot, &|_, _| {}).unwrap();
+            let found = search(&series, &robot, Some(&healthy), &|_, _| {}).unwrap();
             let named: Vec<String> = found
                 .found
                 .iter()

@@ -33,6 +33,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-recording",
         "joulepath-calibration",
         "joulepath-diagnosis",
+        "joulepath-prove",
         "joulepath-service",
         "joulepath",
     ];
@@ -77,6 +78,12 @@ fn the_world_shares_only_the_ground_with_what_it_tests() {
     assert_eq!(ours, ["joulepath-world", "joulepath-terrain"]);
 }
 
+/// What judges the diagnosis must not be made of it.
+#[test]
+fn the_proof_knows_the_world_and_nothing_of_how_a_diagnosis_comes_about() {
+    assert_eq!(arrows()["joulepath-prove"], ["joulepath-world"]);
+}
+
 #[test]
 fn nothing_below_the_service_is_async_or_speaks_http() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
@@ -89,6 +96,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
             "joulepath-recording",
             "joulepath-calibration",
             "joulepath-diagnosis",
+            "joulepath-prove",
             "joulepath-bench",
         ]
         .contains(&package.name.as_str());

@@ -7,8 +7,9 @@ use serde::Serialize;
 use crate::{
     Drives, Error, SlipTrack, current_calibration,
     current_judge::SurfaceVerdict,
+    fit::NORMAL_975,
     folds,
-    power::{PowerModel, seen_w},
+    power::{by_row, seen_w},
     power_fit::{PowerFit, fit_power, fit_thinned},
     score::{Score, median},
     stuck,
@@ -87,12 +88,20 @@ pub fn calibrate(robot: &Robot, recording: &Recording, options: &Options) -> Res
     let mut parameters = vec![track];
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
     let held_out = power_held_out(&robot, &drives)?;
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = held_note(&parameters).into_iter().collect();
     if held_out.is_none() {
         notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
     }
     let robot = with_uncertainty(&found);
     Ok(Calibration { parameters, held_out, notes, robot })
+}
+
+/// Names what the recording does not determine, for a person to read.
+pub(crate) fn held_note(parameters: &[FittedParameter]) -> Option<String> {
+    let held: Vec<&str> = parameters.iter().filter(|p| !p.determined).map(|p| p.name.as_str()).collect();
+    let note =
+        || format!("not determined by these drives, held at what was known before: {}", held.join(", "));
+    (!held.is_empty()).then(note)
 }
 
 /// The robot with the slip track that its gyroscope and wheels agree on, where both turned.
@@ -115,9 +124,6 @@ pub(crate) fn with_slip_track(robot: &Robot, drives: &Drives) -> (Robot, FittedP
         _ => (robot.clone(), parameter(robot.slip_track_m, None, false)),
     }
 }
-
-/// 97.5 % quantile of the normal distribution.
-pub(crate) const NORMAL_975: f64 = 1.959_964;
 
 fn fitted(found: &PowerFit, i: usize) -> FittedParameter {
     let (parameter, fit) = (&found.fit.parameters[i], &found.fit);
@@ -168,17 +174,13 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
             }
         }
         let form = others.form.unwrap_or(PowerForm::Battery);
-        let seen = PowerModel::new(others)
-            .by_row(&judging, |row, power| seen_w(&judging, form, row, power).iter().sum::<f64>())?;
+        let seen = by_row(others, &judging, |i, power| {
+            seen_w(&judging, form, &others.rows[i], power).iter().sum::<f64>()
+        })?;
         let predicted = others.averaged(&seen);
         let recorded = others.averaged_by(|row| others.recorded.iter().map(|column| column[row]).sum());
-        for run in others.judged_runs() {
-            let energy_j = |watts: &[f64]| -> f64 {
-                let of_run = others.averages.iter().zip(watts).filter(|(average, _)| average.run == run);
-                of_run.map(|(average, w)| w * average.duration_s).sum()
-            };
-            energies.push(100.0 * (energy_j(&predicted) / energy_j(&recorded) - 1.0).abs());
-        }
+        let error = |run: usize| others.energy_error_percent(run, &predicted, &recorded).abs();
+        energies.extend(others.judged_runs().into_iter().map(error));
         predicted_w.extend(predicted);
         recorded_w.extend(recorded);
     }

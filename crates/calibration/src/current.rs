@@ -6,8 +6,8 @@ use model::{Robot, Sides, rolling, skid};
 
 use crate::{
     Drives,
-    drives::Row,
     lag::{self, ATTITUDE_TIME_S},
+    row::Row,
     slip_law,
 };
 
@@ -125,15 +125,20 @@ pub struct CurrentModel<'a> {
     mobilized: RefCell<Vec<([f64; 4], Vec<f64>)>>,
 }
 
-/// Shapes that are kept: that of the point at hand and one beside it.
-const KEPT_SHAPES: usize = 2;
+/// Shapes that are kept: that of the point at hand and those on both sides of it.
+const KEPT_SHAPES: usize = 3;
 
 impl<'a> CurrentModel<'a> {
     /// Prepares the inputs of drives.
     pub fn new(robot: &'a Robot, drives: &'a Drives, slip_track_m: f64, yaw: YawSource, idle_a: f64) -> Self {
-        let mut tilt_rad = Vec::with_capacity(drives.rows.len());
-        for stretch in &drives.stretches {
-            tilt_rad.extend(lag::tilt_error_rad(&drives.rows[stretch.rows.clone()], ATTITUDE_TIME_S));
+        let mut tilt_rad = vec![0.0; drives.rows.len()];
+        // Where no pitch was recorded, no filter can have been mistaken about it.
+        if drives.rows.iter().any(|row| row.pitch_rad != 0.0) {
+            for stretch in &drives.stretches {
+                let rows = stretch.rows.clone();
+                tilt_rad[rows.clone()]
+                    .copy_from_slice(&lag::tilt_error_rad(&drives.rows[rows], ATTITUDE_TIME_S));
+            }
         }
         let load_shift_per_m =
             drives.rows.iter().map(|row| 2.0 * row.roll_rad.tan() / robot.track_m).collect();
@@ -198,18 +203,17 @@ impl<'a> CurrentModel<'a> {
     fn mobilized(&self, p: &CurrentParameters) -> Vec<f64> {
         let shape = [p.slip_angle_scale_rad, p.slip_shape, p.relaxation_length_m, p.wheel_mismatch];
         let mut kept = self.mobilized.borrow_mut();
-        if let Some((_, values)) = kept.iter().find(|(known, _)| *known == shape) {
-            return values.clone();
+        if let Some(place) = kept.iter().position(|(known, _)| *known == shape) {
+            kept[..=place].rotate_right(1);
+            return kept[0].1.clone();
         }
         let mut values: Vec<f64> = self.drives.rows.iter().map(|row| self.quasi_static(p, row)).collect();
         for stretch in &self.drives.stretches {
             let rows = stretch.rows.clone();
             lag::relax(&mut values[rows.clone()], &self.drives.rows[rows], p.relaxation_length_m);
         }
-        if kept.len() == KEPT_SHAPES {
-            kept.remove(1);
-        }
-        kept.push((shape, values.clone()));
+        kept.truncate(KEPT_SHAPES - 1);
+        kept.insert(0, (shape, values.clone()));
         values
     }
 

@@ -1,16 +1,19 @@
 //! A robot fitted to recordings of motor current.
 
 use model::{Robot, robot::Surface};
+use rayon::prelude::*;
 
 use crate::{
     Drives, Error,
-    calibrate::{Calibration, FittedParameter, HeldOut, Options, with_slip_track},
+    calibrate::{Calibration, FittedParameter, HeldOut, Options, held_note, with_slip_track},
     current::YawSource,
     current_fit::{CurrentFit, LIFTING, SCALE, fit_force_alone, fit_reference, fit_surface},
     current_judge::{SurfaceVerdict, judge},
+    field::SCALE_SIGMA,
+    fit::NORMAL_975,
     folds,
     score::median,
-    slip_law,
+    slip_law::{TanhLaw, nearest_tanh},
 };
 
 /// The current model of a robot: one surface that what belongs to the robot was fitted on, and the others.
@@ -35,6 +38,8 @@ pub struct SurfaceFit {
     pub surface: String,
     /// The fit of all of its runs.
     pub fit: CurrentFit,
+    /// Its slip law as a robot file has it.
+    pub law: TanhLaw,
     /// The same with force per ampere left to this surface alone.
     pub force_alone: CurrentFit,
     /// How each half of the runs is judged by the other; `None` where there is one run.
@@ -66,11 +71,14 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         return Err(Error::TooFewRuns { surface: drives.surfaces[reference].clone(), runs });
     }
     let (robot, slip_track) = with_slip_track(robot, &on_reference);
-    let whole = fit_reference(&robot, &on_reference);
-    let reference_halves = folds::halves(&on_reference).map(|half| fit_reference(&robot, &half));
+    let [first, second] = folds::halves(&on_reference);
+    let fit = |drives: &Drives| fit_reference(&robot, drives);
+    let (whole, (first, second)) =
+        rayon::join(|| fit(&on_reference), || rayon::join(|| fit(&first), || fit(&second)));
+    let reference_halves = [first, second];
     let mut order = vec![reference];
     order.extend(driven.into_iter().filter(|&i| i != reference));
-    let surfaces = order.into_iter().map(|i| {
+    let surfaces = order.into_par_iter().map(|i| {
         let here = drives.on_surface(i);
         let is_reference = i == reference;
         let fit =
@@ -79,7 +87,9 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         let verdict =
             judged.then(|| judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels).0);
         let force_alone = fit_force_alone(&robot, &here, &whole);
-        SurfaceFit { surface: drives.surfaces[i].clone(), fit, force_alone, verdict }
+        let p = &fit.parameters;
+        let law = nearest_tanh(&robot, &here, p.slip_angle_scale_rad, p.slip_shape);
+        SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict }
     });
     let surfaces = surfaces.collect();
     Ok(CurrentCalibration {
@@ -103,8 +113,8 @@ fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> usize {
         let fit = fit_reference(robot, &drives.on_surface(i));
         fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)
     };
-    let doubts = candidates.iter().map(|&i| (i, doubt(i)));
-    doubts.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
+    let doubts: Vec<_> = candidates.par_iter().map(|&i| (i, doubt(i))).collect();
+    doubts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
 }
 
 /// Fits a robot to recordings of motor current.
@@ -112,13 +122,21 @@ pub(crate) fn calibrate(robot: &Robot, drives: &Drives, options: &Options) -> Re
     let found = fit_currents(robot, drives, options)?;
     let mut parameters = vec![found.slip_track.clone(), force_parameter(&found)];
     for surface in &found.surfaces {
-        parameters.extend(friction_parameters(&found, surface));
+        parameters.extend(friction_parameters(robot, &found, surface));
     }
     parameters.extend(rest_of_the_model(&found));
     let fitted = fitted_robot(robot, &found, &parameters);
     fitted.validate()?;
-    Ok(Calibration { held_out: held_out(&found), notes: notes(&found), parameters, robot: fitted })
+    let mut notes = notes(&found);
+    notes.extend(held_note(&parameters));
+    if robot.motors.left.force_n_per_a.is_none() && !parameters[1].determined {
+        notes.push(FORCE_UNKNOWN.into());
+    }
+    Ok(Calibration { held_out: held_out(&found), notes, parameters, robot: fitted })
 }
+
+const FORCE_UNKNOWN: &str = "force per ampere is assumed, not found, and all friction with it: drive slopes of known pitch, or give \
+     force_n_per_a in motors.left and motors.right of the robot";
 
 fn force_parameter(found: &CurrentCalibration) -> FittedParameter {
     let reference = &found.surfaces[0].fit;
@@ -132,42 +150,57 @@ fn force_parameter(found: &CurrentCalibration) -> FittedParameter {
     }
 }
 
-/// μ_R = i0/G, μ_S = S/G and the tanh scale α_s/C of one surface, with the lifting current of the reference.
-fn friction_parameters(found: &CurrentCalibration, surface: &SurfaceFit) -> [FittedParameter; 3] {
+/// μ_R = i0/G, μ_S = S/G and the slip-angle scale of one surface by the tanh law nearest to its own, with the lifting current of
+/// the reference.
+///
+/// What the recording does not determine keeps the value of the robot file, where that knows the ground.
+fn friction_parameters(
+    file: &Robot,
+    found: &CurrentCalibration,
+    surface: &SurfaceFit,
+) -> [FittedParameter; 3] {
     let reference = &found.surfaces[0].fit;
     let lifting_a = reference.parameters.lifting_a;
     let lifting_share = reference.fit.sigma(LIFTING) / lifting_a;
     let fit = &surface.fit.fit;
-    let force_known = reference.fit.determined(LIFTING);
-    let parameter = |field: &str, unit: &str, value: f64, share: f64, determined: bool| {
-        let half = fit.student * share * value;
-        FittedParameter {
-            name: format!("surfaces.{}.{field}", surface.surface),
-            value,
-            unit: unit.into(),
-            interval_95: Some([(value - half).max(0.0), value + half]),
-            determined,
-        }
-    };
+    let known = file.surfaces.get(&surface.surface);
+    let parameter =
+        |field: &str, unit: &str, [value, share]: [f64; 2], determined: bool, before: Option<[f64; 2]>| {
+            let [value, share] = before.filter(|_| !determined).unwrap_or([value, share]);
+            let half = if determined { fit.student } else { NORMAL_975 } * share * value;
+            FittedParameter {
+                name: format!("surfaces.{}.{field}", surface.surface),
+                value,
+                unit: unit.into(),
+                interval_95: Some([(value - half).max(0.0), value + half]),
+                determined,
+            }
+        };
     let share = |i: usize| fit.sigma(i) / fit.values[i].max(f64::MIN_POSITIVE);
-    let friction = |field: &str, i: usize| {
-        let whole = share(i).hypot(lifting_share);
-        parameter(field, "1", fit.values[i] / lifting_a, whole, fit.determined(i) && force_known)
+    let force_known = reference.fit.determined(LIFTING) || file.motors.left.force_n_per_a.is_some();
+    let friction = |field: &str, i: usize, before: Option<[f64; 2]>| {
+        let height = if i == SKID { surface.law.share } else { 1.0 };
+        let value = [height * fit.values[i] / lifting_a, share(i).hypot(lifting_share)];
+        parameter(field, "1", value, fit.determined(i) && force_known, before)
     };
-    let scale_rad = slip_law::tanh_scale_rad(fit.values[SCALE], fit.values[SHAPE]);
     // Scale and shape move together: of their ratio, what they share cancels.
     let together = fit.covariance[(SCALE, SHAPE)] / (fit.values[SCALE] * fit.values[SHAPE]);
     let variance = share(SCALE).powi(2) + share(SHAPE).powi(2) - 2.0 * together;
-    let scale =
-        parameter("slip_angle_scale_rad", "rad", scale_rad, variance.max(0.0).sqrt(), fit.determined(SCALE));
-    [friction("mu_roll", ROLLING), friction("mu_skid", SKID), scale]
+    let scale = [surface.law.scale_rad, variance.max(0.0).sqrt()];
+    let u = &file.uncertainty;
+    let scale_before = known.map(|s| [s.slip_angle_scale_rad, SCALE_SIGMA]);
+    [
+        friction("mu_roll", ROLLING, known.map(|s| [s.mu_roll, u.mu_roll])),
+        friction("mu_skid", SKID, known.map(|s| [s.mu_skid, u.mu_skid])),
+        parameter("slip_angle_scale_rad", "rad", scale, fit.determined(SCALE), scale_before),
+    ]
 }
 
 /// What the robot file has no field for, of the reference surface.
 fn rest_of_the_model(found: &CurrentCalibration) -> Vec<FittedParameter> {
     let fit = &found.surfaces[0].fit.fit;
     let in_the_file = [ROLLING, SKID, SCALE, LIFTING];
-    let rest = (0..fit.values.len()).filter(|i| !in_the_file.contains(i) && !fit.parameters[*i].held);
+    let rest = (0..fit.values.len()).filter(|i| !in_the_file.contains(i));
     rest.map(|i| FittedParameter {
         name: format!("current_model.{}", fit.parameters[i].name),
         value: fit.values[i],

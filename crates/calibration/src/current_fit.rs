@@ -3,18 +3,28 @@
 //! The structure of the model, the widths of the priors and their centres for α_s and C were chosen on all runs of BorealTC;
 //! the numbers themselves are fitted to the runs at hand only.
 
+use std::borrow::Cow;
+
 use model::{Robot, STANDARD_GRAVITY_MPS2};
+use rayon::prelude::*;
 
 use crate::{
     Drives,
     current::{COUNT, CurrentModel, CurrentParameters, YawSource, idle_a},
+    field::SCALE_SIGMA,
     fit::{Fit, Parameter, Problem},
     folds,
+    noise::Noise,
 };
 
-/// Size of an error of a one-second average that stands for a sigma \[A\]: twice the spread of 1 A that is left on hard ground, since
-/// neighbouring seconds err alike.
-const NOISE_A: f64 = 2.0;
+/// Size of an error of a one-second average that stands for a sigma in a first, rough fit \[A\]: twice the spread of 1 A that is
+/// left on hard ground, since neighbouring seconds err alike. The fit that counts takes what the rough one leaves.
+const ROUGH_NOISE_A: f64 = 2.0;
+
+/// Rows that a fit looks at, evenly spread: what is left on real drives is no chance, which more rows would not average out.
+const MOST_ROWS: usize = 20_000;
+/// Rows that the rough fits look at, which only choose where to begin.
+const ROUGH_ROWS: usize = 5_000;
 
 /// The fit of one surface.
 #[derive(Clone, Debug)]
@@ -72,15 +82,22 @@ const FIRST: [Before; COUNT] = {
 const SCALE_STARTS_RAD: [f64; 2] = [0.08, 0.3];
 
 /// How far the numbers of another surface may lie from those of the reference: what belongs to the robot is nearly fixed,
-/// what belongs to the ground is open.
-fn after(reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
+/// what belongs to the ground is open, but for a slip-angle scale that the robot file has.
+fn after(robot: &Robot, drives: &Drives, reference: &CurrentParameters) -> [Option<[f64; 2]>; COUNT] {
+    /// C of rubber on most ground.
+    const SHAPE: f64 = 1.4;
     let r = reference;
+    let ground = drives.stretches.first().map(|stretch| &drives.surfaces[stretch.surface]);
+    let in_the_file = ground.and_then(|name| robot.surfaces.get(name)).map(|s| s.slip_angle_scale_rad);
+    let scale = in_the_file
+        .filter(|scale_rad| *scale_rad > 0.0)
+        .map_or([0.08, 0.056], |scale_rad| [SHAPE * scale_rad, SCALE_SIGMA * SHAPE * scale_rad]);
     [
         Some([2.0, 5.0]),
         Some([r.split_a, 0.2]),
         None,
-        Some([0.08, 0.056]),
-        Some([1.4, 0.25]),
+        Some(scale),
+        Some([SHAPE, 0.25]),
         Some([r.lifting_a, 0.25 * r.lifting_a]),
         Some([r.inertia_a_per_mps2, 0.15]),
         Some([r.turning_inertia_a_per_mps2, 0.1]),
@@ -101,27 +118,27 @@ pub fn fit_reference(robot: &Robot, drives: &Drives) -> CurrentFit {
         let lifting_a = force_n_per_a_inverse(robot, force_n_per_a);
         priors[LIFTING] = Some([lifting_a, sigma / mean * lifting_a]);
     }
+    let open = parameters(&priors, drives);
     let starts = SCALE_STARTS_RAD.map(|scale_rad| {
-        let mut parameters = parameters(&priors, drives);
+        let mut parameters = open.clone();
         parameters[SCALE].start = scale_rad;
-        solve(robot, drives, robot.slip_track_m, YawSource::Wheels, &parameters)
+        parameters
     });
-    let [first, second] = starts;
-    if second.fit.cost < first.fit.cost { second } else { first }
+    solve(robot, drives, robot.slip_track_m, YawSource::Wheels, &starts)
 }
 
 /// Fits another surface of the same robot.
 pub fn fit_surface(robot: &Robot, drives: &Drives, reference: &CurrentFit, yaw: YawSource) -> CurrentFit {
-    let parameters = parameters(&after(&reference.parameters), drives);
-    solve(robot, drives, reference.slip_track_m, yaw, &parameters)
+    let parameters = parameters(&after(robot, drives, &reference.parameters), drives);
+    solve(robot, drives, reference.slip_track_m, yaw, &[parameters])
 }
 
 /// Fits with the lifting current left open: what one surface alone says about newtons per ampere.
 pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -> CurrentFit {
-    let mut priors = after(&reference.parameters);
+    let mut priors = after(robot, drives, &reference.parameters);
     priors[LIFTING] = None;
     let parameters = parameters(&priors, drives);
-    solve(robot, drives, reference.slip_track_m, reference.yaw, &parameters)
+    solve(robot, drives, reference.slip_track_m, reference.yaw, &[parameters])
 }
 
 /// Place of the lifting current among the parameters.
@@ -154,7 +171,7 @@ fn turns_both_ways(drives: &Drives) -> bool {
     const LEAST_SHARE: f64 = 0.1;
     let used = || drives.rows.iter().filter(|row| row.used && !row.stuck);
     let least = LEAST_SHARE * used().count() as f64;
-    let both = |side: fn(&crate::drives::Row) -> f64| {
+    let both = |side: fn(&crate::row::Row) -> f64| {
         let forwards = used().filter(|row| side(row) > TURNING_MPS).count() as f64;
         let backwards = used().filter(|row| side(row) < -TURNING_MPS).count() as f64;
         forwards.min(backwards) > least
@@ -162,22 +179,44 @@ fn turns_both_ways(drives: &Drives) -> bool {
     both(|row| row.rim_mps.left) || both(|row| row.rim_mps.right)
 }
 
+/// Fits roughly from every start, and from the best of what they find with the noise that it leaves.
 fn solve(
     robot: &Robot,
     drives: &Drives,
     slip_track_m: f64,
     yaw: YawSource,
-    parameters: &[Parameter],
+    starts: &[Vec<Parameter>],
 ) -> CurrentFit {
-    let idle_a = idle_a(drives);
-    let model = CurrentModel::new(robot, drives, slip_track_m, yaw, idle_a);
+    let (part, some) = (thinned(drives, MOST_ROWS), thinned(drives, ROUGH_ROWS));
+    let rough = |parameters: &Vec<Parameter>| {
+        let (noise, largest) = (ROUGH_NOISE_A, ROUGH_NOISE_A);
+        let model = CurrentModel::new(robot, &some, slip_track_m, yaw, idle_a(&some));
+        let predict = |values: &[f64]| model.averages_a(&numbers(values));
+        let (recorded, block) = (some.recorded_averages(), folds::blocks(&some));
+        Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict }.solve(parameters)
+    };
+    let rough: Vec<Fit> = starts.par_iter().map(rough).collect();
+    let best = rough.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut parameters = starts.first().cloned().unwrap_or_default();
+    for (parameter, value) in parameters.iter_mut().zip(best.iter().flat_map(|fit| &fit.values)) {
+        parameter.start = *value;
+    }
+    let idle_a = idle_a(&part);
+    let model = CurrentModel::new(robot, &part, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
-    let recorded: Vec<f64> = drives.recorded_averages();
-    let block = folds::blocks(drives);
-    let problem =
-        Problem { recorded: &recorded, block: &block, noise: NOISE_A, largest: NOISE_A, predict: &predict };
-    let fit = problem.solve(parameters);
+    let (recorded, block) = (part.recorded_averages(), folds::blocks(&part));
+    let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
+    let noise = Noise::of(&predict(&start), &recorded, &part);
+    let (noise, largest) = (noise.weight(), noise.largest());
+    let problem = Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict };
+    let fit = problem.solve_determined(&parameters);
     CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
+}
+
+/// About so many rows, or all where those are none that count.
+fn thinned(drives: &Drives, most_rows: usize) -> Cow<'_, Drives> {
+    let part = (drives.rows.len() > most_rows).then(|| drives.thinned(most_rows));
+    part.filter(|part| !part.averages.is_empty()).map_or(Cow::Borrowed(drives), Cow::Owned)
 }
 
 fn numbers(values: &[f64]) -> CurrentParameters {

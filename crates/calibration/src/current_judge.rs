@@ -32,6 +32,8 @@ pub struct SurfaceVerdict {
     pub r2: f64,
     /// Root mean square error of that power, both sides together \[W\].
     pub rmse_w: f64,
+    /// Normalised error of that power, eq. 17 of Dogru & Marques (2018) as in their Table IV \[%\].
+    pub normalized_error_percent: f64,
     /// Energy error by run: 100 (predicted − recorded) / recorded \[%\].
     pub energy_error_percent: Vec<(String, f64)>,
     /// Median of their magnitudes \[%\].
@@ -87,6 +89,7 @@ fn verdict(drives: &Drives, judged: &[Judged; 2]) -> SurfaceVerdict {
         rmse_a: pooled.rmse,
         r2: watts.r2,
         rmse_w: watts.rmse,
+        normalized_error_percent: watts.normalized_error_percent,
         energy_error_percent: energies,
         median_energy_error_percent: median(&magnitudes),
     }
@@ -108,11 +111,7 @@ impl Judged {
         };
         let (predicted_w, recorded_w) = (watts(&predicted_a), watts(&recorded_a));
         let energy_error = |run: &usize| {
-            let energy_j = |watts: &[f64]| -> f64 {
-                let of_run = drives.averages.iter().zip(watts).filter(|(average, _)| average.run == *run);
-                of_run.map(|(average, w)| w * average.duration_s).sum()
-            };
-            (drives.runs[*run].clone(), 100.0 * (energy_j(&predicted_w) / energy_j(&recorded_w) - 1.0))
+            (drives.runs[*run].clone(), drives.energy_error_percent(*run, &predicted_w, &recorded_w))
         };
         let energies = drives.judged_runs().iter().map(energy_error).collect();
         Judged { predicted_a, recorded_a, predicted_w, recorded_w, energies }

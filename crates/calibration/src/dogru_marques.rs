@@ -64,7 +64,7 @@ pub fn calibrate(robot: &Robot, recording: &Recording) -> Result<Calibration, Er
 
 /// Seconds whose neighbours have the same rim speeds.
 fn steady(robot: &Robot, drives: &Drives) -> Vec<Steady> {
-    let mean = |f: &dyn Fn(usize) -> f64| drives.averaged_by(f);
+    let mean = |f: &(dyn Fn(usize) -> f64 + Sync)| drives.averaged_by(f);
     let rows = &drives.rows;
     let (left, right) = (mean(&|i| rows[i].rim_mps.left), mean(&|i| rows[i].rim_mps.right));
     let (pitch, roll) = (mean(&|i| rows[i].pitch_rad), mean(&|i| rows[i].roll_rad));

@@ -2,67 +2,11 @@
 
 use std::ops::Range;
 
-use model::{Acceleration, Robot, Sides};
+use model::Robot;
+use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording};
 
-use crate::{Error, stuck};
-
-/// Length of the averages that are fitted and judged \[s\]: longer than the delay between a motor's driver and an encoder
-/// (0.1-0.2 s on a Husky), shorter than a manoeuvre.
-pub const AVERAGE_S: f64 = 1.0;
-
-/// Rim speeds below this are standstill \[m/s\]: half of a Husky A200's encoder step of 0.008 m/s.
-pub const STANDSTILL_MPS: f64 = 0.004;
-
-/// The inputs of one row.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// Time since the row before, 0 at the start of a stretch \[s\].
-    pub step_s: f64,
-    /// Rim speeds \[m/s\].
-    pub rim_mps: Sides<f64>,
-    /// Their rates of change, by central differences \[m/s²\].
-    pub rim_mps2: Sides<f64>,
-    /// Measured yaw rate; NaN where there is none \[rad/s\].
-    pub yaw_rate_radps: f64,
-    /// Pitch, 0 where the recording has no such channel \[rad\].
-    pub pitch_rad: f64,
-    /// Roll, 0 where the recording has no such channel \[rad\].
-    pub roll_rad: f64,
-    /// Motor temperatures \[°C\]; the robot's reference where the recording has none.
-    pub motor_c: Sides<f64>,
-    /// Enters averages: everything needed is there and the wheels hold the ground.
-    pub used: bool,
-    /// The wheels turn against each other and the robot does not (`stuck`).
-    pub stuck: bool,
-}
-
-impl Row {
-    /// v: mean of the rim speeds \[m/s\].
-    pub fn speed_mps(&self) -> f64 {
-        self.rim_mps.sum() / 2.0
-    }
-
-    /// u_right − u_left \[m/s\].
-    pub fn difference_mps(&self) -> f64 {
-        self.rim_mps.right - self.rim_mps.left
-    }
-
-    /// dv/dt and dω/dt of a robot whose wheels move so.
-    pub fn acceleration(&self, slip_track_m: f64) -> Acceleration {
-        Acceleration {
-            forward_mps2: self.rim_mps2.sum() / 2.0,
-            yaw_radps2: (self.rim_mps2.right - self.rim_mps2.left) / slip_track_m,
-        }
-    }
-
-    /// Both sides stand.
-    pub fn stands(&self) -> bool {
-        self.rim_mps.left.abs() < STANDSTILL_MPS && self.rim_mps.right.abs() < STANDSTILL_MPS
-    }
-}
+use crate::{Error, average::Average, copies::copies, row, row::Row, stuck};
 
 /// Rows of one run on one surface without a gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,23 +17,6 @@ pub struct Stretch {
     pub surface: usize,
     /// Its rows.
     pub rows: Range<usize>,
-}
-
-/// About a second of one stretch: what is fitted and judged.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Average {
-    /// Which run.
-    pub run: usize,
-    /// Which surface.
-    pub surface: usize,
-    /// Its rows, of which the used ones count.
-    pub rows: Range<usize>,
-    /// How many are used; at least one.
-    pub used: usize,
-    /// Time that they stand for \[s\].
-    pub duration_s: f64,
-    /// Beginning of the second \[s\].
-    pub t_s: f64,
 }
 
 /// A recording made ready for fitting.
@@ -123,7 +50,7 @@ impl Drives {
         let mut drives = Drives {
             runs: recording.runs.iter().map(|run| run.name.clone()).collect(),
             form: Some(form),
-            rows: inputs(robot, recording, &recorded),
+            rows: row::inputs(robot, recording, &recorded),
             recorded,
             ..Drives::default()
         };
@@ -133,9 +60,7 @@ impl Drives {
                 drives.split(robot, recording, run, rows);
             }
         }
-        for stretch in &drives.stretches {
-            accelerations(&mut drives.rows[stretch.rows.clone()]);
-        }
+        drives.each_stretch(row::accelerations);
         stuck::flag(&mut drives, robot);
         drives.average();
         if drives.averages.is_empty() {
@@ -150,16 +75,22 @@ impl Drives {
     fn split(&mut self, robot: &Robot, recording: &Recording, run: usize, rows: Range<usize>) {
         let gap_s = recording.runs[run].gap_s;
         let mut open: Option<Stretch> = None;
+        let mut ground: Option<(&str, usize)> = None;
         for row in rows {
-            let here = self.rows[row];
-            if !(here.rim_mps.left.is_finite() && here.rim_mps.right.is_finite()) {
+            let Row { t_s, rim_mps, .. } = self.rows[row];
+            if !(rim_mps.left.is_finite() && rim_mps.right.is_finite()) {
                 self.stretches.extend(open.take());
                 continue;
             }
             let label = recording.surface.as_ref().and_then(|labels| labels.get(row));
-            let surface = self.surface_index(label.unwrap_or(&robot.default_surface));
+            let name = label.unwrap_or(&robot.default_surface);
+            let surface = match ground {
+                Some((known, surface)) if known == name => surface,
+                _ => self.surface_index(name),
+            };
+            ground = Some((name, surface));
             if let Some(stretch) = open.as_mut() {
-                let step_s = here.t_s - self.rows[row - 1].t_s;
+                let step_s = t_s - self.rows[row - 1].t_s;
                 if step_s <= gap_s && stretch.surface == surface {
                     self.rows[row].step_s = step_s;
                     stretch.rows.end = row + 1;
@@ -172,37 +103,25 @@ impl Drives {
         self.stretches.extend(open);
     }
 
+    /// Changes the rows of every stretch, stretches side by side.
+    pub(crate) fn each_stretch(&mut self, change: impl Fn(&mut [Row]) + Send + Sync) {
+        let mut rest = self.rows.as_mut_slice();
+        let mut at = 0;
+        let mut pieces = Vec::with_capacity(self.stretches.len());
+        for stretch in &self.stretches {
+            let (rows, after) =
+                std::mem::take(&mut rest)[stretch.rows.start - at..].split_at_mut(stretch.rows.len());
+            pieces.push(rows);
+            (rest, at) = (after, stretch.rows.end);
+        }
+        pieces.into_par_iter().for_each(change);
+    }
+
     fn surface_index(&mut self, name: &str) -> usize {
         self.surfaces.iter().position(|known| known == name).unwrap_or_else(|| {
             self.surfaces.push(name.to_owned());
             self.surfaces.len() - 1
         })
-    }
-
-    /// Renews the averages after rows were marked.
-    pub(crate) fn average(&mut self) {
-        self.averages.clear();
-        for stretch in &self.stretches {
-            let rhythm_s = rhythm_s(&self.rows[stretch.rows.clone()]);
-            let second = |row: usize| ((self.rows[row].t_s + 1e-6) / AVERAGE_S).floor();
-            let mut start = stretch.rows.start;
-            while start < stretch.rows.end {
-                let t_s = second(start);
-                let end = (start..stretch.rows.end).find(|&r| second(r) != t_s).unwrap_or(stretch.rows.end);
-                let used = self.rows[start..end].iter().filter(|row| row.used && !row.stuck).count();
-                if used > 0 {
-                    self.averages.push(Average {
-                        run: stretch.run,
-                        surface: stretch.surface,
-                        rows: start..end,
-                        used,
-                        duration_s: used as f64 * rhythm_s,
-                        t_s: t_s * AVERAGE_S,
-                    });
-                }
-                start = end;
-            }
-        }
     }
 
     /// The stretches that satisfy a condition, with their rows and averages.
@@ -247,33 +166,16 @@ impl Drives {
     /// The same drives with stuck rows counted like any other.
     #[must_use]
     pub fn including_stuck(mut self) -> Drives {
-        self.rows.iter_mut().for_each(|row| row.stuck = false);
-        self.average();
+        if self.rows.iter().any(|row| row.stuck) {
+            self.rows.iter_mut().for_each(|row| row.stuck = false);
+            self.average();
+        }
         self
     }
 
     /// The drives on one surface.
     pub fn on_surface(&self, surface: usize) -> Drives {
         self.select(|stretch| stretch.surface == surface)
-    }
-
-    /// Averages of a quantity by row.
-    pub fn averaged(&self, by_row: &[f64]) -> Vec<f64> {
-        self.averaged_by(|row| by_row[row])
-    }
-
-    /// Averages of a function of the row.
-    pub fn averaged_by(&self, value: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mean = |average: &Average| {
-            let used = average.rows.clone().filter(|&row| self.rows[row].used && !self.rows[row].stuck);
-            used.map(&value).sum::<f64>() / average.used as f64
-        };
-        self.averages.iter().map(mean).collect()
-    }
-
-    /// Averages of what was recorded, column behind column.
-    pub fn recorded_averages(&self) -> Vec<f64> {
-        self.recorded.iter().flat_map(|column| self.averaged(column)).collect()
     }
 
     /// The runs that have averages, in order of their names.
@@ -299,79 +201,5 @@ fn recorded(recording: &Recording, form: PowerForm) -> Vec<Vec<f64>> {
         PowerForm::MotorCurrents => [Channel::LeftMotorCurrent, Channel::RightMotorCurrent]
             .map(|channel| column(channel).into_iter().map(f64::abs).collect())
             .to_vec(),
-    }
-}
-
-fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]) -> Vec<Row> {
-    let channel = |channel| recording.channel(channel);
-    let at = |values: Option<&[f64]>, row: usize, absent: f64| values.map_or(absent, |v| v[row]);
-    let (left, right) = (channel(Channel::LeftSpeed), channel(Channel::RightSpeed));
-    let (yaw, pitch, roll) = (channel(Channel::YawRate), channel(Channel::Pitch), channel(Channel::Roll));
-    let warm = (channel(Channel::LeftMotorTemperature), channel(Channel::RightMotorTemperature));
-    let reference_c = robot.motors.reference_temperature_c;
-    let row = |i: usize| {
-        let rim_mps = Sides { left: at(left, i, f64::NAN), right: at(right, i, f64::NAN) };
-        let (pitch_rad, roll_rad) = (at(pitch, i, 0.0), at(roll, i, 0.0));
-        let motor_c = Sides { left: at(warm.0, i, reference_c), right: at(warm.1, i, reference_c) };
-        let whole = recorded.iter().all(|column| column[i].is_finite())
-            && [rim_mps.left, rim_mps.right, pitch_rad, roll_rad].iter().all(|x| x.is_finite());
-        let or = |x: f64, other: f64| if x.is_finite() { x } else { other };
-        Row {
-            t_s: recording.t_s[i],
-            rim_mps,
-            yaw_rate_radps: at(yaw, i, f64::NAN),
-            pitch_rad: or(pitch_rad, 0.0),
-            roll_rad: or(roll_rad, 0.0),
-            motor_c: motor_c.map(|c| or(c, reference_c)),
-            used: whole,
-            ..Row::default()
-        }
-    };
-    (0..recording.rows()).map(row).collect()
-}
-
-/// Runs whose wheel speeds and power repeat those of a longer or earlier run from its first row on.
-fn copies(recording: &Recording) -> Vec<usize> {
-    let channels = [
-        Channel::LeftSpeed,
-        Channel::RightSpeed,
-        Channel::LeftMotorCurrent,
-        Channel::Power,
-        Channel::LeftPower,
-    ];
-    let columns: Vec<&[f64]> = channels.iter().filter_map(|channel| recording.channel(*channel)).collect();
-    let same = |a: usize, b: usize, count: usize| {
-        columns.iter().all(|column| (0..count).all(|i| column[a + i].to_bits() == column[b + i].to_bits()))
-    };
-    let repeats = |(i, run): &(usize, &recording::Run)| {
-        recording.runs.iter().enumerate().any(|(j, other)| {
-            let longer = (other.rows.len(), *i) > (run.rows.len(), j);
-            longer
-                && run.rows.len() >= LEAST_COPY_ROWS
-                && same(run.rows.start, other.rows.start, run.rows.len())
-        })
-    };
-    recording.runs.iter().enumerate().filter(repeats).map(|(i, _)| i).collect()
-}
-
-/// Fewer equal rows may be chance, such as two runs that begin at standstill.
-const LEAST_COPY_ROWS: usize = 20;
-
-fn accelerations(rows: &mut [Row]) {
-    let last = rows.len() - 1;
-    for i in 0..rows.len() {
-        let (before, after) = (rows[i.saturating_sub(1)], rows[(i + 1).min(last)]);
-        let span_s = after.t_s - before.t_s;
-        if span_s > 0.0 {
-            rows[i].rim_mps2 = after.rim_mps.zip(before.rim_mps).map(|(b, a)| (b - a) / span_s);
-        }
-    }
-}
-
-/// The mean step of a stretch \[s\]; a second for a lone row.
-fn rhythm_s(rows: &[Row]) -> f64 {
-    match rows {
-        [first, .., last] => (last.t_s - first.t_s) / (rows.len() - 1) as f64,
-        _ => AVERAGE_S,
     }
 }

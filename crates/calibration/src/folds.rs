@@ -22,7 +22,7 @@ pub fn halves(drives: &Drives) -> [Drives; 2] {
 fn block_of_averages(drives: &Drives) -> Vec<usize> {
     let mut known = None;
     let mut block = 0;
-    let number = |average: &crate::drives::Average| {
+    let number = |average: &crate::average::Average| {
         let key = (average.run, (average.t_s / BLOCK_S).floor() as i64);
         if known.is_some_and(|k| k != key) {
             block += 1;

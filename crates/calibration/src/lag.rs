@@ -2,7 +2,7 @@
 
 use model::STANDARD_GRAVITY_MPS2;
 
-use crate::drives::Row;
+use crate::row::Row;
 
 /// Time constant with which the attitude filter of the BorealTC Husky forgets an acceleration \[s\]; read off the decay of its
 /// pitch at the beginnings of runs (1.1 to 1.5 s), on all of them.

@@ -3,7 +3,9 @@
 //! SI units; axes and signs are those of the `model` and `recording` crates. What is fitted and what is judged are averages over
 //! one second ([`Drives`]); runs are kept apart, and no run is judged by a fit that saw it.
 
+pub mod average;
 pub mod calibrate;
+mod copies;
 pub mod current;
 pub mod current_calibration;
 pub mod current_fit;
@@ -11,15 +13,19 @@ pub mod current_judge;
 pub mod dogru_marques;
 pub mod drives;
 mod error;
+mod field;
 pub mod fit;
 pub mod folds;
 pub mod lag;
 pub mod lift;
 mod method;
+mod noise;
 pub mod power;
 pub mod power_fit;
 pub mod predict;
 pub mod report;
+pub mod row;
+mod scatter;
 pub mod score;
 pub mod slip_law;
 mod stuck;

@@ -2,96 +2,158 @@
 
 use std::cell::RefCell;
 
-use model::{Attitude, FrictionShape, Manoeuvre, Motion, Power, Robot, Sides};
+use model::{Attitude, Friction, FrictionShape, Manoeuvre, Motion, Power, Robot, Sides};
+use rayon::prelude::*;
 use recording::PowerForm;
 
-use crate::{Drives, Error, drives::Row};
+use crate::{Drives, Error, average::Average, row::Row};
 
 /// Drives as the force balance sees them, prepared for being asked again and again with other coefficients.
 pub struct PowerModel<'a> {
     drives: &'a Drives,
-    /// Surface of each row, an index into the drives' surfaces.
     surface: Vec<u32>,
     /// Shares of the weight across and along the heading, by row.
     grade: Vec<[f64; 2]>,
     /// Friction shapes of the last slip-angle scales asked for.
-    shapes: RefCell<Vec<(Vec<f64>, Vec<FrictionShape>)>>,
+    shapes: RefCell<Vec<Shapes>>,
 }
 
-/// Shapes that are kept: those of the point at hand and those beside it.
-const KEPT_SHAPES: usize = 2;
+/// The friction shape of every row for slip-angle scales by surface.
+#[derive(Clone)]
+struct Shapes {
+    scales_rad: Vec<f64>,
+    by_row: Vec<FrictionShape>,
+}
+
+/// Averages that are worth a task of their own: some 10 µs.
+const LEAST_AVERAGES: usize = 32;
+
+/// Shapes that are kept: those of the point at hand and those on both sides of it.
+const KEPT_SHAPES: usize = 3;
 
 impl<'a> PowerModel<'a> {
     /// Prepares drives.
     pub fn new(drives: &'a Drives) -> Self {
-        let mut surface = vec![0; drives.rows.len()];
-        for stretch in &drives.stretches {
-            surface[stretch.rows.clone()].fill(stretch.surface as u32);
-        }
-        let grade = |row: &Row| {
-            let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
-            [attitude.weight_normal(), attitude.weight_along()]
-        };
-        PowerModel {
-            drives,
-            surface,
-            grade: drives.rows.iter().map(grade).collect(),
-            shapes: RefCell::default(),
-        }
+        let grade = drives.rows.par_iter().map(grade).collect();
+        PowerModel { drives, surface: surface_of_rows(drives), grade, shapes: RefCell::default() }
     }
 
-    /// Power of every row, reduced to what is wanted of it.
+    /// One-second averages of what is wanted of the power of each row.
     ///
     /// # Errors
     /// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on.
-    pub fn by_row<T>(&self, robot: &Robot, wanted: impl Fn(&Row, &Power) -> T) -> Result<Vec<T>, Error> {
-        let surfaces = self
-            .drives
-            .surfaces
-            .iter()
-            .enumerate()
-            .map(|(i, name)| robot.surface(name).map_err(|_| self.unknown_surface(robot, i)))
-            .collect::<Result<Vec<_>, Error>>()?;
-        let scales_rad = surfaces.iter().map(|surface| surface.slip_angle_scale_rad).collect();
-        self.prepare_shapes(robot, scales_rad);
+    pub fn averages<const N: usize>(
+        &self,
+        robot: &Robot,
+        wanted: impl Fn(&Row, &Power) -> [f64; N] + Sync,
+    ) -> Result<Vec<[f64; N]>, Error> {
+        let friction = self.prepare(robot)?;
         let kept = self.shapes.borrow();
-        let Some((_, shapes)) = kept.first() else { return Ok(Vec::new()) };
-        let power = |(i, row): (usize, &Row)| {
-            let surface = surfaces[self.surface[i] as usize];
-            let manoeuvre = Manoeuvre::of_shape(robot, surface, motion(robot, row), &shapes[i], row.motor_c);
-            let [normal, along] = self.grade[i];
-            wanted(row, &manoeuvre.power_on_grade(normal, along, row.acceleration(robot.slip_track_m)))
+        let shapes: &[FrictionShape] = kept.first().map_or(&[], |shapes| &shapes.by_row);
+        let (drives, grade) = (self.drives, &self.grade);
+        let mean = |average: &Average| {
+            let friction = &friction[average.surface];
+            drives.mean(average, |i| {
+                let row = &drives.rows[i];
+                wanted(row, &power(robot, friction, row, &shapes[i], grade[i]))
+            })
         };
-        Ok(self.drives.rows.iter().enumerate().map(power).collect())
+        Ok(drives.averages.par_iter().with_min_len(LEAST_AVERAGES).map(mean).collect())
     }
 
-    /// Brings the shapes of these scales to the front of those kept.
+    /// Friction on each surface; the shapes of its slip-angle scales come to the front of those kept.
+    fn prepare(&self, robot: &Robot) -> Result<Vec<Friction>, Error> {
+        let ground = ground(self.drives, robot)?;
+        self.prepare_shapes(robot, ground.iter().map(|(_, scale_rad)| *scale_rad).collect());
+        Ok(ground.into_iter().map(|(friction, _)| friction).collect())
+    }
+
+    /// Brings the shapes of these scales to the front of those kept. Only surfaces whose scale is another are worked out anew.
     fn prepare_shapes(&self, robot: &Robot, scales_rad: Vec<f64>) {
         let mut kept = self.shapes.borrow_mut();
-        if let Some(place) = kept.iter().position(|(known, _)| *known == scales_rad) {
-            kept.swap(0, place);
+        if let Some(place) = kept.iter().position(|shapes| shapes.scales_rad == scales_rad) {
+            kept[..=place].rotate_right(1);
             return;
         }
-        let shape = |(row, surface): (&Row, &u32)| {
-            FrictionShape::new(robot, scales_rad[*surface as usize], &motion(robot, row))
+        let mut shapes = match kept.first() {
+            Some(_) if kept.len() == KEPT_SHAPES => kept.remove(KEPT_SHAPES - 1),
+            Some(first) => first.clone(),
+            None => Shapes {
+                scales_rad: vec![f64::NAN; scales_rad.len()],
+                by_row: vec![FrictionShape::default(); self.drives.rows.len()],
+            },
         };
-        let shapes = self.drives.rows.iter().zip(&self.surface).map(shape).collect();
-        kept.insert(0, (scales_rad, shapes));
-        kept.truncate(KEPT_SHAPES);
+        let (rows, surface, known) = (&self.drives.rows, &self.surface, &shapes.scales_rad);
+        shapes.by_row.par_iter_mut().enumerate().for_each(|(i, shape)| {
+            let at = surface[i] as usize;
+            if known[at] != scales_rad[at] {
+                *shape = FrictionShape::new(robot, scales_rad[at], &motion(robot, &rows[i]));
+            }
+        });
+        shapes.scales_rad = scales_rad;
+        kept.insert(0, shapes);
     }
+}
 
-    fn unknown_surface(&self, robot: &Robot, surface: usize) -> Error {
-        let drives = self.drives;
-        let place = drives.stretches.iter().find(|stretch| stretch.surface == surface);
-        let first_row =
-            |run: usize| drives.stretches.iter().find(|s| s.run == run).map_or(0, |s| s.rows.start);
-        Error::UnknownSurface {
-            run: place.map(|s| drives.runs[s.run].clone()).unwrap_or_default(),
-            row: place.map_or(1, |s| s.rows.start - first_row(s.run) + 1),
-            surface: drives.surfaces[surface].clone(),
-            known: robot.surfaces.keys().cloned().collect(),
-        }
+/// Power of every row, reduced to what is wanted of the row at an index; for asking once.
+///
+/// # Errors
+/// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on.
+pub fn by_row<T: Send>(
+    drives: &Drives,
+    robot: &Robot,
+    wanted: impl Fn(usize, &Power) -> T + Sync,
+) -> Result<Vec<T>, Error> {
+    let ground = ground(drives, robot)?;
+    let surface = surface_of_rows(drives);
+    let value = |(i, row): (usize, &Row)| {
+        let (friction, scale_rad) = &ground[surface[i] as usize];
+        let shape = FrictionShape::new(robot, *scale_rad, &motion(robot, row));
+        wanted(i, &power(robot, friction, row, &shape, grade(row)))
+    };
+    Ok(drives.rows.par_iter().enumerate().map(value).collect())
+}
+
+/// Surface of each row, an index into the drives' surfaces.
+fn surface_of_rows(drives: &Drives) -> Vec<u32> {
+    let mut surface = vec![0; drives.rows.len()];
+    for stretch in &drives.stretches {
+        surface[stretch.rows.clone()].fill(stretch.surface as u32);
     }
+    surface
+}
+
+/// Friction and slip-angle scale [rad] of the robot on each surface of the drives.
+fn ground(drives: &Drives, robot: &Robot) -> Result<Vec<(Friction, f64)>, Error> {
+    let of = |(i, name): (usize, &String)| {
+        let surface = robot.surface(name).map_err(|_| unknown_surface(drives, robot, i))?;
+        Ok((Friction::new(robot, surface), surface.slip_angle_scale_rad))
+    };
+    drives.surfaces.iter().enumerate().map(of).collect()
+}
+
+fn unknown_surface(drives: &Drives, robot: &Robot, surface: usize) -> Error {
+    let place = drives.stretches.iter().find(|stretch| stretch.surface == surface);
+    let first_row = |run: usize| drives.stretches.iter().find(|s| s.run == run).map_or(0, |s| s.rows.start);
+    Error::UnknownSurface {
+        run: place.map(|s| drives.runs[s.run].clone()).unwrap_or_default(),
+        row: place.map_or(1, |s| s.rows.start - first_row(s.run) + 1),
+        surface: drives.surfaces[surface].clone(),
+        known: robot.surfaces.keys().cloned().collect(),
+    }
+}
+
+/// Shares of the weight across and along the heading.
+fn grade(row: &Row) -> [f64; 2] {
+    let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
+    [attitude.weight_normal(), attitude.weight_along()]
+}
+
+/// The power of one row, by the model's one function.
+#[inline]
+fn power(robot: &Robot, friction: &Friction, row: &Row, shape: &FrictionShape, grade: [f64; 2]) -> Power {
+    let manoeuvre = Manoeuvre::of_shape(robot, friction, motion(robot, row), shape, row.motor_c);
+    manoeuvre.power_on_grade(grade[0], grade[1], row.acceleration(robot.slip_track_m))
 }
 
 /// Encoders dither about zero while a robot stands; rolling resistance would follow them.

@@ -1,30 +1,16 @@
 //! Fitting the robot to recordings of power.
 
-use model::{
-    Robot,
-    robot::{Motor, Surface},
-};
+use model::Robot;
 use recording::PowerForm;
 
 use crate::{
     Drives, Error,
-    fit::{Fit, Parameter, Problem},
+    field::{applied, known_before, with_new_ground},
+    fit::{Fit, Problem},
     folds,
+    noise::Noise,
     power::{PowerModel, seen_w},
-    score::median,
 };
-
-/// What is known of ground that the robot file does not name: rolling 0.1 ± 0.1 and skid 0.4 ± 0.3 span hard floor to loose
-/// sand (Dogru & Marques 2018, Fig. 13; BorealTC: 0.10 to 0.15 and 0.11 to 0.61); the scale is the file's default.
-const NEW_GROUND: [[f64; 2]; 3] = [[0.1, 0.1], [0.4, 0.3], [0.3, 0.15]];
-/// Relative sigma of a slip-angle scale that the robot file gives; its `uncertainty` has no such entry.
-const SCALE_SIGMA: f64 = 0.5;
-/// Sigma of the fraction that comes back: that of a fraction of which nothing is known, √(1/12).
-const REGENERATION_SIGMA: f64 = 0.29;
-/// Sigma of a standing power that the robot file gives as zero \[W\]: a computer and its sensors.
-const STANDING_SIGMA_W: f64 = 30.0;
-/// Errors beyond so many sigma count linearly: Huber's choice of 1.5 to 3 keeps 95 % efficiency or more on normal errors.
-const LARGEST_SIGMAS: f64 = 2.5;
 
 /// The robot as fitted to recordings of power.
 #[derive(Clone, Debug)]
@@ -35,23 +21,12 @@ pub struct PowerFit {
     pub fit: Fit,
 }
 
-/// A field of the robot that is fitted.
-#[derive(Clone, Debug, PartialEq)]
-enum Field {
-    MuRoll(String),
-    MuSkid(String),
-    Scale(String),
-    LeftK1,
-    LeftK2,
-    RightK1,
-    RightK2,
-    Regeneration,
-    Hotel,
-    Electronics,
-}
-
 /// Rows on which a first fit of a long recording is made, before all of them have their say.
-const FIRST_ROWS: usize = 50_000;
+const FIRST_ROWS: usize = 20_000;
+
+/// Rounds of fit and noise at most, and the share of the noise before that counts as no change.
+const MOST_ROUNDS: usize = 5;
+const SETTLED: f64 = 0.9;
 
 /// Fits friction per surface, motor constants, regeneration and standing powers to all rows.
 ///
@@ -77,7 +52,7 @@ pub fn fit_thinned(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
 fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<PowerFit, Error> {
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let robot = with_new_ground(known, drives);
-    let (fields, mut parameters) = known_before(&robot, known, drives, form);
+    let (fields, mut parameters) = known_before(&robot, known, drives);
     for parameter in &mut parameters {
         let earlier =
             before.and_then(|fit| Some((fit, fit.parameters.iter().position(|p| p.name == parameter.name)?)));
@@ -86,23 +61,28 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
         }
     }
     let model = PowerModel::new(drives);
-    model.by_row(&robot, |_, _| ())?;
+    model.averages(&robot, |_, _| [])?;
     let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);
     let problem = |noise: Noise| Problem {
         recorded: &recorded,
         block: &block,
-        noise: noise.sigma_w * noise.inflation.sqrt(),
-        largest: LARGEST_SIGMAS * noise.sigma_w,
+        noise: noise.weight(),
+        largest: noise.largest(),
         predict: &predict,
     };
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
     let mut noise = Noise::of(&predict(&start), &recorded, drives);
-    if before.is_none() {
+    // A file that is far off makes for noise that would keep the fit there, so both are worked out in turns.
+    for _ in 0..if before.is_none() { MOST_ROUNDS } else { 0 } {
         let rough = problem(noise).solve(&parameters);
-        noise = Noise::of(&predict(&rough.values), &recorded, drives);
         parameters.iter_mut().zip(&rough.values).for_each(|(parameter, value)| parameter.start = *value);
+        let weight = noise.weight();
+        noise = Noise::of(&predict(&rough.values), &recorded, drives);
+        if noise.weight() > SETTLED * weight {
+            break;
+        }
     }
     let fit = problem(noise).solve_determined(&parameters);
     let fitted = applied(&robot, &fields, &fit.values);
@@ -112,146 +92,8 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
 
 /// One-second averages of what a recording of a candidate would show, column behind column.
 fn predicted(model: &PowerModel<'_>, candidate: &Robot, drives: &Drives, form: PowerForm) -> Vec<f64> {
-    let Ok(seen) = model.by_row(candidate, |row, power| seen_w(candidate, form, row, power)) else {
+    let Ok(seen) = model.averages(candidate, |row, power| seen_w(candidate, form, row, power)) else {
         return Vec::new();
     };
-    let mut averages = drives.averaged_by(|row| seen[row][0]);
-    if drives.recorded.len() == 2 {
-        averages.extend(drives.averaged_by(|row| seen[row][1]));
-    }
-    averages
-}
-
-/// How far errors scatter, and by how much their hanging together widens what follows from them.
-#[derive(Clone, Copy)]
-struct Noise {
-    sigma_w: f64,
-    inflation: f64,
-}
-
-impl Noise {
-    /// From the median error, and the correlation ρ of neighbouring seconds as (1 + ρ) / (1 − ρ), the variance of a mean of a
-    /// first-order process over that of white noise.
-    fn of(predicted: &[f64], recorded: &[f64], drives: &Drives) -> Noise {
-        /// Ratio of sigma to the median absolute error of a normal distribution.
-        const SIGMA_PER_MEDIAN: f64 = 1.4826;
-        let errors: Vec<f64> = predicted.iter().zip(recorded).map(|(p, r)| p - r).collect();
-        let magnitudes: Vec<f64> = errors.iter().map(|e| e.abs()).collect();
-        let floor_w = 1e-6 * median(&recorded.iter().map(|r| r.abs()).collect::<Vec<_>>()).max(1e-3);
-        let sigma_w = (SIGMA_PER_MEDIAN * median(&magnitudes)).max(floor_w);
-        let clip = |e: f64| e.clamp(-3.0 * sigma_w, 3.0 * sigma_w);
-        let (mut product, mut square) = (0.0, 0.0);
-        for (i, pair) in errors.windows(2).enumerate() {
-            let n = drives.averages.len();
-            let together = (i + 1) % n != 0 && drives.averages[i % n].run == drives.averages[(i + 1) % n].run;
-            if together {
-                product += clip(pair[0]) * clip(pair[1]);
-                square += clip(pair[0]).powi(2);
-            }
-        }
-        let correlation = if square > 0.0 { (product / square).clamp(0.0, 0.9) } else { 0.0 };
-        Noise { sigma_w, inflation: (1.0 + correlation) / (1.0 - correlation) }
-    }
-}
-
-/// The robot with the ground that the recording names and it lacks.
-fn with_new_ground(robot: &Robot, drives: &Drives) -> Robot {
-    let mut robot = robot.clone();
-    for name in &drives.surfaces {
-        let [[mu_roll, _], [mu_skid, _], [slip_angle_scale_rad, _]] = NEW_GROUND;
-        let new = Surface { mu_roll, mu_skid, slip_angle_scale_rad, dogru_marques: None };
-        robot.surfaces.entry(name.clone()).or_insert(new);
-    }
-    robot
-}
-
-/// What the robot file says of each field, and how surely; ground that it did not know has its own widths.
-fn known_before(
-    robot: &Robot,
-    known: &Robot,
-    drives: &Drives,
-    form: PowerForm,
-) -> (Vec<Field>, Vec<Parameter>) {
-    let mut lines = Vec::new();
-    let mut add =
-        |field: Field, name: String, unit: &'static str, mean: f64, sigma: f64, bounds: [f64; 2]| {
-            let prior = Some([mean, sigma]);
-            lines.push((field, Parameter { name, unit, start: mean, bounds, prior, held: false }));
-        };
-    let u = &robot.uncertainty;
-    let driven = |name: &String| drives.stretches.iter().any(|s| drives.surfaces[s.surface] == *name);
-    for name in drives.surfaces.iter().filter(|name| driven(name)) {
-        let Some(s) = robot.surfaces.get(name) else { continue };
-        let new = !known.surfaces.contains_key(name);
-        let sigma = |i: usize, mean: f64, relative: f64| if new { NEW_GROUND[i][1] } else { relative * mean };
-        let at = |field: &str| format!("surfaces.{name}.{field}");
-        add(
-            Field::MuRoll(name.clone()),
-            at("mu_roll"),
-            "1",
-            s.mu_roll,
-            sigma(0, s.mu_roll, u.mu_roll),
-            [0.0, 1.0],
-        );
-        add(
-            Field::MuSkid(name.clone()),
-            at("mu_skid"),
-            "1",
-            s.mu_skid,
-            sigma(1, s.mu_skid, u.mu_skid),
-            [0.0, 2.0],
-        );
-        let scale_rad = s.slip_angle_scale_rad.max(0.02);
-        let scale_sigma_rad = sigma(2, scale_rad, SCALE_SIGMA);
-        add(
-            Field::Scale(name.clone()),
-            at("slip_angle_scale_rad"),
-            "rad",
-            scale_rad,
-            scale_sigma_rad,
-            [0.01, 1.5],
-        );
-    }
-    let sides = [
-        ("left", robot.motors.left, Field::LeftK1, Field::LeftK2),
-        ("right", robot.motors.right, Field::RightK1, Field::RightK2),
-    ];
-    for (side, Motor { k1_w_per_n2: k1, k2, .. }, first, second) in sides {
-        let name = format!("motors.{side}.k1_w_per_n2");
-        add(first, name, "W/N²", k1, u.k1 * k1, [0.2 * k1, 5.0 * k1 + 1e-9]);
-        add(second, format!("motors.{side}.k2"), "1", k2, u.k2 * k2, [1.0, (2.0 * k2).max(3.0)]);
-    }
-    let regeneration = robot.motors.regeneration;
-    add(Field::Regeneration, "motors.regeneration".into(), "1", regeneration, REGENERATION_SIGMA, [0.0, 1.0]);
-    let standing = |mean_w: f64| [mean_w, (0.5 * mean_w).max(STANDING_SIGMA_W)];
-    if matches!(form, PowerForm::Battery | PowerForm::CurrentAndVoltage) {
-        let [mean_w, sigma_w] = standing(robot.hotel_power_w);
-        add(Field::Hotel, "hotel_power_w".into(), "W", mean_w, sigma_w, [0.0, mean_w + 1000.0]);
-    }
-    let [mean_w, sigma_w] = standing(robot.drive_electronics_w);
-    add(Field::Electronics, "drive_electronics_w".into(), "W", mean_w, sigma_w, [0.0, mean_w + 500.0]);
-    lines.into_iter().unzip()
-}
-
-/// The robot with fitted values in their fields.
-fn applied(robot: &Robot, fields: &[Field], values: &[f64]) -> Robot {
-    let mut robot = robot.clone();
-    for (field, &value) in fields.iter().zip(values) {
-        let place = match field {
-            Field::MuRoll(name) => robot.surfaces.get_mut(name).map(|s| &mut s.mu_roll),
-            Field::MuSkid(name) => robot.surfaces.get_mut(name).map(|s| &mut s.mu_skid),
-            Field::Scale(name) => robot.surfaces.get_mut(name).map(|s| &mut s.slip_angle_scale_rad),
-            Field::LeftK1 => Some(&mut robot.motors.left.k1_w_per_n2),
-            Field::LeftK2 => Some(&mut robot.motors.left.k2),
-            Field::RightK1 => Some(&mut robot.motors.right.k1_w_per_n2),
-            Field::RightK2 => Some(&mut robot.motors.right.k2),
-            Field::Regeneration => Some(&mut robot.motors.regeneration),
-            Field::Hotel => Some(&mut robot.hotel_power_w),
-            Field::Electronics => Some(&mut robot.drive_electronics_w),
-        };
-        if let Some(place) = place {
-            *place = value;
-        }
-    }
-    robot
+    (0..drives.recorded.len()).flat_map(|column| seen.iter().map(move |watts| watts[column])).collect()
 }

@@ -1,13 +1,14 @@
 //! Predicted against recorded power, run by run.
 
 use model::{Power, Robot, Sides};
+use rayon::prelude::*;
 use recording::{PowerForm, Recording};
 use serde::Serialize;
 
 use crate::{
     Drives, Error,
-    drives::Row,
-    power::{PowerModel, seen_w},
+    power::{PowerModel, by_row, seen_w},
+    row::Row,
     score::Score,
 };
 
@@ -77,21 +78,30 @@ pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, 
     let drives = drives.including_stuck();
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let amperes = (form == PowerForm::MotorCurrents).then(|| amperes(robot)).transpose()?;
-    let seen =
-        PowerModel::new(&drives).by_row(robot, |row, power| Seen::of(robot, form, amperes, row, power))?;
-    let recorded_w: Vec<f64> = (0..drives.rows.len())
-        .map(|i| {
-            let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
-            seen[i].recorded_w(robot, form, &drives.rows[i], [read(0), read(1)])
-        })
-        .collect();
-    let predicted_w: Vec<f64> = seen.iter().map(|s| s.watts.iter().sum()).collect();
+    let by_row = by_row(&drives, robot, |i, power| {
+        let row = &drives.rows[i];
+        let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
+        let recorded_w = match amperes {
+            Some(amperes) => watts_of_currents(robot, row, reading(robot, amperes, row, power), read),
+            None => read(0) + read(1),
+        };
+        (seen_w(robot, form, row, power).iter().sum::<f64>(), recorded_w)
+    })?;
+    let (predicted_w, recorded_w): (Vec<f64>, Vec<f64>) = by_row.into_iter().unzip();
+    let currents_a = match amperes {
+        Some(amperes) => currents(robot, &drives, amperes)?,
+        None => Vec::new(),
+    };
     let order = drives.judged_runs();
-    let averages = Averages::of(&drives, &seen, &predicted_w, &recorded_w);
+    let averages = Averages {
+        predicted_w: drives.averaged(&predicted_w),
+        recorded_w: drives.averaged(&recorded_w),
+        currents_a,
+    };
     let judge = |run: Option<usize>| judge(&drives, run, &predicted_w, &recorded_w, &stuck, &averages);
-    let prediction =
-        Prediction { runs: order.iter().map(|run| judge(Some(*run))).collect(), total: judge(None) };
-    Ok(PredictedDrives { prediction, drives, predicted_w, recorded_w })
+    let (runs, total) =
+        rayon::join(|| order.par_iter().map(|run| judge(Some(*run))).collect(), || judge(None));
+    Ok(PredictedDrives { prediction: Prediction { runs, total }, drives, predicted_w, recorded_w })
 }
 
 fn amperes(robot: &Robot) -> Result<Sides<f64>, Error> {
@@ -101,41 +111,39 @@ fn amperes(robot: &Robot) -> Result<Sides<f64>, Error> {
     }
 }
 
-/// What a recording would show of one row.
-struct Seen {
-    /// Power by column \[W\].
-    watts: [f64; 2],
-    /// Currents by side; NaN where none were recorded \[A\].
-    current_a: Sides<f64>,
-    /// Signed newtons that an ampere of each side's reading stands for.
-    force_n_per_a: Sides<f64>,
+/// Signed newtons that an ampere of each side's reading stands for.
+fn reading(robot: &Robot, amperes: Sides<f64>, row: &Row, power: &Power) -> Sides<f64> {
+    let k2 = robot.motor_sides().map(|motor| motor.k2);
+    let sides = power.force_n.zip(row.rim_mps).zip(amperes.zip(k2));
+    sides.map(|((force_n, rim_mps), (per_a, k2))| {
+        let gear = if force_n * rim_mps >= 0.0 { 1.0 } else { k2 * k2 };
+        per_a * gear * if force_n < 0.0 { -1.0 } else { 1.0 }
+    })
 }
 
-impl Seen {
-    fn of(robot: &Robot, form: PowerForm, amperes: Option<Sides<f64>>, row: &Row, power: &Power) -> Seen {
-        let watts = seen_w(robot, form, row, power);
-        let nothing = Sides::both(f64::NAN);
-        let Some(amperes) = amperes else {
-            return Seen { watts, current_a: nothing, force_n_per_a: nothing };
-        };
-        let k2 = robot.motor_sides().map(|motor| motor.k2);
-        let sides = power.force_n.zip(row.rim_mps).zip(amperes.zip(k2));
-        let force_n_per_a = sides.map(|((force_n, rim_mps), (per_a, k2))| {
-            let gear = if force_n * rim_mps >= 0.0 { 1.0 } else { k2 * k2 };
-            per_a * gear * if force_n < 0.0 { -1.0 } else { 1.0 }
-        });
-        Seen { watts, current_a: power.force_n.zip(force_n_per_a).map(|(f, per_a)| f / per_a), force_n_per_a }
-    }
+/// The power that eq. 2 makes of recorded currents \[W\].
+fn watts_of_currents(
+    robot: &Robot,
+    row: &Row,
+    force_n_per_a: Sides<f64>,
+    read: impl Fn(usize) -> f64,
+) -> f64 {
+    let force_n = Sides { left: force_n_per_a.left * read(0), right: force_n_per_a.right * read(1) };
+    let power = side_power(robot, row, force_n);
+    seen_w(robot, PowerForm::MotorCurrents, row, &power).iter().sum()
+}
 
-    fn recorded_w(&self, robot: &Robot, form: PowerForm, row: &Row, read: [f64; 2]) -> f64 {
-        if form != PowerForm::MotorCurrents {
-            return read[0] + read[1];
-        }
-        let force_n =
-            Sides { left: self.force_n_per_a.left * read[0], right: self.force_n_per_a.right * read[1] };
-        let power = model::Power { force_n, ..side_power(robot, row, force_n) };
-        seen_w(robot, form, row, &power).iter().sum()
-    }
+/// One-second averages of predicted and recorded current, side by side \[A\].
+fn currents(robot: &Robot, drives: &Drives, amperes: Sides<f64>) -> Result<Vec<[Vec<f64>; 2]>, Error> {
+    let predicted = PowerModel::new(drives).averages(robot, |row, power| {
+        let per_a = reading(robot, amperes, row, power);
+        [power.force_n.left / per_a.left, power.force_n.right / per_a.right]
+    })?;
+    let sides = (0..2).map(|side| {
+        let of_side = predicted.iter().map(|current_a| current_a[side]).collect();
+        [of_side, drives.averaged(&drives.recorded[side])]
+    });
+    Ok(sides.collect())
 }
 
 /// Eq. 2 on both sides at known forces, through the kernel that computes all power.
@@ -164,26 +172,6 @@ struct Averages {
     currents_a: Vec<[Vec<f64>; 2]>,
 }
 
-impl Averages {
-    fn of(drives: &Drives, seen: &[Seen], predicted_w: &[f64], recorded_w: &[f64]) -> Averages {
-        let mut currents_a = Vec::new();
-        if drives.form == Some(PowerForm::MotorCurrents) {
-            let left = drives.averaged_by(|i| seen[i].current_a.left);
-            let right = drives.averaged_by(|i| seen[i].current_a.right);
-            currents_a = [left, right]
-                .into_iter()
-                .zip(&drives.recorded)
-                .map(|(p, r)| [p, drives.averaged(r)])
-                .collect();
-        }
-        Averages {
-            predicted_w: drives.averaged(predicted_w),
-            recorded_w: drives.averaged(recorded_w),
-            currents_a,
-        }
-    }
-}
-
 fn judge(
     drives: &Drives,
     run: Option<usize>,
@@ -209,9 +197,8 @@ fn judge(
     }
     let by_row = Score::of(&predicted, &recorded);
     let places: Vec<usize> = (0..drives.averages.len()).filter(|&i| wanted(drives.averages[i].run)).collect();
-    let missed = |&i: &usize| (averages.predicted_w[i] - averages.recorded_w[i]).abs();
-    let missed: f64 = places.iter().map(missed).sum();
-    let amount: f64 = places.iter().map(|&i| averages.recorded_w[i].abs()).sum();
+    let of = |watts: &[f64]| places.iter().map(|&i| watts[i]).collect::<Vec<f64>>();
+    let by_second = Score::of(&of(&averages.predicted_w), &of(&averages.recorded_w));
     let current = (!averages.currents_a.is_empty()).then(|| {
         let column = |which: usize| {
             let sides = averages.currents_a.iter();
@@ -228,7 +215,8 @@ fn judge(
         r2: by_row.r2.is_finite().then_some(by_row.r2),
         recorded_j,
         predicted_j,
-        normalized_error_percent: (amount > 0.0).then(|| 100.0 * missed / amount),
+        normalized_error_percent: Some(by_second.normalized_error_percent)
+            .filter(|percent| percent.is_finite()),
         rmse_a: current.map(|score| score.rmse),
         r2_a: current.map(|score| score.r2),
     }

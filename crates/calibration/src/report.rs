@@ -4,60 +4,63 @@ use std::fmt::Write as _;
 
 use model::Robot;
 
-use crate::PredictedDrives;
+use crate::{PredictedDrives, RunPrediction, scatter::Scatter};
 
-const WIDTH: f64 = 520.0;
-const HEIGHT: f64 = 200.0;
-const MARGIN: f64 = 46.0;
-/// Points of a plot: more would only overlap on its 430 pixels.
-const MOST_POINTS: usize = 1500;
+/// What the columns of the table mean, for a reader who has never seen one.
+const LEGEND: &str = "<p class=small><b>bias</b>: mean of predicted less recorded power. <b>RMSE</b>: typical size of the difference, row by \
+    row. <b>R²</b>: share of the recorded ups and downs that the model explains; 1 is all, 0 or less means that the run's own mean would have \
+    done as well, as it does for runs at one steady power. <b>eq. 17</b>: normalised error of one-second averages, as in Table IV of Dogru &amp; \
+    Marques (2018). <b>stuck</b>: rows in which the wheels turned against each other and the robot did not turn; no model of \
+    wheel speeds predicts those.</p>";
 
-/// A self-contained HTML page: a table of the runs, and what is left unexplained over time and against speed, yaw rate, radius, pitch
-/// and surface. Residuals are one-second averages of recorded less predicted power.
+const STYLE: &str = "body{font:14px sans-serif;max-width:82em;margin:2em auto;padding:0 1em}td,th{text-align:right;padding:.2em \
+    .7em}th:first-child,td:first-child{text-align:left}tr:last-child td{border-top:1px solid #999;font-weight:bold}.small{color:#444;max-width:60em}\
+    figure{margin:0}.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(520px,1fr));gap:1em}";
+
+/// A self-contained HTML page: the answer in a sentence, a table of the runs, and what is left unexplained over time and against
+/// speed, yaw rate, radius, pitch and surface. Residuals are one-second averages of recorded less predicted power.
 pub fn html(robot: &Robot, found: &PredictedDrives) -> String {
-    let drives = &found.drives;
-    let mean = |f: &dyn Fn(usize) -> f64| drives.averaged_by(f);
-    let residual_w = mean(&|i| found.recorded_w[i] - found.predicted_w[i]);
-    let speed_mps = mean(&|i| drives.rows[i].speed_mps());
-    let yaw_radps = mean(&|i| drives.rows[i].difference_mps() / robot.slip_track_m);
-    // Beyond 10 m an arc is as good as straight for a robot of half a metre; the axis ends there.
-    let widest_m = 20.0 * robot.track_m;
-    let radius_m: Vec<f64> = speed_mps
-        .iter()
-        .zip(&yaw_radps)
-        .map(|(v, w)| (v / w).abs().min(widest_m))
-        .map(|r| if r.is_nan() { 0.0 } else { r })
-        .collect();
-    let pitch_rad = mean(&|i| drives.rows[i].pitch_rad);
-    let surface: Vec<f64> = drives.averages.iter().map(|a| a.surface as f64).collect();
-    let mut elapsed_s = 0.0;
-    let time_s: Vec<f64> = drives
-        .averages
-        .iter()
-        .map(|a| {
-            elapsed_s += a.duration_s;
-            elapsed_s
-        })
-        .collect();
-    let surfaces: Vec<String> =
-        drives.surfaces.iter().enumerate().map(|(i, name)| format!("{i} {}", escaped(name))).collect();
-    let plots = [
-        ("time driven [s], runs behind one another", &time_s),
-        ("speed v [m/s]", &speed_mps),
-        ("yaw rate ω of the wheels [rad/s]", &yaw_radps),
-        ("turning radius R [m], widest at the right", &radius_m),
-        ("pitch [rad]", &pitch_rad),
-        (&*format!("surface: {}", surfaces.join(", ")), &surface),
-    ];
-    let figures: String = plots.iter().map(|(label, x)| scatter(label, x, &residual_w)).collect();
+    let plots = plots(robot, found);
     format!(
-        "<!doctype html><meta charset=utf-8><title>Predicted against recorded power</title><style>body{{font:14px \
-         sans-serif;max-width:70em;margin:2em auto}}td,th{{text-align:right;padding:.2em .7em}}th:first-child,td:first-child{{text-align:left}}</style>\
-         <h1>{}: predicted against recorded power</h1><table><tr><th>run<th>rows<th>stuck<th>bias W<th>RMSE W<th>R²<th>recorded kJ<th>predicted \
-         kJ<th>eq. 17 %{}</table><p>Below: recorded less predicted power, averages over one second [W].</p>{figures}",
+        "<!doctype html><html lang=en><meta charset=utf-8><title>Predicted against recorded power</title><style>{STYLE}</style>\
+         <h1>{}: predicted against recorded power</h1><p>{}</p><table><tr><th>run<th>rows<th>recorded [kJ]<th>predicted [kJ]<th>energy \
+         error<th>bias [W]<th>RMSE [W]<th>R²<th>eq. 17<th>stuck rows{}</table>{LEGEND}<h2>What is left unexplained</h2><p \
+         class=small>Each dot is one second: recorded less predicted power. Above the line the robot drew more than the model says, below it \
+         less. A cloud about the line is noise; a slope or a step is physics that the model or its parameters miss.{}</p><div \
+         class=plots>{plots}</div></html>",
         escaped(&robot.name),
+        summary(&found.prediction.total, found.prediction.runs.len()),
         table(found),
+        surface_key(found),
     )
+}
+
+/// The answer in a sentence.
+fn summary(total: &RunPrediction, runs: usize) -> String {
+    let explained = total.r2.map_or(String::new(), |r2| {
+        format!(
+            " Row by row the model explains {:.0} % of the ups and downs of power (R² {r2:.2}).",
+            100.0 * r2.max(0.0)
+        )
+    });
+    let current = total.r2_a.map_or(String::new(), |r2| {
+        format!(
+            " Power was recorded as motor currents, and is what the robot's motor constants make of them; of side current, averaged \
+             over one second, {:.0} % is explained (R² {r2:.2}).",
+            100.0 * r2.max(0.0)
+        )
+    });
+    format!(
+        "Over {runs} run{} the robot drew <b>{:.1} kJ</b>; the model says <b>{:.1} kJ</b> ({:+.1} %).{explained}{current}",
+        if runs == 1 { "" } else { "s" },
+        total.recorded_j / 1e3,
+        total.predicted_j / 1e3,
+        energy_error_percent(total)
+    )
+}
+
+fn energy_error_percent(run: &RunPrediction) -> f64 {
+    100.0 * (run.predicted_j / run.recorded_j - 1.0)
 }
 
 fn table(found: &PredictedDrives) -> String {
@@ -67,44 +70,59 @@ fn table(found: &PredictedDrives) -> String {
             |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
         let _ = write!(
             rows,
-            "<tr><td>{}<td>{}<td>{}<td>{:.1}<td>{:.1}<td>{}<td>{:.2}<td>{:.2}<td>{}",
+            "<tr><td>{}<td>{}<td>{:.2}<td>{:.2}<td>{:+.1} %<td>{:.1}<td>{:.1}<td>{}<td>{} %<td>{}",
             escaped(&run.run),
             run.rows,
-            run.stuck_rows,
-            run.bias_w,
-            run.rmse_w,
-            number(run.r2, 3),
             run.recorded_j / 1e3,
             run.predicted_j / 1e3,
-            number(run.normalized_error_percent, 1)
+            energy_error_percent(run),
+            run.bias_w,
+            run.rmse_w,
+            number(run.r2, 2),
+            number(run.normalized_error_percent, 1),
+            run.stuck_rows
         );
     }
     rows
 }
 
-/// Residuals as dots, with the zero line and the ends of both axes.
-fn scatter(label: &str, x: &[f64], y: &[f64]) -> String {
-    let span = |values: &[f64]| {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if high > low { [low, high] } else { [low - 1.0, low + 1.0] }
+/// Which surface has which colour.
+fn surface_key(found: &PredictedDrives) -> String {
+    let one = |(i, name): (usize, &String)| {
+        format!(" <span style='color:{}'>● {}</span>", Scatter::colour(i), escaped(name))
     };
-    let ([x0, x1], [y0, y1]) = (span(x), span(y));
-    let px = |v: f64| MARGIN + (v - x0) / (x1 - x0) * (WIDTH - 2.0 * MARGIN);
-    let py = |v: f64| HEIGHT - MARGIN / 2.0 - (v - y0) / (y1 - y0) * (HEIGHT - MARGIN);
-    let every = x.len().div_ceil(MOST_POINTS).max(1);
-    let mut dots = String::new();
-    for (x, y) in x.iter().zip(y).step_by(every) {
-        let _ = write!(dots, "M{:.1} {:.1}h0", px(*x), py(*y));
-    }
-    let zero = py(0f64.clamp(y0, y1));
-    let (right, bottom) = (WIDTH - MARGIN, HEIGHT - 4.0);
-    format!(
-        "<figure style='display:inline-block;margin:.5em'><figcaption>{label}</figcaption><svg width={WIDTH} height={HEIGHT} \
-         font-size=11><path d='M{MARGIN} {zero:.1}H{right}' stroke='#999'/><path d='{dots}' stroke='#06c' stroke-width=3 \
-         stroke-linecap=round stroke-opacity=.4 fill=none /><text x=2 y=16>{y1:.0} W</text><text x=2 y={bottom}>{y0:.0} W</text><text x={MARGIN} \
-         y={bottom}>{x0:.2}</text><text x={right} y={bottom} text-anchor=end>{x1:.2}</text></svg></figure>"
-    )
+    found.drives.surfaces.iter().enumerate().map(one).collect()
+}
+
+fn plots(robot: &Robot, found: &PredictedDrives) -> String {
+    let drives = &found.drives;
+    let mean = |f: &(dyn Fn(usize) -> f64 + Sync)| drives.averaged_by(f);
+    let residual_w = mean(&|i| found.recorded_w[i] - found.predicted_w[i]);
+    let speed_mps = mean(&|i| drives.rows[i].speed_mps());
+    let yaw_radps = mean(&|i| drives.rows[i].difference_mps() / robot.slip_track_m);
+    // Beyond 20 tracks an arc is as good as straight; the axis ends there.
+    let widest_m = 20.0 * robot.track_m;
+    let radius = |(v, w): (&f64, &f64)| if *w == 0.0 { widest_m } else { (v / w).abs().min(widest_m) };
+    let radius_m: Vec<f64> = speed_mps.iter().zip(&yaw_radps).map(radius).collect();
+    let pitch_rad = mean(&|i| drives.rows[i].pitch_rad);
+    let surface: Vec<f64> = drives.averages.iter().map(|a| a.surface as f64).collect();
+    let mut elapsed_s = 0.0;
+    let time = |seconds: f64| {
+        elapsed_s += seconds;
+        elapsed_s
+    };
+    let time_s: Vec<f64> = drives.averages.iter().map(|a| a.duration_s).map(time).collect();
+    let group: Vec<usize> = drives.averages.iter().map(|a| a.surface).collect();
+    let radius_label = format!("turning radius [m]; in place at the left, straight at {widest_m:.1}");
+    let plots: [(&str, &[f64]); 6] = [
+        ("time driven [s], runs one after another", &time_s),
+        ("speed [m/s], forwards positive", &speed_mps),
+        ("yaw rate by the wheels [rad/s], left positive", &yaw_radps),
+        (&radius_label, &radius_m),
+        ("pitch [rad], uphill positive", &pitch_rad),
+        ("surface, in the order of the key", &surface),
+    ];
+    plots.iter().map(|(label, x)| Scatter { label, x, y: &residual_w, group: &group }.svg()).collect()
 }
 
 fn escaped(text: &str) -> String {

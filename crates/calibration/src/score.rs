@@ -13,6 +13,8 @@ pub struct Score {
     pub rmse: f64,
     /// R² = 1 − SSE/SST about the mean of what was recorded; NaN where that is constant.
     pub r2: f64,
+    /// 100 Σ|predicted − recorded| / Σ|recorded|: eq. 17 of Dogru & Marques (2018), each value weighted by what was recorded \[%\].
+    pub normalized_error_percent: f64,
 }
 
 impl Score {
@@ -22,13 +24,22 @@ impl Score {
         let n = count as f64;
         let mean = recorded.iter().sum::<f64>() / n;
         let (mut sum, mut squares, mut spread) = (0.0, 0.0, 0.0);
+        let (mut missed, mut amount) = (0.0, 0.0);
         for (p, r) in predicted.iter().zip(recorded) {
             sum += p - r;
             squares += (p - r).powi(2);
             spread += (r - mean).powi(2);
+            missed += (p - r).abs();
+            amount += r.abs();
         }
         let r2 = if spread > 0.0 { 1.0 - squares / spread } else { f64::NAN };
-        Score { count, bias: sum / n, rmse: (squares / n).sqrt(), r2 }
+        Score {
+            count,
+            bias: sum / n,
+            rmse: (squares / n).sqrt(),
+            r2,
+            normalized_error_percent: 100.0 * missed / amount,
+        }
     }
 }
 

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use model::Robot;
+use rayon::prelude::*;
 
-use crate::{Drives, drives::Row, folds::BLOCK_S};
+use crate::{Drives, drives::Stretch, folds::BLOCK_S, row::Row};
 
 /// Width of the centred means \[s\], longer than the clock of an inertial unit drifts from the encoders' (about 1 s).
 const MEAN_S: f64 = 2.0;
@@ -19,41 +20,70 @@ const LEAST_SHARE: f64 = 0.5;
 /// Marks and measured track depend on each other; a few rounds settle both.
 pub(crate) fn flag(drives: &mut Drives, robot: &Robot) {
     const ROUNDS: usize = 4;
-    flag_by(drives, robot.slip_track_m);
-    if robot.slip_track_m != robot.track_m {
-        return;
+    let turns = turns(drives);
+    let mut track_m = robot.slip_track_m;
+    if robot.slip_track_m == robot.track_m {
+        for _ in 0..ROUNDS {
+            let Some(found) = track_of(turns.iter().filter(|turn| !turn.is_stuck(track_m))) else { break };
+            track_m = found.value_m.clamp(robot.track_m, 2.0 * robot.track_m);
+        }
     }
-    for _ in 0..ROUNDS {
-        let Some(track) = slip_track(drives) else { return };
-        flag_by(drives, track.value_m.clamp(robot.track_m, 2.0 * robot.track_m));
+    for turn in turns.iter().filter(|turn| turn.is_stuck(track_m)) {
+        drives.rows[turn.row].stuck = true;
     }
 }
 
-/// Marks rows as stuck:
-///
-/// ```text
-/// |⟨u_r − u_l⟩| > 0.08 m/s   and   sgn⟨u_r − u_l⟩ ⟨ω⟩ b < ½ |⟨u_r − u_l⟩|
-/// ```
-///
-/// ⟨⟩ means over 2 s, ω measured yaw rate, b slip track. Only inputs are looked at, so the mark knows nothing of what it will
-/// be judged by. Rows without a measured yaw rate are never marked. The thresholds were chosen on all runs of BorealTC;
-/// shares of 0.3 to 0.7 and differences of 0.05 to 0.12 m/s give the same verdicts there.
-fn flag_by(drives: &mut Drives, slip_track_m: f64) {
-    for stretch in &drives.stretches {
-        let rows = &mut drives.rows[stretch.rows.clone()];
-        let turns = mean_turns(rows);
-        for (row, turn) in rows.iter_mut().zip(turns) {
-            let meant_mps = turn.difference_mps.abs();
-            let seen_mps = turn.yaw_rate_radps * slip_track_m * turn.difference_mps.signum();
-            row.stuck = meant_mps > LEAST_DIFFERENCE_MPS && seen_mps < LEAST_SHARE * meant_mps;
-        }
+/// A row around which a turn is meant: |⟨u_r − u_l⟩| > 0.08 m/s, ⟨⟩ means over 2 s.
+struct Turn {
+    row: usize,
+    /// The run and which 15 s of it.
+    block: (usize, i64),
+    difference_mps: f64,
+    yaw_rate_radps: f64,
+}
+
+impl Turn {
+    /// Whether the row is stuck:
+    ///
+    /// ```text
+    /// sgn⟨u_r − u_l⟩ ⟨ω⟩ b < ½ |⟨u_r − u_l⟩|
+    /// ```
+    ///
+    /// ω measured yaw rate, b slip track. Only inputs are looked at, so the mark knows nothing of what it will be judged by.
+    /// Rows without a measured yaw rate are never marked. The thresholds were chosen on all runs of BorealTC; shares of 0.3
+    /// to 0.7 and differences of 0.05 to 0.12 m/s give the same verdicts there.
+    fn is_stuck(&self, slip_track_m: f64) -> bool {
+        let seen_mps = self.yaw_rate_radps * slip_track_m * self.difference_mps.signum();
+        seen_mps < LEAST_SHARE * self.difference_mps.abs()
     }
+}
+
+/// The turns of all stretches, in order of rows.
+fn turns(drives: &Drives) -> Vec<Turn> {
+    let of_stretch = |stretch: &Stretch| {
+        let (run, start) = (stretch.run, stretch.rows.start);
+        let rows = &drives.rows[stretch.rows.clone()];
+        let meant = mean_turns(rows).into_iter().enumerate().filter(|(_, turn)| turn.is_meant());
+        meant.map(move |(i, MeanTurn { difference_mps, yaw_rate_radps })| Turn {
+            row: start + i,
+            block: (run, (rows[i].t_s / BLOCK_S).floor() as i64),
+            difference_mps,
+            yaw_rate_radps,
+        })
+    };
+    drives.stretches.par_iter().flat_map_iter(of_stretch).collect()
 }
 
 /// Means over the rows around one that have a measured yaw rate; NaN where none has.
 struct MeanTurn {
     difference_mps: f64,
     yaw_rate_radps: f64,
+}
+
+impl MeanTurn {
+    fn is_meant(&self) -> bool {
+        self.difference_mps.abs() > LEAST_DIFFERENCE_MPS
+    }
 }
 
 /// The mean turn around each row, by running sums; nothing where no yaw rate was measured.
@@ -99,16 +129,17 @@ pub struct SlipTrack {
 /// The ratio of the two spreads does not mind a delay between the clocks, as a regression would. Its uncertainty is that between
 /// pieces of 15 s.
 pub fn slip_track(drives: &Drives) -> Option<SlipTrack> {
+    track_of(turns(drives).iter().filter(|turn| !drives.rows[turn.row].stuck))
+}
+
+fn track_of<'a>(turns: impl Iterator<Item = &'a Turn>) -> Option<SlipTrack> {
     let mut blocks: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
-    for stretch in &drives.stretches {
-        let rows = &drives.rows[stretch.rows.clone()];
-        for (row, turn) in rows.iter().zip(mean_turns(rows)) {
-            let MeanTurn { difference_mps, yaw_rate_radps } = turn;
-            if !row.stuck && difference_mps.abs() > LEAST_DIFFERENCE_MPS {
-                let sums = blocks.entry((stretch.run, (row.t_s / BLOCK_S).floor() as i64)).or_default();
-                sums.0 += difference_mps * difference_mps;
-                sums.1 += yaw_rate_radps * yaw_rate_radps;
-            }
+    let mut turns = turns.peekable();
+    while let Some(block) = turns.peek().map(|turn| turn.block) {
+        let sums = blocks.entry(block).or_default();
+        while let Some(turn) = turns.next_if(|turn| turn.block == block) {
+            sums.0 += turn.difference_mps * turn.difference_mps;
+            sums.1 += turn.yaw_rate_radps * turn.yaw_rate_radps;
         }
     }
     let total = blocks.values().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));

@@ -5,11 +5,13 @@
 use std::path::PathBuf;
 
 use calibration::{
-    Drives, Options,
+    Drives, Options, calibrate,
     current::YawSource,
     current_calibration::{CurrentCalibration, fit_currents},
     current_judge::{SurfaceVerdict, judge},
 };
+use model::Robot;
+use recording::Recording;
 
 fn files(surfaces: &[&str]) -> Option<Vec<PathBuf>> {
     let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/recordings");
@@ -22,10 +24,17 @@ fn files(surfaces: &[&str]) -> Option<Vec<PathBuf>> {
     None
 }
 
-fn found() -> Option<CurrentCalibration> {
+/// The four grounds, and the built-in robot without the ground that was fitted to them.
+fn four_grounds() -> Option<(Robot, Recording)> {
     let files = files(&["flooring", "asphalt", "ice", "sandy-loam"])?;
     let (recording, _) = recording::read_paths(&files, None).unwrap();
-    let robot = model::builtin::husky_a200();
+    let mut robot = model::builtin::husky_a200();
+    robot.surfaces.remove("sandy_loam");
+    Some((robot, recording))
+}
+
+fn found() -> Option<CurrentCalibration> {
+    let (robot, recording) = four_grounds()?;
     let drives = Drives::new(&robot, &recording).unwrap();
     Some(fit_currents(&robot, &drives, &Options::default()).unwrap())
 }
@@ -73,4 +82,20 @@ fn held_out_runs_of_the_real_husky_reach_the_targets_and_force_per_ampere_agrees
         share("snow-12").is_nan(),
         "snow-12 repeats the beginning of snow-13 and must not judge what snow-13 fitted"
     );
+}
+
+#[test]
+fn the_built_in_sandy_loam_is_what_these_drives_give() {
+    let Some((robot, recording)) = four_grounds() else { return };
+    let fitted = calibrate(&robot, &recording, &Options::default()).unwrap().robot;
+    let (found, built_in) =
+        (&fitted.surfaces["sandy_loam"], &model::builtin::husky_a200().surfaces["sandy_loam"]);
+    for (found, built_in) in [
+        (found.mu_roll, built_in.mu_roll),
+        (found.mu_skid, built_in.mu_skid),
+        (found.slip_angle_scale_rad, built_in.slip_angle_scale_rad),
+    ] {
+        // A search ends within a thirtieth of a sigma, which is a tenth of the value here.
+        assert!((found - built_in).abs() < 0.02 * built_in, "{found} {built_in}");
+    }
 }

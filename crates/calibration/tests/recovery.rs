@@ -2,85 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::collections::BTreeMap;
-
-use calibration::{
-    Drives, Options, calibrate,
-    power::{PowerModel, seen_w},
-    power_fit::fit_power,
-    predict,
-};
+use calibration::{Drives, Options, calibrate, power_fit::fit_power, predict};
 use model::{Attitude, Motion, Robot, Sides, builtin, power};
 use proptest::prelude::*;
-use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
-use recording::{Channel, PowerForm, Recording, Run};
+use rayon::prelude::*;
+use recording::{Channel, Recording};
 
-const RUNS: usize = 12;
-const ROWS: usize = 400;
-
-/// A standard normal number, by Box and Muller.
-fn normal(random: &mut Pcg64Mcg) -> f64 {
-    let (a, b): (f64, f64) = (random.random(), random.random());
-    (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
-}
-
-/// Drives with straights, arcs, spins, slopes and halts, without power yet.
-fn drives(random: &mut Pcg64Mcg, runs: usize, rows: usize) -> Recording {
-    let mut recording = Recording::default();
-    let mut channels: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
-    for run in 0..runs {
-        let start = recording.t_s.len();
-        let (mut left, mut right) = (0.0, 0.0);
-        let (mut to_left, mut to_right) = (0.0, 0.0);
-        let phase = random.random::<f64>() * std::f64::consts::TAU;
-        for row in 0..rows {
-            if row % 40 == 0 {
-                let speed: f64 = random.random_range(-0.4..0.9);
-                let turn: f64 = [0.0, random.random_range(-0.4..0.4)][random.random_range(0..2)];
-                let spin = random.random_range(0..4) == 0;
-                let halt = random.random_range(0..6) == 0;
-                let (v, d) = if halt {
-                    (0.0, 0.0)
-                } else if spin {
-                    (0.0, turn)
-                } else {
-                    (speed, turn)
-                };
-                (to_left, to_right) = (v - d, v + d);
-            }
-            left += (to_left - left) * 0.3;
-            right += (to_right - right) * 0.3;
-            recording.t_s.push(row as f64 * 0.1);
-            let pitch = 0.15 * (phase + row as f64 * 0.013).sin();
-            for (channel, value) in
-                [(Channel::LeftSpeed, left), (Channel::RightSpeed, right), (Channel::Pitch, pitch)]
-            {
-                channels.entry(channel).or_default().push(value);
-            }
-        }
-        let rows = start..recording.t_s.len();
-        recording.runs.push(Run { name: format!("run-{run}"), rows, gap_s: 0.5, start_unix_s: None });
-    }
-    recording.channels = channels;
-    recording
-}
-
-/// The power that a robot would show on these drives, with noise of 2 W and 3 %.
-fn with_power(robot: &Robot, mut recording: Recording, random: &mut Pcg64Mcg) -> Recording {
-    for channel in [Channel::LeftPower, Channel::RightPower] {
-        recording.channels.insert(channel, vec![0.0; recording.t_s.len()]);
-    }
-    let prepared = Drives::new(robot, &recording).unwrap();
-    let seen = PowerModel::new(&prepared)
-        .by_row(robot, |row, power| seen_w(robot, PowerForm::Sides, row, power))
-        .unwrap();
-    for (side, channel) in [Channel::LeftPower, Channel::RightPower].into_iter().enumerate() {
-        let noisy = |watts: &[f64; 2]| watts[side] + (2.0 + 0.03 * watts[side].abs()) * normal(random);
-        recording.channels.insert(channel, seen.iter().map(noisy).collect());
-    }
-    recording
-}
+mod simulated;
+use simulated::{
+    Coverage, ROWS, RUNS, drives, normal, over_two_grounds, seeded, with_battery_power, with_heat, with_power,
+};
 
 /// What the robot file says; the truth of each trial is drawn from it with its own uncertainty.
 fn file() -> Robot {
@@ -108,54 +40,103 @@ fn truth(random: &mut Pcg64Mcg) -> Robot {
 }
 
 fn value(robot: &Robot, name: &str) -> f64 {
-    let marble = &robot.surfaces["marble"];
-    match name {
-        "surfaces.marble.mu_roll" => marble.mu_roll,
-        "surfaces.marble.mu_skid" => marble.mu_skid,
-        "surfaces.marble.slip_angle_scale_rad" => marble.slip_angle_scale_rad,
-        "motors.left.k1_w_per_n2" => robot.motors.left.k1_w_per_n2,
-        "motors.left.k2" => robot.motors.left.k2,
-        "motors.right.k1_w_per_n2" => robot.motors.right.k1_w_per_n2,
-        "motors.right.k2" => robot.motors.right.k2,
-        "motors.regeneration" => robot.motors.regeneration,
-        "drive_electronics_w" => robot.drive_electronics_w,
-        other => unreachable!("{other}"),
-    }
+    let json = serde_json::to_value(robot).unwrap();
+    json.pointer(&format!("/{}", name.replace('.', "/"))).unwrap().as_f64().unwrap()
+}
+
+/// Fits a hundred recordings of robots that are drawn from what the file says of them.
+fn coverage(seeds: u64, simulate: impl Fn(&mut Pcg64Mcg) -> (Robot, Recording) + Sync) -> Coverage {
+    let trial = |seed: u64| {
+        let (truth, recording) = simulate(&mut seeded(seed));
+        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
+        let inside = |i: usize| {
+            let name = &fit.parameters[i].name;
+            let [low, high] = fit.interval_95(i);
+            fit.determined(i).then(|| (name.clone(), (low..=high).contains(&value(&truth, name))))
+        };
+        (0..fit.values.len()).filter_map(inside).collect::<Vec<_>>()
+    };
+    let trials: Vec<_> = (seeds..seeds + 100).into_par_iter().map(trial).collect();
+    let mut coverage = Coverage::default();
+    trials.into_iter().for_each(|trial| coverage.add(trial));
+    coverage
 }
 
 #[test]
 fn determined_parameters_lie_in_their_95_per_cent_intervals_about_as_often_as_promised() {
-    const TRIALS: usize = 100;
-    let mut hits: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     // Other seeds than those that the intervals were worked out on.
-    for seed in 1000..1000 + TRIALS {
-        // Neighbouring states of this generator begin alike, so seeds are spread by an odd number (2^128 over the golden ratio).
-        let mut random =
-            Pcg64Mcg::new((2 * seed as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
-        let truth = truth(&mut random);
-        let plain = drives(&mut random, RUNS, ROWS);
-        let recording = with_power(&truth, plain, &mut random);
-        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
-        for i in 0..fit.values.len() {
-            if fit.determined(i) {
-                let name = &fit.parameters[i].name;
-                let [low, high] = fit.interval_95(i);
-                let entry = hits.entry(name.clone()).or_default();
-                entry.0 += usize::from((low..=high).contains(&value(&truth, name)));
-                entry.1 += 1;
-            }
-        }
+    let coverage = coverage(1000, |random| {
+        let truth = truth(random);
+        let plain = drives(random, RUNS, ROWS);
+        let recording = with_power(&truth, plain, random);
+        (truth, recording)
+    });
+    let names = [
+        "surfaces.marble.mu_roll",
+        "surfaces.marble.mu_skid",
+        "surfaces.marble.slip_angle_scale_rad",
+        "motors.left.k1_w_per_n2",
+        "motors.right.k1_w_per_n2",
+        "motors.regeneration",
+        "drive_electronics_w",
+    ];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn motors_that_warm_tell_their_temperature_coefficients_and_each_ground_its_friction() {
+    let coverage = coverage(3000, |random| {
+        let mut truth = truth(random);
+        truth.motors.resistance_per_k += 0.001 * normal(random);
+        truth.motors.motor_constant_per_k = (-0.0012 + 0.0006 * normal(random)).min(0.0);
+        let plain = over_two_grounds(drives(random, RUNS, ROWS), ["marble", "sandy_loam"]);
+        let recording = with_power(&truth, with_heat(plain, random), random);
+        (truth, recording)
+    });
+    let names = [
+        "motors.resistance_per_k",
+        "motors.motor_constant_per_k",
+        "surfaces.marble.mu_roll",
+        "surfaces.sandy_loam.mu_roll",
+        "surfaces.sandy_loam.mu_skid",
+    ];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn the_battery_alone_tells_hotel_power_and_friction() {
+    let coverage = coverage(4000, |random| {
+        let mut truth = truth(random);
+        truth.hotel_power_w = 40.0 + 10.0 * normal(random);
+        let plain = drives(random, RUNS, ROWS);
+        let recording = with_battery_power(&truth, plain, random);
+        (truth, recording)
+    });
+    let names =
+        ["hotel_power_w", "drive_electronics_w", "surfaces.marble.mu_roll", "surfaces.marble.mu_skid"];
+    coverage.assert_as_promised(&names);
+}
+
+#[test]
+fn cold_motors_hold_their_temperature_coefficients_and_say_so() {
+    let mut random = seeded(1);
+    let truth = truth(&mut random);
+    let plain = drives(&mut random, RUNS, ROWS);
+    let mut warm = with_power(&truth, plain, &mut random);
+    let held = |recording: &Recording| {
+        let found = calibrate(&file(), recording, &Options::default()).unwrap();
+        let of = |name: &str| found.parameters.iter().find(|p| p.name == name).unwrap().clone();
+        let (copper, magnets) = (of("motors.resistance_per_k"), of("motors.motor_constant_per_k"));
+        assert_eq!((copper.value, copper.determined), (0.0039, false));
+        assert_eq!((magnets.value, magnets.determined), (-0.0012, false));
+        assert!(found.notes.iter().any(|note| note.contains("motors.resistance_per_k")), "{:?}", found.notes);
+    };
+    held(&warm);
+    for channel in [Channel::LeftMotorTemperature, Channel::RightMotorTemperature] {
+        let lukewarm = (0..warm.t_s.len()).map(|i| 40.0 + 4.0 * (i as f64 / 100.0).sin().abs());
+        warm.channels.insert(channel, lukewarm.collect());
     }
-    println!("{hits:#?}");
-    let always: Vec<_> = hits.iter().filter(|(_, (_, trials))| *trials > TRIALS / 2).collect();
-    assert!(always.len() >= 6, "most parameters are determined by such drives: {hits:?}");
-    let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
-    let share = inside as f64 / trials as f64;
-    assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
-    for (name, (inside, trials)) in always {
-        // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
-        assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
-    }
+    held(&warm);
 }
 
 #[test]
@@ -246,4 +227,20 @@ proptest! {
         prop_assert!(again.rmse_w < 1e-9);
         prop_assert!((again.predicted_j - again.recorded_j).abs() < 1e-6 * again.recorded_j.abs().max(1.0));
     }
+}
+
+#[test]
+fn one_thread_and_two_find_the_same_robot() {
+    let mut random = Pcg64Mcg::new(11);
+    let truth = truth(&mut random);
+    let plain = drives(&mut random, RUNS, ROWS);
+    let recording = with_power(&truth, plain, &mut random);
+    let found = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let calibration = calibrate(&file(), &recording, &Options::default()).unwrap();
+            (predict(&calibration.robot, &recording).unwrap().prediction, calibration)
+        })
+    });
+    assert_eq!(found[0], found[1], "to the last bit");
 }

@@ -7,5 +7,6 @@ pub(crate) mod demo;
 pub(crate) mod diagnose;
 pub(crate) mod plan;
 pub(crate) mod predict;
+pub(crate) mod prove;
 pub(crate) mod serve;
 pub(crate) mod simulate;

@@ -34,6 +34,8 @@ enum Command {
     Diagnose(commands::diagnose::Arguments),
     /// Record a drive through a world of its own, which may conceal effects
     Simulate(commands::simulate::Arguments),
+    /// Conceal effects, diagnose the recordings without the keys, and score what was found
+    Prove(commands::prove::Arguments),
     /// Print what plans take, beside general-purpose searches on the same graphs
     Bench(commands::bench::Arguments),
     /// Serve the HTTP API
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
+        Command::Prove(arguments) => commands::prove::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
         Command::Serve(arguments) => commands::serve::run(&arguments),
         Command::Demo(arguments) => commands::demo::run(&arguments),

@@ -30,3 +30,9 @@ pub(crate) fn steps() -> ProgressBar {
 
 /// Steps of a bar over shares.
 pub(crate) const STEPS: u64 = 1000;
+
+/// A bar over cases, whose number is told later.
+pub(crate) fn cases() -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos} of {len} {elapsed}");
+    ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

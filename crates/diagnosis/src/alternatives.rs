@@ -8,8 +8,9 @@ use crate::{
     candidates,
     evidence::System,
     report::Detectable,
-    search::{Found, system},
+    search::Found,
     series::{Applied, Series},
+    weigh::system,
 };
 
 /// An explanation with the robot fitted beside it.

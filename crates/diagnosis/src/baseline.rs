@@ -1,6 +1,6 @@
 //! The robot's own numbers fitted to the drives, and how predictions hang on them.
 
-use model::Robot;
+use model::{Robot, mechanism};
 use rayon::prelude::*;
 
 use crate::{
@@ -11,9 +11,9 @@ use crate::{
 };
 
 /// A robot at its best fit, with the sensitivities that a linear search needs.
-pub(crate) struct Baseline {
+pub struct Baseline {
     /// The robot.
-    pub(crate) robot: Robot,
+    pub robot: Robot,
     /// What was fitted.
     pub(crate) knobs: Vec<Knob>,
     /// Fitted less filed values, in widths of the file.
@@ -22,6 +22,9 @@ pub(crate) struct Baseline {
     pub(crate) predicted_w: Vec<f64>,
     /// Change of predictions with each knob, per width of the file.
     pub(crate) columns: Vec<Vec<f64>>,
+    /// Change of predictions with half a row of delay of power behind speeds, in suspect and in healthy drives: less than a
+    /// row is the sensors' business.
+    pub(crate) delays: [Vec<f64>; 2],
     /// Scatter of what is recorded about them.
     pub(crate) noise: Noise,
 }
@@ -56,8 +59,23 @@ impl Baseline {
             noise = Noise::of(&differences(&series.recorded, &predicted_w), &predicted_w, &series.averages);
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
-        Ok(Baseline { robot, knobs, moved, predicted_w, columns, noise })
+        let delays = delays(series, &robot, applied, &predicted_w)?;
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, noise })
     }
+}
+
+fn delays(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted_w: &[f64],
+) -> Result<[Vec<f64>; 2], Error> {
+    let Some(mechanism) = mechanism::by_name("clock_offset") else { return Ok([Vec::new(), Vec::new()]) };
+    let delay = Applied { mechanism, values: vec![0.5 * series.row_s()], from_s: 0.0 };
+    let mut with = applied.to_vec();
+    with.push(delay.clone());
+    let seen = [series.predict(robot, &with)?, series.predict_with(robot, applied, &[delay])?];
+    Ok(seen.map(|seen| differences(&seen, predicted_w)))
 }
 
 fn columns_of(

@@ -64,17 +64,31 @@ pub(crate) fn of(
     probe: Applied,
     linear: Vec<usize>,
 ) -> Result<Candidate, Error> {
+    let columns = of_more(series, robot, applied, predicted_w, &probe, &linear)?;
+    Ok(Candidate { applied: probe, linear, columns })
+}
+
+/// Change of predictions, made with a mechanism as it stands or at nothing, per unit of more of each of its parameters.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn of_more(
+    series: &Series,
+    robot: &Robot,
+    others: &[Applied],
+    predicted_w: &[f64],
+    standing: &Applied,
+    linear: &[usize],
+) -> Result<Vec<Vec<f64>>, Error> {
     let mut columns = Vec::new();
-    for &parameter in &linear {
-        let mut with = applied.to_vec();
-        let mut there = probe.clone();
-        let by = probe.mechanism.parameters()[parameter].probe;
-        there.values[parameter] += by;
-        with.push(there);
-        let seen = series.predict(robot, &with)?;
+    for &parameter in linear {
+        let by = standing.mechanism.parameters()[parameter].probe;
+        let mut more = standing.clone();
+        more.values[parameter] += by;
+        let seen = series.predict(robot, &[others, &[more]].concat())?;
         columns.push(seen.iter().zip(predicted_w).map(|(a, b)| (a - b) / by).collect());
     }
-    Ok(Candidate { applied: probe, linear, columns })
+    Ok(columns)
 }
 
 /// Times from which a mechanism is tried.

@@ -17,8 +17,9 @@ use crate::{
         BaselineFit, CorrectedFit, Diagnosis, EvidenceFigures, Finding, FindingFit, FoundParameter, Place,
         Range, Trace, Verdict,
     },
-    search::{BLOCK_S, Found, Search, search},
+    search::{Found, Search, search},
     series::{Applied, Series},
+    weigh::BLOCK_S,
     words,
 };
 
@@ -48,7 +49,7 @@ pub fn diagnose(
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
-    let found = search(&series, robot, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
+    let found = search(&series, robot, healthy, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
     progress("judging what is left", 0.7);
     let judged = Judged::new(&series, robot, &found)?;
     progress("locating the difference", 0.8);

@@ -3,8 +3,8 @@
 use crate::{
     baseline::Baseline,
     linear::{FOLDS, Folded},
-    search::blocks,
     series::{Average, Series},
+    weigh::blocks,
 };
 
 /// Errors beyond count as this many sigma: a few outliers explain nothing.

@@ -4,8 +4,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::{
     report::{Place, Range},
-    search::blocks,
     series::{Average, Series},
+    weigh::blocks,
 };
 
 /// Chance of naming any place where none differs.

@@ -1,7 +1,7 @@
 //! The drive that would tell explanations apart: the manoeuvre of a small catalogue at which they predict most different power.
 
 use model::{
-    Acceleration, Attitude, FrictionShape, Manoeuvre, Motion, Robot, Sides,
+    Acceleration, Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
     mechanism::{Adjustment, Moment},
     robot::Surface,
 };
@@ -147,7 +147,14 @@ fn power_w(
         .fold(Adjustment::default(), |all, one| all.and(one.mechanism.adjust(&robot, &one.values, &moment)));
     let shape = FrictionShape::new(&robot, ground.slip_angle_scale_rad, &moment.motion);
     let motor_c = Sides::both(robot.motors.reference_temperature_c);
-    let manoeuvre = Manoeuvre::adjusted(&robot, ground, moment.motion, &shape, motor_c, &adjustment);
+    let manoeuvre = Manoeuvre::adjusted(
+        &robot,
+        &Friction::new(&robot, ground),
+        moment.motion,
+        &shape,
+        motor_c,
+        &adjustment,
+    );
     let (normal, along) = (moment.attitude.weight_normal(), moment.attitude.weight_along());
     let power = manoeuvre.power_on_grade(normal, along, moment.acceleration);
     let true_w = if by_side { [power.side_w.left, power.side_w.right] } else { [power.bus_w, power.bus_w] };

@@ -77,7 +77,7 @@ impl Noise {
 /// Whether an average comes right after the one before it.
 fn follows(averages: &[Average], i: usize) -> bool {
     let (a, b) = (&averages[i - 1], &averages[i]);
-    a.run == b.run && a.channel == b.channel && b.t_s - a.t_s < 1.5 * calibration::drives::AVERAGE_S
+    a.run == b.run && a.channel == b.channel && b.t_s - a.t_s < 1.5 * calibration::average::AVERAGE_S
 }
 
 /// The median, which sorts.

@@ -6,8 +6,9 @@ use crate::{
     candidates,
     linear::{FOLDS, Folded},
     nuisance,
-    search::{Found, blocks},
+    search::Found,
     series::{Applied, Series},
+    weigh::blocks,
 };
 
 /// Errors of a robot with mechanisms, average by average.

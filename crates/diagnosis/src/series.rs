@@ -1,11 +1,8 @@
 //! Recorded drives as the model sees them: one-second averages of what was recorded, and of what would be with mechanisms.
 
-use calibration::{
-    Drives,
-    drives::{Row, Stretch},
-};
+use calibration::{Drives, average, drives::Stretch, row::Row};
 use model::{
-    Attitude, FrictionShape, Manoeuvre, Motion, Robot, Sides,
+    Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
     mechanism::{Adjustment, Mechanism, Moment},
 };
 use rayon::prelude::*;
@@ -136,14 +133,34 @@ impl Series {
         self.averages.iter().filter(|a| a.suspect).map(|a| a.t_s).fold(0.0, f64::max)
     }
 
+    /// Time between rows of the drives under suspicion [s].
+    pub fn row_s(&self) -> f64 {
+        let rows = &self.parts[0].drives.rows;
+        let mut steps: Vec<f64> = rows.iter().map(|row| row.step_s).filter(|step_s| *step_s > 0.0).collect();
+        crate::noise::median(&mut steps)
+    }
+
     /// What would have been recorded of a robot on which mechanisms act in the drives under suspicion.
     ///
     /// # Errors
     /// A surface that the robot does not know.
     pub fn predict(&self, robot: &Robot, applied: &[Applied]) -> Result<Vec<f64>, Error> {
+        self.predict_with(robot, applied, &[])
+    }
+
+    /// The same with mechanisms in healthy drives too.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub fn predict_with(
+        &self,
+        robot: &Robot,
+        suspect: &[Applied],
+        healthy: &[Applied],
+    ) -> Result<Vec<f64>, Error> {
         let mut seen = Vec::with_capacity(self.recorded.len());
         for part in &self.parts {
-            let rows = part.predict(robot, if part.suspect { applied } else { &[] }, self.form)?;
+            let rows = part.predict(robot, if part.suspect { suspect } else { healthy }, self.form)?;
             let channels = 0..self.channels;
             channels.for_each(|channel| seen.extend(part.drives.averaged_by(|row| rows[row][channel])));
         }
@@ -165,7 +182,7 @@ impl Part {
 
     fn averages(&self, channel: usize, first_run: usize) -> Vec<Average> {
         let rows = &self.drives.rows;
-        let mean = |value: &dyn Fn(usize) -> f64| self.drives.averaged_by(value);
+        let mean = |value: &(dyn Fn(usize) -> f64 + Sync)| self.drives.averaged_by(value);
         let inputs = [
             mean(&|i| rows[i].speed_mps()),
             mean(&|i| rows[i].difference_mps()),
@@ -180,7 +197,7 @@ impl Part {
             mean(&|i| self.heading_rad[i].cos()),
             mean(&|i| self.heading_rad[i].sin()),
         ];
-        let of = |(i, average): (usize, &calibration::drives::Average)| Average {
+        let of = |(i, average): (usize, &average::Average)| Average {
             channel,
             run: first_run + average.run,
             suspect: self.suspect,
@@ -271,6 +288,7 @@ impl Part {
         for stretch in &self.drives.stretches {
             let name = &self.drives.surfaces[stretch.surface];
             let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
+            let friction = Friction::new(robot, surface);
             for i in stretch.rows.clone() {
                 let row = &self.drives.rows[i];
                 let step_s = if run == stretch.run { row.t_s - last_s } else { 0.0 };
@@ -280,7 +298,7 @@ impl Part {
                 (run, last_s) = (stretch.run, row.t_s);
                 let moment = self.moment(robot, i, Sides::both(0.0));
                 let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &moment.motion);
-                let manoeuvre = Manoeuvre::of_shape(robot, surface, moment.motion, &shape, row.motor_c);
+                let manoeuvre = Manoeuvre::of_shape(robot, &friction, moment.motion, &shape, row.motor_c);
                 let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
                 let k1 = manoeuvre.kernel().k1_w_per_n2;
                 let keep = (-step_s / memory_s).exp();
@@ -310,7 +328,14 @@ fn seen_w(
         adjustment = adjustment.and(applied.mechanism.adjust(robot, &applied.values, &moment));
     }
     let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &moment.motion);
-    let manoeuvre = Manoeuvre::adjusted(robot, surface, moment.motion, &shape, row.motor_c, &adjustment);
+    let manoeuvre = Manoeuvre::adjusted(
+        robot,
+        &Friction::new(robot, surface),
+        moment.motion,
+        &shape,
+        row.motor_c,
+        &adjustment,
+    );
     let attitude = moment.attitude;
     let power =
         manoeuvre.power_on_grade(attitude.weight_normal(), attitude.weight_along(), moment.acceleration);

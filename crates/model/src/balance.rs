@@ -14,12 +14,49 @@ pub(crate) struct SideForces {
 /// What a motion makes of friction coefficients: everything in its side forces but μ_R and μ_S themselves.
 ///
 /// Fits ask for the same motions with other coefficients again and again; this is the part that costs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionShape {
     /// s: direction of each side's rolling, −1 to 1 [-].
     rolling: Sides<f64>,
     /// Moment of skid over μ_S and the normal load, with the sign of the turn [m].
     skid_arm_m: f64,
+}
+
+/// What a robot and a surface make of every shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// c μ_R n: rolling resistance of each side over the normal load [-].
+    rolling_per_load: Sides<f64>,
+    /// μ_S [-].
+    mu_skid: f64,
+    /// b [m].
+    track_m: f64,
+    /// c μ_R [-].
+    mu_roll: f64,
+}
+
+impl Friction {
+    /// Friction of a robot on a surface.
+    pub fn new(robot: &Robot, surface: &Surface) -> Self {
+        let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
+        Friction {
+            rolling_per_load: rolling::load_share(robot).map(|n| mu_roll * n),
+            mu_skid: surface.mu_skid,
+            track_m: robot.track_m,
+            mu_roll,
+        }
+    }
+
+    /// The same with what a mechanism changes of it.
+    pub(crate) fn adjusted(&self, adjustment: &Adjustment) -> Friction {
+        let shifted = Sides { left: adjustment.load_left, right: -adjustment.load_left };
+        let rolling = self.rolling_per_load.zip(shifted).zip(adjustment.mu_roll);
+        Friction {
+            rolling_per_load: rolling.map(|((r, shifted), c)| c * (r + self.mu_roll * shifted)),
+            mu_skid: adjustment.mu_skid * self.mu_skid,
+            ..*self
+        }
+    }
 }
 
 impl FrictionShape {
@@ -39,23 +76,10 @@ impl FrictionShape {
     /// ```
     ///
     /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
-    pub(crate) fn side_forces(&self, robot: &Robot, surface: &Surface) -> SideForces {
-        self.side_forces_adjusted(robot, surface, &Adjustment::default())
-    }
-
-    /// The same with friction and loads changed.
-    pub(crate) fn side_forces_adjusted(
-        &self,
-        robot: &Robot,
-        surface: &Surface,
-        adjustment: &Adjustment,
-    ) -> SideForces {
-        let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
-        let share = rolling::load_share(robot);
-        let share =
-            Sides { left: share.left + adjustment.load_left, right: share.right - adjustment.load_left };
-        let rolling = share.zip(self.rolling).zip(adjustment.mu_roll).map(|((n, s), c)| c * mu_roll * n * s);
-        let skid = self.skid_arm_m * (adjustment.mu_skid * surface.mu_skid) / robot.track_m;
+    #[inline]
+    pub(crate) fn side_forces(&self, friction: &Friction) -> SideForces {
+        let rolling = friction.rolling_per_load.zip(self.rolling).map(|(r, s)| r * s);
+        let skid = self.skid_arm_m * friction.mu_skid / friction.track_m;
         SideForces {
             friction_per_load: Sides { left: rolling.left - skid, right: rolling.right + skid },
             gravity_share: Sides::both(0.5),

@@ -144,7 +144,7 @@ pub fn temperature_coefficients(
 }
 
 /// Below this rise the temperature effect drowns in ordinary scatter of friction (about 0.3 % per kelvin).
-const LEAST_RISE_K: f64 = 5.0;
+pub const LEAST_RISE_K: f64 = 5.0;
 
 fn friction_at(motor: WarmMotor, mass_kg: f64, sample: &HeatingSample) -> Result<f64, Error> {
     let side = SideOnSlope {

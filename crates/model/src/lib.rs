@@ -27,7 +27,7 @@ mod sides;
 pub mod skid;
 pub mod thermal;
 
-pub use balance::FrictionShape;
+pub use balance::{Friction, FrictionShape};
 pub use error::Error;
 pub use gravity::{Attitude, STANDARD_GRAVITY_MPS2};
 pub use kernel::{PowerKernel, Real};

@@ -21,6 +21,7 @@ impl Motor {
     ///
     /// Dogru & Marques (2018), eqs. 7-10. Holds for moderate rises: the paper finds it good below 65 °C.
     /// k2 stays at least 1, since no gear train delivers more than it takes.
+    #[inline]
     pub fn at_temperature(&self, shared: &Motors, temperature_c: f64) -> WarmMotor {
         let rise_k = temperature_c - shared.reference_temperature_c;
         let resistance = 1.0 + shared.resistance_per_k * rise_k;

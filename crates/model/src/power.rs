@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Robot, Sides,
-    balance::{FrictionShape, SideForces},
+    balance::{Friction, FrictionShape, SideForces},
     gravity::{Attitude, STANDARD_GRAVITY_MPS2},
     kernel::PowerKernel,
     mechanism::Adjustment,
@@ -62,7 +62,7 @@ impl Manoeuvre {
         let forces = match model {
             PowerModel::ForceBalance => {
                 let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
-                shape.side_forces(robot, surface)
+                shape.side_forces(&Friction::new(robot, surface))
             }
             PowerModel::DogruMarques => PaperForces::new(robot, surface, &motion).side_forces(&motion),
         };
@@ -71,27 +71,28 @@ impl Manoeuvre {
 
     /// Prepares the side forces of a motion from its shape, by the force balance.
     ///
-    /// The shape must be that of this motion on this surface's slip-angle scale.
+    /// The shape must be that of this motion on the slip-angle scale of the surface that the friction is that of.
+    #[inline]
     pub fn of_shape(
         robot: &Robot,
-        surface: &Surface,
+        friction: &Friction,
         motion: Motion,
         shape: &FrictionShape,
         motor_temperature_c: Sides<f64>,
     ) -> Self {
-        Manoeuvre::of_forces(robot, motion, shape.side_forces(robot, surface), motor_temperature_c, false)
+        Manoeuvre::of_forces(robot, motion, shape.side_forces(friction), motor_temperature_c, false)
     }
 
     /// The same with what a mechanism adds ([`crate::mechanism`]).
     pub fn adjusted(
         robot: &Robot,
-        surface: &Surface,
+        friction: &Friction,
         motion: Motion,
         shape: &FrictionShape,
         motor_temperature_c: Sides<f64>,
         adjustment: &Adjustment,
     ) -> Self {
-        let forces = shape.side_forces_adjusted(robot, surface, adjustment);
+        let forces = shape.side_forces(&friction.adjusted(adjustment));
         let motor_c = motor_temperature_c.zip(adjustment.motor_k).map(|(c, k)| c + k);
         let mut manoeuvre = Manoeuvre::of_forces(robot, motion, forces, motor_c, false);
         let kernel = &mut manoeuvre.kernel;
@@ -106,6 +107,7 @@ impl Manoeuvre {
         manoeuvre
     }
 
+    #[inline]
     fn of_forces(
         robot: &Robot,
         motion: Motion,

@@ -12,6 +12,7 @@ pub const TURNAROUND_SPEED_MPS: f64 = 0.001;
 ///
 /// It opposes the turning of the wheel, not the sliding of the ground beneath it: the loss is in the
 /// carcass. Where the slip track equals the track both speeds are the same.
+#[inline]
 pub fn direction(rim_speed_mps: f64) -> f64 {
     (rim_speed_mps / TURNAROUND_SPEED_MPS).tanh()
 }

@@ -32,18 +32,23 @@ pub fn mobilized_arm_m(
 ) -> f64 {
     let com = &robot.center_of_mass;
     let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
-    let mut sum_m = 0.0;
-    for x_m in [half_a, -half_a] {
-        let share_x = 0.5 + com.forward_m / robot.wheelbase_m * x_m.signum();
-        let arm_m = x_m - com.forward_m;
-        for y_m in [half_b, -half_b] {
-            let share_y = 0.5 + com.left_m / robot.track_m * y_m.signum();
+    let [front_m, rear_m] = [half_a - com.forward_m, -half_a - com.forward_m];
+    let of_axle = |arm_m: f64| {
+        [half_b, -half_b].map(|y_m| {
             let along_mps = speed_mps - yaw_rate_radps * y_m;
             let across_mps = yaw_rate_radps * arm_m;
-            if across_mps != 0.0 {
-                let slip_angle_rad = across_mps.abs().atan2(along_mps.abs());
-                sum_m += arm_m.abs() * share_x * share_y * mobilized(slip_angle_rad);
-            }
+            if across_mps == 0.0 { 0.0 } else { mobilized(across_mps.abs().atan2(along_mps.abs())) }
+        })
+    };
+    let front = of_axle(front_m);
+    // Axles as far from the centre slip at the same angles, and those are what costs.
+    let rear = if rear_m == -front_m { front } else { of_axle(rear_m) };
+    let mut sum_m = 0.0;
+    for (arm_m, x_sign, axle) in [(front_m, 1.0, front), (rear_m, -1.0, rear)] {
+        let share_x = 0.5 + com.forward_m / robot.wheelbase_m * x_sign;
+        for (y_sign, mobilized) in [1.0, -1.0].into_iter().zip(axle) {
+            let share_y = 0.5 + com.left_m / robot.track_m * y_sign;
+            sum_m += arm_m.abs() * share_x * share_y * mobilized;
         }
     }
     sum_m

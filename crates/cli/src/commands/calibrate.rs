@@ -78,12 +78,16 @@ fn refuse_unwritable(out: &Path) -> Result<(), BadInput> {
 fn summary(found: &Calibration) -> String {
     let mut text = String::new();
     for parameter in &found.parameters {
+        // Motor constants are thousandths of their units.
+        let digits = if parameter.value.abs() < 0.01 { 6 } else { 4 };
         let interval = match parameter.interval_95 {
-            Some([low, high]) if parameter.determined => format!("{low:.4} to {high:.4}"),
+            Some([low, high]) if parameter.determined => {
+                format!("{low:.digits$} to {high:.digits$}")
+            }
             _ => "not determined, held".to_owned(),
         };
         let unit = if parameter.unit == "1" { "" } else { &parameter.unit };
-        text += &format!("{:<42} {:>10.4} {unit:<7} {interval}\n", parameter.name, parameter.value);
+        text += &format!("{:<42} {:>10.digits$} {unit:<7} {interval}\n", parameter.name, parameter.value);
     }
     if let Some(held_out) = &found.held_out {
         text += &format!(

@@ -197,7 +197,7 @@ pub fn by_name(name: &str) -> Option<&'static dyn Mechanism> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FrictionShape, Manoeuvre, builtin};
+    use crate::{Friction, FrictionShape, Manoeuvre, builtin};
 
     #[test]
     fn a_mechanism_at_nothing_changes_nothing_and_at_a_probe_changes_power_or_what_is_read() {
@@ -220,7 +220,14 @@ mod tests {
                 let shape = FrictionShape::new(robot, marble.slip_angle_scale_rad, &moment.motion);
                 let adjustment = mechanism.adjust(robot, values, &moment);
                 let c = Sides::both(robot.motors.reference_temperature_c);
-                let manoeuvre = Manoeuvre::adjusted(robot, marble, moment.motion, &shape, c, &adjustment);
+                let manoeuvre = Manoeuvre::adjusted(
+                    robot,
+                    &Friction::new(robot, marble),
+                    moment.motion,
+                    &shape,
+                    c,
+                    &adjustment,
+                );
                 let (normal, along) = (moment.attitude.weight_normal(), moment.attitude.weight_along());
                 let power = manoeuvre.power_on_grade(normal, along, moment.acceleration);
                 let seen_w = mechanism.reading_w(values, power.bus_w) + power.side_w.left;

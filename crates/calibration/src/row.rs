@@ -1,0 +1,117 @@
+//! One row of a recording: what the model is asked about.
+
+use model::{Acceleration, Robot, Sides};
+use rayon::prelude::*;
+use recording::{Channel, Recording};
+
+/// Rim speeds below this are standstill \[m/s\]: half of a Husky A200's encoder step of 0.008 m/s.
+pub const STANDSTILL_MPS: f64 = 0.004;
+
+/// The inputs of one row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Time \[s\].
+    pub t_s: f64,
+    /// Time since the row before, 0 at the start of a stretch \[s\].
+    pub step_s: f64,
+    /// Rim speeds \[m/s\].
+    pub rim_mps: Sides<f64>,
+    /// Their rates of change, by central differences \[m/s²\].
+    pub rim_mps2: Sides<f64>,
+    /// Measured yaw rate; NaN where there is none \[rad/s\].
+    pub yaw_rate_radps: f64,
+    /// Pitch, 0 where the recording has no such channel \[rad\].
+    pub pitch_rad: f64,
+    /// Roll, 0 where the recording has no such channel \[rad\].
+    pub roll_rad: f64,
+    /// Motor temperatures \[°C\]; the robot's reference where the recording has none.
+    pub motor_c: Sides<f64>,
+    /// Enters averages: everything needed is there and the wheels hold the ground.
+    pub used: bool,
+    /// The wheels turn against each other and the robot does not (`stuck`).
+    pub stuck: bool,
+}
+
+impl Row {
+    /// v: mean of the rim speeds \[m/s\].
+    pub fn speed_mps(&self) -> f64 {
+        self.rim_mps.sum() / 2.0
+    }
+
+    /// u_right − u_left \[m/s\].
+    pub fn difference_mps(&self) -> f64 {
+        self.rim_mps.right - self.rim_mps.left
+    }
+
+    /// dv/dt and dω/dt of a robot whose wheels move so.
+    pub fn acceleration(&self, slip_track_m: f64) -> Acceleration {
+        Acceleration {
+            forward_mps2: self.rim_mps2.sum() / 2.0,
+            yaw_radps2: (self.rim_mps2.right - self.rim_mps2.left) / slip_track_m,
+        }
+    }
+
+    /// Both sides stand.
+    pub fn stands(&self) -> bool {
+        self.rim_mps.left.abs() < STANDSTILL_MPS && self.rim_mps.right.abs() < STANDSTILL_MPS
+    }
+}
+
+/// The inputs of every row; accelerations are still to come.
+pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]) -> Vec<Row> {
+    let channel = |channel| recording.channel(channel);
+    let at = |values: Option<&[f64]>, row: usize, absent: f64| values.map_or(absent, |v| v[row]);
+    let (left, right) = (channel(Channel::LeftSpeed), channel(Channel::RightSpeed));
+    let (yaw, pitch, roll) = (channel(Channel::YawRate), channel(Channel::Pitch), channel(Channel::Roll));
+    let reference_c = robot.motors.reference_temperature_c;
+    let warm = [Channel::LeftMotorTemperature, Channel::RightMotorTemperature]
+        .map(|side| channel(side).map(|values_c| nearest(values_c, recording)));
+    let [left_c, right_c] = warm.each_ref().map(Option::as_deref);
+    let row = |i: usize| {
+        let rim_mps = Sides { left: at(left, i, f64::NAN), right: at(right, i, f64::NAN) };
+        let (pitch_rad, roll_rad) = (at(pitch, i, 0.0), at(roll, i, 0.0));
+        let motor_c = Sides { left: at(left_c, i, reference_c), right: at(right_c, i, reference_c) };
+        let whole = recorded.iter().all(|column| column[i].is_finite())
+            && [rim_mps.left, rim_mps.right, pitch_rad, roll_rad].iter().all(|x| x.is_finite());
+        let or = |x: f64, other: f64| if x.is_finite() { x } else { other };
+        Row {
+            t_s: recording.t_s[i],
+            rim_mps,
+            yaw_rate_radps: at(yaw, i, f64::NAN),
+            pitch_rad: or(pitch_rad, 0.0),
+            roll_rad: or(roll_rad, 0.0),
+            motor_c: motor_c.map(|c| or(c, reference_c)),
+            used: whole,
+            ..Row::default()
+        }
+    };
+    (0..recording.rows()).into_par_iter().map(row).collect()
+}
+
+/// Gaps filled with the nearest value of the same run: a motor warms over minutes, and its sensor may be read once a second.
+fn nearest(values: &[f64], recording: &Recording) -> Vec<f64> {
+    let mut filled = values.to_vec();
+    for run in &recording.runs {
+        let measured: Vec<usize> = run.rows.clone().filter(|&i| values[i].is_finite()).collect();
+        let mut next = 0;
+        for i in run.rows.clone() {
+            while next + 1 < measured.len() && measured[next + 1].abs_diff(i) <= measured[next].abs_diff(i) {
+                next += 1;
+            }
+            filled[i] = measured.get(next).map_or(f64::NAN, |&at| values[at]);
+        }
+    }
+    filled
+}
+
+/// Fills in the accelerations of a stretch, by central differences.
+pub(crate) fn accelerations(rows: &mut [Row]) {
+    let last = rows.len() - 1;
+    for i in 0..rows.len() {
+        let (before, after) = (rows[i.saturating_sub(1)], rows[(i + 1).min(last)]);
+        let span_s = after.t_s - before.t_s;
+        if span_s > 0.0 {
+            rows[i].rim_mps2 = after.rim_mps.zip(before.rim_mps).map(|(b, a)| (b - a) / span_s);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Simulated drives, and what they would record.
+
+#![allow(dead_code)]
+
+use std::collections::BTreeMap;
+
+use calibration::{
+    Drives,
+    power::{by_row, seen_w},
+};
+use model::Robot;
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+use recording::{Channel, Labels, PowerForm, Recording, Run};
+
+pub(crate) const RUNS: usize = 12;
+pub(crate) const ROWS: usize = 400;
+
+/// A generator of its own for each seed.
+///
+/// Neighbouring states of this generator begin alike, so seeds are spread by an odd number (2^128 over the golden ratio).
+pub(crate) fn seeded(seed: u64) -> Pcg64Mcg {
+    Pcg64Mcg::new((2 * u128::from(seed) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835))
+}
+
+/// A standard normal number, by Box and Muller.
+pub(crate) fn normal(random: &mut Pcg64Mcg) -> f64 {
+    let (a, b): (f64, f64) = (random.random(), random.random());
+    (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+}
+
+/// Drives with straights, arcs, spins, slopes and halts, without power yet.
+pub(crate) fn drives(random: &mut Pcg64Mcg, runs: usize, rows: usize) -> Recording {
+    let mut recording = Recording::default();
+    let mut channels: BTreeMap<Channel, Vec<f64>> = BTreeMap::new();
+    for run in 0..runs {
+        let start = recording.t_s.len();
+        let (mut left, mut right) = (0.0, 0.0);
+        let (mut to_left, mut to_right) = (0.0, 0.0);
+        let phase = random.random::<f64>() * std::f64::consts::TAU;
+        for row in 0..rows {
+            if row % 40 == 0 {
+                let speed: f64 = random.random_range(-0.4..0.9);
+                let turn: f64 = [0.0, random.random_range(-0.4..0.4)][random.random_range(0..2)];
+                let spin = random.random_range(0..4) == 0;
+                let halt = random.random_range(0..6) == 0;
+                let (v, d) = if halt {
+                    (0.0, 0.0)
+                } else if spin {
+                    (0.0, turn)
+                } else {
+                    (speed, turn)
+                };
+                (to_left, to_right) = (v - d, v + d);
+            }
+            left += (to_left - left) * 0.3;
+            right += (to_right - right) * 0.3;
+            recording.t_s.push(row as f64 * 0.1);
+            let pitch = 0.15 * (phase + row as f64 * 0.013).sin();
+            for (channel, value) in
+                [(Channel::LeftSpeed, left), (Channel::RightSpeed, right), (Channel::Pitch, pitch)]
+            {
+                channels.entry(channel).or_default().push(value);
+            }
+        }
+        let rows = start..recording.t_s.len();
+        recording.runs.push(Run { name: format!("run-{run}"), rows, gap_s: 0.5, start_unix_s: None });
+    }
+    recording.channels = channels;
+    recording
+}
+
+/// The power that a robot would show on these drives, with noise of 2 W and 3 %.
+pub(crate) fn with_power(robot: &Robot, mut recording: Recording, random: &mut Pcg64Mcg) -> Recording {
+    for channel in [Channel::LeftPower, Channel::RightPower] {
+        recording.channels.insert(channel, vec![0.0; recording.t_s.len()]);
+    }
+    let prepared = Drives::new(robot, &recording).unwrap();
+    let seen = by_row(&prepared, robot, |i, power| seen_w(robot, PowerForm::Sides, &prepared.rows[i], power))
+        .unwrap();
+    for (side, channel) in [Channel::LeftPower, Channel::RightPower].into_iter().enumerate() {
+        let noisy = |watts: &[f64; 2]| watts[side] + (2.0 + 0.03 * watts[side].abs()) * normal(random);
+        recording.channels.insert(channel, seen.iter().map(noisy).collect());
+    }
+    recording
+}
+
+/// The same recording with the power of the battery alone, hotel load included, and noise of 4 W and 3 %.
+pub(crate) fn with_battery_power(
+    robot: &Robot,
+    mut recording: Recording,
+    random: &mut Pcg64Mcg,
+) -> Recording {
+    recording.channels.insert(Channel::Power, vec![0.0; recording.t_s.len()]);
+    let prepared = Drives::new(robot, &recording).unwrap();
+    let seen =
+        by_row(&prepared, robot, |i, power| seen_w(robot, PowerForm::Battery, &prepared.rows[i], power))
+            .unwrap();
+    let noisy = |[watts, _]: &[f64; 2]| watts + (4.0 + 0.03 * watts.abs()) * normal(random);
+    recording.channels.insert(Channel::Power, seen.iter().map(noisy).collect());
+    recording
+}
+
+/// Motors that warm from 15-30 °C by up to 60 K in each run.
+pub(crate) fn with_heat(mut recording: Recording, random: &mut Pcg64Mcg) -> Recording {
+    for channel in [Channel::LeftMotorTemperature, Channel::RightMotorTemperature] {
+        let mut warm_c = Vec::with_capacity(recording.t_s.len());
+        for run in &recording.runs {
+            let (start_c, rise_k): (f64, f64) =
+                (random.random_range(15.0..30.0), random.random_range(0.0..60.0));
+            let rows = run.rows.len() as f64;
+            warm_c.extend((0..run.rows.len()).map(|i| start_c + rise_k * i as f64 / rows));
+        }
+        recording.channels.insert(channel, warm_c);
+    }
+    recording
+}
+
+/// Every second run on another ground.
+pub(crate) fn over_two_grounds(mut recording: Recording, names: [&str; 2]) -> Recording {
+    let mut index = vec![0; recording.t_s.len()];
+    recording.runs.iter().skip(1).step_by(2).for_each(|run| index[run.rows.clone()].fill(1));
+    recording.surface = Some(Labels { names: names.map(String::from).to_vec(), index });
+    recording
+}
+
+/// How often determined parameters lay in their intervals.
+#[derive(Debug, Default)]
+pub(crate) struct Coverage {
+    trials: usize,
+    /// Inside, determined.
+    hits: BTreeMap<String, (usize, usize)>,
+}
+
+impl Coverage {
+    /// Adds one trial: what it determined, and whether the truth lay inside.
+    pub(crate) fn add(&mut self, determined: impl IntoIterator<Item = (String, bool)>) {
+        self.trials += 1;
+        for (name, inside) in determined {
+            let entry = self.hits.entry(name).or_default();
+            *entry = (entry.0 + usize::from(inside), entry.1 + 1);
+        }
+    }
+
+    /// What most trials determined lay inside in 90 to 99 % of them all, and these names are among it.
+    pub(crate) fn assert_as_promised(&self, names: &[&str]) {
+        println!("{self:#?}");
+        let always: Vec<_> = self.hits.iter().filter(|(_, (_, trials))| *trials > self.trials / 2).collect();
+        for name in names {
+            assert!(
+                always.iter().any(|(known, _)| known == name),
+                "{name} is determined by such drives: {self:?}"
+            );
+        }
+        let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
+        let share = inside as f64 / trials as f64;
+        assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
+        for (name, (inside, trials)) in always {
+            // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
+            assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
+        }
+    }
+}

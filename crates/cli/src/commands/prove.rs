@@ -1,0 +1,123 @@
+//! `joulepath prove`.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Mutex,
+    thread::available_parallelism,
+};
+
+use anyhow::Context;
+use clap::Args;
+use diagnosis::{Plain, Series};
+use model::{Robot, builtin};
+use prove::{Diagnosis, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
+use recording::read_paths;
+
+use crate::{failure::BadInput, progress};
+
+/// Most cases of a trial: at some ten seconds each on a core, a night's work.
+const MOST_CASES: usize = 10_000;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Cases to draw; healthy drives and decoys are three tenths of them
+    #[arg(long, default_value_t = 40)]
+    cases: usize,
+    /// Seed of everything that is drawn
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
+    #[arg(long)]
+    out: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    check(arguments)?;
+    let program = std::env::current_exe().context("cannot tell where joulepath itself lies")?;
+    let robot_json = serde_json::to_string_pretty(&builtin::husky_a200())? + "\n";
+    let bar = Mutex::new(progress::cases());
+    let told = |stage, done, all| {
+        if let Ok(bar) = bar.lock() {
+            bar.set_message(doing(stage));
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        }
+    };
+    let trial = Trial {
+        cases: arguments.cases,
+        seed: arguments.seed,
+        robot_json: &robot_json,
+        out: &arguments.out,
+        // Cases side by side use the cores better than threads within one.
+        diagnosis: Diagnosis { program, threads: 1 },
+        peers: &peers,
+        at_once: available_parallelism().map_or(1, usize::from),
+        progress: &told,
+        published: &|hash| println!("committed to all keys: SHA-256 {hash}"),
+    };
+    let board = trial.run()?;
+    if let Ok(bar) = bar.lock() {
+        bar.finish_and_clear();
+    }
+    println!("{}", summary(&board));
+    println!("{}", arguments.out.join("scoreboard.html").display());
+    Ok(())
+}
+
+fn check(arguments: &Arguments) -> Result<(), BadInput> {
+    if !(1..=MOST_CASES).contains(&arguments.cases) {
+        return Err(BadInput(format!("--cases {} must lie in 1 to {MOST_CASES}", arguments.cases)));
+    }
+    let out = &arguments.out;
+    let is_new = !out.exists() || out.read_dir().is_ok_and(|mut entries| entries.next().is_none());
+    let fault = "it exists and is not an empty folder; name one that is new";
+    if is_new { Ok(()) } else { Err(BadInput(format!("--out {}: {fault}", out.display()))) }
+}
+
+fn doing(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Drawing => "drawing cases",
+        Stage::Diagnosing => "diagnosing",
+        Stage::Scoring => "opening keys",
+    }
+}
+
+/// What simpler methods say of a case.
+fn peers(case: &Path) -> Vec<PeerAnswer> {
+    let plain = plain(case);
+    let say = |peer, names: fn(&Plain) -> Vec<String>| PeerAnswer {
+        peer,
+        names: plain.as_ref().map(names).map_err(Clone::clone),
+    };
+    vec![say("plain BIC", Plain::by_information), say("sparse regression", Plain::by_sparse_regression)]
+}
+
+/// What they need of it.
+fn plain(case: &Path) -> Result<Plain, String> {
+    let robot = std::fs::read_to_string(case.join(ROBOT)).map_err(|error| error.to_string())?;
+    let robot = Robot::from_json(&robot).map_err(|error| error.to_string())?;
+    let read = |name: &str| read_paths(&[case.join(name)], None).map_err(|error| error.to_string());
+    let (suspect, healthy) = (read(prove::RECORDING)?.0, read(REFERENCE)?.0);
+    let series = Series::new(&robot, &suspect, Some(&healthy)).map_err(|error| error.to_string())?;
+    Plain::new(&series, &robot).map_err(|error| error.to_string())
+}
+
+fn summary(board: &Scoreboard) -> String {
+    let rate = |rate: prove::Rate| {
+        let [low, high] = rate.interval_95.map(|bound| 100.0 * bound);
+        format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of)
+    };
+    [
+        ("false alarms, healthy drives", board.false_alarms_healthy),
+        ("false alarms, decoys", board.false_alarms_decoy),
+        ("false alarms, effects taken away", board.false_alarms_twin),
+        ("effects detected", board.detected),
+        ("effects named, set of two at most", board.in_two),
+        ("both of two effects named", board.both_of_two),
+        ("outside the list, not misnamed", board.unlisted_not_misnamed),
+        ("intervals that hold the truth", board.interval_coverage),
+        ("diagnoses that failed", board.errors),
+    ]
+    .map(|(what, of)| format!("{what:<34} {}", rate(of)))
+    .join("\n")
+}

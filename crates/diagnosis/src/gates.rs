@@ -1,0 +1,97 @@
+//! What a candidate has to pass before it is taken up.
+
+use nalgebra::DVector;
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    evidence::{Evidence, System},
+    null::Null,
+    series::{Applied, Series},
+    weigh::{Weighed, blocks, system, undelayed, weigh_all},
+};
+
+/// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
+const LEVEL: f64 = 0.01;
+/// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
+const LEAST_VISITS: usize = 6;
+/// Standard errors by which the fit of blocks that were held out has to gain.
+const LEAST_GAIN_SIGMAS: f64 = 2.5;
+/// Tenths of the drives that are held out in turn.
+const FOLDS: usize = 10;
+/// Rivals that are looked at closely.
+const MOST_RIVALS: usize = 6;
+/// Least cosine between what rivals explain.
+const KIN: f64 = 0.5;
+/// Least share of the best's score that a rival's has to reach.
+const CONTENDER: f64 = 0.3;
+
+/// The best mechanism that passes every gate, followed by others that may explain the same, and the gain on held-out blocks.
+pub(crate) fn best(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    null: &Null,
+) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
+    let (mut weighed, _) = weigh_all(series, base, applied, null)?;
+    let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
+    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
+    let passing = weighed.iter().enumerate().find_map(|(place, one)| {
+        if one.p_value > LEVEL || one.score <= 0.0 {
+            return None;
+        }
+        let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
+        let system = if is_delay { &delay_apart } else { &all_fitted };
+        let acts = acting(system, series, one);
+        if acts.iter().filter(|acts| **acts).count() < LEAST_VISITS {
+            return None;
+        }
+        let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white(c)).collect();
+        let gains = system.held_out(&columns, FOLDS);
+        Some((place, significant_gain(&gains, system, series, &acts)?))
+    });
+    let Some((place, gain)) = passing else { return Ok(None) };
+    let chosen = weighed.remove(place);
+    let rows = series.recorded.len();
+    let is_rival = |other: &Weighed| {
+        other.score > CONTENDER * chosen.score && cosine(&chosen.evidence, &other.evidence, rows) > KIN
+    };
+    weighed.retain(is_rival);
+    weighed.truncate(MOST_RIVALS);
+    weighed.insert(0, chosen);
+    Ok(Some((weighed, gain)))
+}
+
+/// Cosine between what two candidates explain of the rows.
+fn cosine(a: &Evidence, b: &Evidence, rows: usize) -> f64 {
+    let along = |e: &Evidence| (&e.own * DVector::from_column_slice(&e.values)).rows(0, rows).into_owned();
+    let (a, b) = (along(a), along(b));
+    a.dot(&b).abs() / (a.norm() * b.norm()).max(1e-300)
+}
+
+/// Blocks of the suspect drives in which a candidate acts: where it changes more than a tenth of what it does in a mean block.
+fn acting(system: &System, series: &Series, one: &Weighed) -> Vec<bool> {
+    let along = &one.evidence.own * DVector::from_column_slice(&one.evidence.values);
+    let block = blocks(series);
+    let mut size = vec![0.0; system.blocks()];
+    let mut suspect = vec![false; system.blocks()];
+    for (i, b) in block.iter().enumerate() {
+        size[*b] += along[i] * along[i];
+        suspect[*b] |= series.averages[i].suspect;
+    }
+    let mean = size.iter().sum::<f64>() / size.len().max(1) as f64;
+    size.iter().zip(suspect).map(|(size, suspect)| suspect && *size > 0.1 * mean).collect()
+}
+
+/// The gain as a share of the errors, if it is significant over the blocks in which the mechanism acts.
+fn significant_gain(gains: &[f64], system: &System, series: &Series, acts: &[bool]) -> Option<f64> {
+    let gains: Vec<f64> = gains.iter().zip(acts).filter(|(_, acts)| **acts).map(|(gain, _)| *gain).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let spread = (gains.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0)).sqrt();
+    let left = system.left();
+    let block = blocks(series);
+    let whole: f64 =
+        block.iter().enumerate().filter(|(_, b)| acts[**b]).map(|(i, _)| left[i] * left[i]).sum();
+    (mean > 0.0 && mean * count.sqrt() > LEAST_GAIN_SIGMAS * spread).then(|| mean * count / whole.max(1e-300))
+}

@@ -1,0 +1,137 @@
+//! Every candidate weighed beside everything that is fitted whatever the candidate.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::{
+    Error,
+    baseline::{Baseline, differences},
+    candidates::{self, Candidate},
+    evidence::{Evidence, System},
+    noise::Noise,
+    nuisance,
+    null::Null,
+    series::{Applied, Average, Series},
+};
+
+/// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
+pub(crate) const BLOCK_S: f64 = 20.0;
+
+/// Everything that is fitted whatever the candidate.
+pub(crate) fn system(series: &Series, base: &Baseline) -> System {
+    system_by(series, base, base, true)
+}
+
+/// The same for the candidate that is a delay itself.
+pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
+    system_by(series, base, base, false)
+}
+
+/// How well a fit explains the drives, by the noise of another, so that fits can be compared: squared errors that nothing
+/// takes, what departures from the robot's file cost included.
+pub(crate) fn misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
+    system_by(series, fit, by, true).left().norm_squared()
+}
+
+fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool) -> System {
+    let (noise, about_w): (&Noise, &[f64]) = (&by.noise, &by.predicted_w);
+    let white = |values: &[f64]| noise.whiten(values, about_w, &series.averages);
+    let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
+    let mut offset: Vec<f64> = base.moved.iter().map(|m| -m).collect();
+    let mut nuisances = nuisance::columns(&series.averages, about_w, series.has_healthy());
+    if series.has_healthy() {
+        nuisances.push(base.delays[1].clone());
+    }
+    if delayed {
+        nuisances.push(base.delays[0].clone());
+    }
+    offset.extend(vec![0.0; nuisances.len()]);
+    columns.extend(nuisances.iter().map(|c| white(c)));
+    let known = vec![1.0; columns.len()];
+    let errors = white(&differences(&series.recorded, &base.predicted_w));
+    System::new(errors, &columns, &known, &offset, blocks(series))
+}
+
+/// Blocks of neighbouring averages of a drive; channels of the same time share one.
+pub(crate) fn blocks(series: &Series) -> Vec<usize> {
+    let mut names: Vec<(usize, usize)> = Vec::new();
+    let key = |a: &Average| (a.run, (a.t_s / BLOCK_S) as usize);
+    names.extend(series.averages.iter().map(key));
+    let mut distinct = names.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    names.iter().map(|name| distinct.partition_point(|d| d < name)).collect()
+}
+
+/// A candidate with what it explains.
+pub(crate) struct Weighed {
+    pub(crate) candidate: Candidate,
+    pub(crate) evidence: Evidence,
+    /// How many of its mechanism were tried.
+    pub(crate) tried: u32,
+    /// Discounted evidence less what its parameters cost.
+    pub(crate) score: f64,
+    /// Chance of as much, corrected for all that was tried.
+    pub(crate) p_value: f64,
+}
+
+/// The best candidate of every mechanism, best first, and the number of blocks.
+pub(crate) fn weigh_all(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    null: &Null,
+) -> Result<(Vec<Weighed>, usize), Error> {
+    let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
+    let candidates = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
+    let all = candidates.len() as f64;
+    let name = |candidate: &Candidate| candidate.applied.mechanism.name();
+    let mut tried: BTreeMap<&str, u32> = BTreeMap::new();
+    candidates.iter().for_each(|candidate| *tried.entry(name(candidate)).or_default() += 1);
+    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
+    let blocks = all_fitted.blocks();
+    let mut weighed: Vec<Weighed> = candidates
+        .into_par_iter()
+        .filter_map(|candidate| {
+            let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| white(c)).collect();
+            let is_delay = name(&candidate) == "clock_offset";
+            let evidence = (if is_delay { &delay_apart } else { &all_fitted }).weigh(&columns)?;
+            if !is_plausible(&candidate, &evidence)
+                || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * series.row_s()
+            {
+                return None;
+            }
+            let count = columns.len() as f64;
+            let freedom = (blocks as f64 - count - 1.0).max(2.0);
+            let wald = evidence.wald / null.discount(name(&candidate), blocks);
+            let chance = FisherSnedecor::new(count, freedom).ok()?.sf(wald / count);
+            let score = wald - count * (blocks as f64).ln();
+            let tried = tried.get(name(&candidate)).copied().unwrap_or(1);
+            Some(Weighed { candidate, evidence, tried, score, p_value: (chance * all).min(1.0) })
+        })
+        .collect();
+    weighed.sort_by(|a, b| b.score.total_cmp(&a.score));
+    // Of each mechanism only its best.
+    let mut names: Vec<&str> = Vec::new();
+    weighed.retain(|w| {
+        let is_new = !names.contains(&name(&w.candidate));
+        names.push(name(&w.candidate));
+        is_new
+    });
+    Ok((weighed, blocks))
+}
+
+/// A delay of less than a row, but for rounding, is the sensors' business.
+const LEAST_DELAY_ROWS: f64 = 0.9;
+
+fn is_plausible(candidate: &Candidate, evidence: &Evidence) -> bool {
+    let parameters = candidate.applied.mechanism.parameters();
+    candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {
+        let [low, high] = parameters[parameter].bounds;
+        let sigma = evidence.covariance[(j, j)].max(0.0).sqrt();
+        let value = candidate.applied.values[parameter] + value;
+        value + 2.0 * sigma >= low && value - 2.0 * sigma <= high
+    })
+}

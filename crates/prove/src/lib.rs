@@ -1,0 +1,41 @@
+//! The concealed trial: does a diagnosis find what was hidden from it, and does it keep quiet where nothing was?
+//!
+//! Cases are drawn from the independent world. The diagnosis gets recording, robot and reference in a folder that holds nothing
+//! else, and runs as a separate process. What is true of a case stands in a key, kept apart, whose SHA-256 is published before
+//! the first diagnosis begins; keys are opened after the last one has ended, and one that has changed since is refused.
+//!
+//! The crate knows the world and the form of the diagnosis' report, and nothing of how a diagnosis comes about.
+
+mod board;
+mod commitment;
+mod deal;
+mod error;
+mod figures;
+mod files;
+mod key;
+mod matching;
+mod page;
+mod page_parts;
+mod peer;
+mod process;
+mod rate;
+mod report;
+mod score;
+mod strength;
+mod trial;
+
+pub use board::{Scoreboard, scoreboard};
+pub use commitment::{Commitments, sha256};
+pub use deal::{Dealt, SHARES, deal};
+pub use error::Error;
+pub use figures::{Cell, MechanismRow, PeerRow, StrengthRow};
+pub use files::{RECORDING, REFERENCE, ROBOT};
+pub use key::{Kind, Parameter, SealedKey, Truth};
+pub use page::page;
+pub use peer::{PeerAnswer, PeerScore};
+pub use process::{Diagnosis, Outcome};
+pub use rate::Rate;
+pub use report::{Estimate, Finding, Report, Verdict};
+pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};
+pub use strength::{Misled, z};
+pub use trial::{Stage, Trial};

@@ -1,0 +1,108 @@
+//! The part of a diagnosis' report that is scored, as the contract states it; other fields are passed over.
+
+use serde::{Deserialize, Serialize};
+
+/// A diagnosis.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Report {
+    /// Its one word.
+    pub verdict: Verdict,
+    /// How well the robot fits with nothing found.
+    pub baseline: Fit,
+    /// What it found.
+    pub findings: Vec<Finding>,
+    /// How well the robot fits with all of that.
+    #[serde(default)]
+    pub corrected: Fit,
+}
+
+/// The one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Nothing is wrong.
+    Consistent,
+    /// It is known what.
+    Explained,
+    /// It is one of several.
+    Ambiguous,
+    /// It is something else.
+    Unexplained,
+}
+
+/// How well a robot fits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub struct Fit {
+    /// Root mean square error on drives that were held out [W].
+    #[serde(default)]
+    pub held_out_rmse_w: Option<f64>,
+}
+
+/// One mechanism.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Finding {
+    /// Its name, or `unknown`.
+    pub mechanism: String,
+    /// How big it is.
+    #[serde(default)]
+    pub parameters: Vec<Estimate>,
+    /// What it cannot be told from.
+    #[serde(default)]
+    pub indistinguishable_from: Vec<String>,
+    /// What it does on drives that were held out.
+    #[serde(default)]
+    pub fit: HeldOut,
+}
+
+/// What a finding does on drives that were held out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub struct HeldOut {
+    /// Without it [W].
+    #[serde(default)]
+    pub held_out_rmse_before_w: Option<f64>,
+    /// With it [W].
+    #[serde(default)]
+    pub held_out_rmse_after_w: Option<f64>,
+}
+
+/// An estimated number.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Estimate {
+    /// Of what.
+    pub name: String,
+    /// How much; none where the recording does not tell.
+    pub value: Option<f64>,
+    /// In what.
+    pub unit: String,
+    /// Where it lies with a chance of 95 %.
+    #[serde(default)]
+    pub interval_95: Option<[f64; 2]>,
+}
+
+/// Name of findings outside the list.
+pub(crate) const UNKNOWN: &str = "unknown";
+
+impl Report {
+    /// Whether it says that something is wrong.
+    pub fn alarms(&self) -> bool {
+        self.verdict != Verdict::Consistent || !self.findings.is_empty()
+    }
+}
+
+impl Finding {
+    /// It and everything that it cannot be told from, each once, it first.
+    pub fn set(&self) -> Vec<&str> {
+        let mut set = vec![self.mechanism.as_str()];
+        for other in &self.indistinguishable_from {
+            if !set.contains(&other.as_str()) {
+                set.push(other);
+            }
+        }
+        set
+    }
+
+    /// Whether it gives a name.
+    pub fn is_named(&self) -> bool {
+        self.mechanism != UNKNOWN
+    }
+}

@@ -1,0 +1,196 @@
+//! A trial from the first case drawn to the scoreboard.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use rayon::prelude::*;
+use world::{Case, RobotFile, World, simulate};
+
+use crate::{
+    CaseScore, Commitments, Dealt, Diagnosis, Error, Misled, Outcome, PeerAnswer, PeerScore, Scoreboard,
+    SealedKey, Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
+};
+
+/// What a trial is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Cases are drawn and keys sealed.
+    Drawing,
+    /// Cases are diagnosed.
+    Diagnosing,
+    /// Keys are opened, and the same drives without effects diagnosed.
+    Scoring,
+}
+
+/// A trial.
+pub struct Trial<'a> {
+    /// How many cases.
+    pub cases: usize,
+    /// Seed that they are dealt from.
+    pub seed: u64,
+    /// The robot when it is healthy, as its file says.
+    pub robot_json: &'a str,
+    /// Where everything is written.
+    pub out: &'a Path,
+    /// How to diagnose.
+    pub diagnosis: Diagnosis,
+    /// Other methods, asked about the folder of each case.
+    pub peers: &'a (dyn Fn(&Path) -> Vec<PeerAnswer> + Sync),
+    /// Cases that are worked on at the same time.
+    pub at_once: usize,
+    /// Told of progress: stage, cases done, cases in all.
+    pub progress: &'a (dyn Fn(Stage, usize, usize) + Sync),
+    /// Told the hash of the list of commitments as soon as it is published.
+    pub published: &'a (dyn Fn(&str) + Sync),
+}
+
+/// Seeds tried for a case whose drive leaves the ground or cannot be made.
+const DRAWS: u64 = 5;
+
+impl Trial<'_> {
+    /// Runs it.
+    ///
+    /// # Errors
+    /// Files that cannot be written; a key or case that changed between commitment and opening.
+    pub fn run(&self) -> Result<Scoreboard, Error> {
+        let robot = RobotFile::from_json(self.robot_json).map_err(Error::Robot)?;
+        let dealt = deal(self.cases, self.seed);
+        for folder in ["cases", "keys", "twins"] {
+            files::folder(&self.out.join(folder))?;
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.at_once).build()?;
+        let keys = pool.install(|| self.each(Stage::Drawing, &dealt, |dealt| self.draw(dealt, &robot)))?;
+        let (commitments, commitment) = self.commit(&dealt, &keys)?;
+        let outcomes = pool.install(|| {
+            self.each(Stage::Diagnosing, &dealt, |dealt| {
+                let case = self.case(dealt);
+                Ok((self.diagnosis.run(&case)?, (self.peers)(&case)))
+            })
+        })?;
+        let pairs: Vec<(Dealt, Said)> = dealt.into_iter().zip(outcomes).collect();
+        let scores = pool.install(|| {
+            self.each(Stage::Scoring, &pairs, |(dealt, said)| self.open(dealt, said, &commitments, &robot))
+        })?;
+        let board = scoreboard(self.seed, commitment, scores);
+        self.write(&board)?;
+        Ok(board)
+    }
+
+    fn each<T: Sync, U: Send>(
+        &self,
+        stage: Stage,
+        over: &[T],
+        work: impl Fn(&T) -> Result<U, Error> + Sync,
+    ) -> Result<Vec<U>, Error> {
+        let done = AtomicUsize::new(0);
+        (self.progress)(stage, 0, over.len());
+        let one = |item: &T| {
+            let result = work(item);
+            (self.progress)(stage, done.fetch_add(1, Ordering::Relaxed) + 1, over.len());
+            result
+        };
+        // One at a time to a thread: cases take seconds each.
+        over.par_iter().with_max_len(1).map(one).collect()
+    }
+
+    fn case(&self, dealt: &Dealt) -> PathBuf {
+        self.out.join("cases").join(&dealt.name)
+    }
+
+    fn key(&self, dealt: &Dealt) -> PathBuf {
+        self.out.join("keys").join(format!("{}.json", dealt.name))
+    }
+
+    /// Draws a case, writes what the diagnosis gets, and seals the key.
+    fn draw(&self, dealt: &Dealt, robot: &RobotFile) -> Result<Vec<u8>, Error> {
+        let world_error = |source| Error::World { case: dealt.name.clone(), source };
+        let mut drawn = Case::draw(dealt.seed, dealt.kind, dealt.share, robot);
+        for another in 1..DRAWS {
+            if drawn.is_err() {
+                drawn = Case::draw(dealt.seed.wrapping_add(another), dealt.kind, dealt.share, robot);
+            }
+        }
+        let case = drawn.map_err(world_error)?;
+        let folder = self.case(dealt);
+        files::folder(&folder)?;
+        files::write(&folder.join(files::ROBOT), self.robot_json)?;
+        let suspect = simulate(&case.world, robot, &case.drive).map_err(world_error)?;
+        files::write_log(&suspect, &folder.join(files::RECORDING))?;
+        let healthy = simulate(&case.reference_world, robot, &case.reference_drive).map_err(world_error)?;
+        files::write_log(&healthy, &folder.join(files::REFERENCE))?;
+        SealedKey::seal(dealt, &case, robot, &folder)?.bytes(&self.key(dealt))
+    }
+
+    /// Writes the keys and publishes their hashes, before anything is diagnosed.
+    fn commit(&self, dealt: &[Dealt], keys: &[Vec<u8>]) -> Result<(Commitments, String), Error> {
+        let mut commitments = Commitments::default();
+        for (dealt, bytes) in dealt.iter().zip(keys) {
+            let path = self.key(dealt);
+            std::fs::write(&path, bytes).map_err(Error::file(&path))?;
+            commitments.add(&format!("{}.json", dealt.name), bytes);
+        }
+        let text = commitments.text();
+        files::write(&self.out.join("keys").join("SHA256SUMS"), &text)?;
+        let commitment = sha256(text.as_bytes());
+        (self.published)(&commitment);
+        Ok((commitments, commitment))
+    }
+
+    /// Opens a key and scores its case.
+    fn open(
+        &self,
+        dealt: &Dealt,
+        (outcome, answers): &Said,
+        commitments: &Commitments,
+        robot: &RobotFile,
+    ) -> Result<CaseScore, Error> {
+        let case = self.case(dealt);
+        let key = SealedKey::open(&self.key(dealt), commitments, &case)?;
+        let (strengths_z, twin) =
+            if key.kind.conceals() { self.twin(&key, &case, robot)? } else { (Vec::new(), None) };
+        let mut scored = score(&key, &strengths_z, outcome, twin);
+        scored.peers = answers.iter().map(|answer| PeerScore::new(answer, &key)).collect();
+        Ok(scored)
+    }
+
+    /// The same drive without the effects: how strong each of them is, and what the diagnosis says where there is none.
+    fn twin(
+        &self,
+        key: &SealedKey,
+        case: &Path,
+        robot: &RobotFile,
+    ) -> Result<(Vec<f64>, Option<Twin>), Error> {
+        let drive = |world: &World| {
+            simulate(world, robot, &key.drive)
+                .map_err(|source| Error::World { case: key.case.clone(), source })
+        };
+        let plain = drive(&key.world.without_effects())?;
+        let strength = |effect: &world::Effect| {
+            let alone = World { effects: vec![effect.clone()], ..key.world.clone() };
+            let is_fault = effect.effect.family() == world::Family::Measurement;
+            let misled = if is_fault { Misled::Yes } else { Misled::No };
+            Ok(z(&drive(&alone)?, &plain, robot, misled))
+        };
+        let strengths_z = key.world.effects.iter().map(strength).collect::<Result<_, Error>>()?;
+        let folder = self.out.join("twins").join(&key.case);
+        files::folder(&folder)?;
+        files::write_log(&plain, &folder.join(files::RECORDING))?;
+        for name in [files::ROBOT, files::REFERENCE] {
+            files::copy(&case.join(name), &folder.join(name))?;
+        }
+        Ok((strengths_z, Some(Twin::new(&self.diagnosis.run(&folder)?))))
+    }
+
+    fn write(&self, board: &Scoreboard) -> Result<(), Error> {
+        let path = self.out.join("scoreboard.json");
+        let json = serde_json::to_string_pretty(board)
+            .map_err(|source| Error::Content { path: path.clone(), source })?;
+        files::write(&path, &(json + "\n"))?;
+        files::write(&self.out.join("scoreboard.html"), &page(board))
+    }
+}
+
+/// What the diagnosis and the other methods said of a case.
+type Said = (Outcome, Vec<PeerAnswer>);

@@ -1,0 +1,55 @@
+//! `joulepath prove` with few cases: what it leaves, and that anyone can check what it committed to.
+
+#![allow(clippy::unwrap_used)]
+
+use std::process::{Command, Output};
+
+use joulepath_tests::program;
+use serde_json::Value;
+
+fn prove(out: &std::path::Path, more: &[&str]) -> Output {
+    Command::new(program()).arg("prove").args(more).arg("--out").arg(out).output().unwrap()
+}
+
+#[test]
+fn six_cases_are_proven_and_the_published_hash_is_that_of_the_keys() {
+    let room = tempfile::tempdir().unwrap();
+    let out = room.path().join("proof");
+    let output = prove(&out, &["--cases", "6", "--seed", "2"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let board: Value = serde_json::from_slice(&std::fs::read(out.join("scoreboard.json")).unwrap()).unwrap();
+    assert_eq!(board["cases"], 6);
+    assert_eq!(board["errors"]["hits"], 0, "{:#}", board["scores"]);
+    assert_eq!(board["peers"].as_array().unwrap().len(), 2);
+    assert!(said.contains(board["commitment"].as_str().unwrap()), "{said}");
+    let checked = Command::new("sha256sum")
+        .args(["--check", "--strict", "SHA256SUMS"])
+        .current_dir(out.join("keys"))
+        .output()
+        .unwrap();
+    assert!(checked.status.success(), "{checked:?}");
+    let html = std::fs::read_to_string(out.join("scoreboard.html")).unwrap();
+    assert!(html.contains("concealed effects were named"), "{html}");
+}
+
+#[test]
+fn wrong_arguments_are_refused_before_anything_is_drawn() {
+    let room = tempfile::tempdir().unwrap();
+    std::fs::write(room.path().join("mine.txt"), "").unwrap();
+    let fresh = room.path().join("proof");
+    for (out, more, said) in [
+        (room.path(), ["--cases", "6"], "empty folder"),
+        (&fresh, ["--cases", "0"], "--cases 0"),
+        (&fresh, ["--cases", "99999999"], "--cases"),
+    ] {
+        let output = prove(out, &more);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(said) && message.lines().count() == 1, "{message}");
+    }
+}
