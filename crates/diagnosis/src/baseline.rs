@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// A robot at its best fit, with the sensitivities that a linear search needs.
-pub struct Baseline {
+pub(crate) struct Baseline {
     /// The robot.
     pub robot: Robot,
     /// What was fitted.

@@ -38,7 +38,12 @@ pub(crate) fn differences(found: &Diagnosis) -> String {
     let trace = &found.trace;
     let left = |predicted: &[f64]| trace.recorded_w.iter().zip(predicted).map(|(r, p)| r - p).collect();
     let lines = [
-        Line { name: "file is off by", color: "--filed", width: 1.6, values: left(&trace.filed_w) },
+        Line {
+            name: "the robot’s file is off by",
+            color: "--filed",
+            width: 1.6,
+            values: left(&trace.filed_w),
+        },
         Line {
             name: "corrected model is off by",
             color: "--corrected",

@@ -60,7 +60,7 @@ pub fn diagnose(
     let (corrected_robot, mut notes) = corrected(&found.after.robot, &applied, &series.surfaces());
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
-    let mut doubts = doubts(robot, suspect, &series, &found.before)?;
+    let mut doubts = doubts(robot, suspect, &series, &found.after)?;
     doubts.append(&mut notes);
     let findings = judged.findings(&found);
     let mut diagnosis = Diagnosis {
@@ -162,7 +162,8 @@ impl Judged {
         let runs: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
         let mut places = locate::places(series, &excess, &runs);
         if places.is_empty() {
-            let range = Range { quantity: "t_s", from: Some(0.0), to: Some(series.longest_s()), name: None };
+            let range =
+                Range { quantity: "t_s", from: Some(0.0), to: Some(series.longest_s() + 1.0), name: None };
             let statement = "all through the drives, nowhere in particular".into();
             places.push(Place { kind: "time", statement, range, share_of_excess: 1.0 });
         }

@@ -22,7 +22,7 @@ pub(crate) fn doubts(
     robot: &Robot,
     recording: &Recording,
     series: &Series,
-    before: &Baseline,
+    fitted: &Baseline,
 ) -> Result<Vec<String>, Error> {
     let mut said = Vec::new();
     let given = follows(robot, series)?;
@@ -44,7 +44,7 @@ pub(crate) fn doubts(
             given.ratio
         ));
     }
-    for (knob, moved) in before.knobs.iter().zip(&before.moved) {
+    for (knob, moved) in fitted.knobs.iter().zip(&fitted.moved) {
         if moved.abs() > FAR_SIGMAS {
             said.push(format!(
                 "to describe the drives, `{}` had to move by {:.0} times the uncertainty of the robot's file",

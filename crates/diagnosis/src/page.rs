@@ -98,13 +98,13 @@ fn section(title: &str, inside: &str) -> String {
 fn finding(found: &Finding) -> String {
     let mut rows = String::new();
     for parameter in &found.parameters {
-        let unit = if parameter.unit == "1" { "" } else { parameter.unit };
+        let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
         let interval = parameter.interval_95.map_or(String::new(), |[low, high]| {
-            format!("between {} and {} {unit}, 95 % sure", number(low), number(high))
+            format!("between {} and {}{unit}, 95 % sure", number(low), number(high))
         });
         let name = without_unit(parameter.name);
         let _ =
-            write!(rows, "<tr><td>{name}<td class=number>{} {unit}<td>{interval}", number(parameter.value));
+            write!(rows, "<tr><td>{name}<td class=number>{}{unit}<td>{interval}", number(parameter.value));
     }
     let others: Vec<String> = found.indistinguishable_from.iter().map(|n| plain(n).to_owned()).collect();
     let or = if others.is_empty() {

@@ -41,9 +41,9 @@ pub struct Search {
     /// What was found, in the order in which it was.
     pub found: Vec<Found>,
     /// The robot with nothing found.
-    pub before: Baseline,
+    pub(crate) before: Baseline,
     /// The robot with all that was found.
-    pub after: Baseline,
+    pub(crate) after: Baseline,
     /// Whitened errors that nothing took, before and after.
     pub left: [Vec<f64>; 2],
 }

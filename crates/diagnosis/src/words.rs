@@ -1,39 +1,46 @@
 //! Sentences that a person reads.
 
-use crate::report::{Diagnosis, Verdict};
+use crate::report::{Diagnosis, Finding, Verdict};
 
 /// The verdict in one sentence.
 pub(crate) fn sentence(found: &Diagnosis) -> String {
-    let findings = &found.findings;
-    let said: Vec<&str> = findings.iter().map(|finding| finding.statement.as_str()).collect();
     let left = 100.0 * found.explainable[1];
+    let said = said(&found.findings);
     match found.verdict {
         Verdict::Consistent => format!(
             "Nothing is missing: where it was not fitted, the model is off by {:.1} W, and what is left follows nothing that was \
              recorded.",
             found.corrected.held_out_rmse_w
         ),
-        Verdict::Explained => format!("{}.", said.join("; besides, ")),
-        Verdict::Ambiguous => {
-            let mut others: Vec<String> = findings
-                .iter()
-                .flat_map(|f| f.indistinguishable_from.iter().map(|name| plain(name).to_owned()))
-                .collect();
-            others.sort();
-            others.dedup();
-            let others = listed(&others);
-            format!("{}; or it is {others}, which these drives cannot tell apart.", said.join("; besides, "))
-        }
-        Verdict::Unexplained if findings.is_empty() => format!(
+        Verdict::Explained | Verdict::Ambiguous => format!("{said}."),
+        Verdict::Unexplained if found.findings.is_empty() => format!(
             "Something is missing that no known mechanism describes: {left:.0} % of the remaining error follows from what was \
              recorded."
         ),
         Verdict::Unexplained => format!(
-            "{}; but that is not all: {left:.0} % of the remaining error still follows from what was recorded, and no known \
-             mechanism describes it.",
-            said.join("; besides, ")
+            "{said}; but that is not all: {left:.0} % of the remaining error still follows from what was recorded, and no known \
+             mechanism describes it."
         ),
     }
+}
+
+/// All findings, each with what it cannot be told from.
+fn said(findings: &[Finding]) -> String {
+    let mut text = String::new();
+    for finding in findings {
+        if text.is_empty() {
+            text += &finding.statement;
+        } else {
+            text += "; besides, ";
+            text += &small(&finding.statement);
+        }
+        if !finding.indistinguishable_from.is_empty() {
+            let others: Vec<String> =
+                finding.indistinguishable_from.iter().map(|name| plain(name).to_owned()).collect();
+            text += &format!(" (or it is {}: these drives cannot tell)", listed(&others));
+        }
+    }
+    text
 }
 
 /// A mechanism's name as people say it.
@@ -76,4 +83,32 @@ pub(crate) fn listed(names: &[String]) -> String {
 pub(crate) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+/// The first letter made small.
+fn small(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().collect::<String>() + letters.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_mechanism_has_a_name_in_plain_words() {
+        for mechanism in model::mechanism::ALL {
+            let words = plain(mechanism.name());
+            assert!(!words.contains('_') && (words.contains(' ') || words == "wind"), "{words}");
+        }
+    }
+
+    #[test]
+    fn names_are_listed_as_people_do() {
+        let names = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(
+            (listed(&names), listed(&names[..1]), listed(&[])),
+            ("a, b or c".into(), "a".into(), String::new())
+        );
+    }
 }
