@@ -149,8 +149,7 @@ fn shaded(trace: &Trace, places: &[Place]) -> Vec<[f64; 2]> {
             own && range.from.is_none_or(|from| t_s >= from) && range.to.is_none_or(|to| t_s < to)
         };
         let inside: Vec<usize> = (0..trace.t_s.len()).filter(|i| is_inside(*i)).collect();
-        // A second begins up to its length before its drive does.
-        if inside.len() + trace.runs.len() >= trace.t_s.len() {
+        if inside.len() == trace.t_s.len() {
             continue;
         }
         if let [first, .., last] = inside[..] {
