@@ -162,8 +162,7 @@ impl Judged {
         let runs: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
         let mut places = locate::places(series, &excess, &runs);
         if places.is_empty() {
-            let range =
-                Range { quantity: "t_s", from: Some(0.0), to: Some(series.longest_s() + 1.0), name: None };
+            let range = Range { quantity: "t_s", from: None, to: None, name: None };
             let statement = "all through the drives, nowhere in particular".into();
             places.push(Place { kind: "time", statement, range, share_of_excess: 1.0 });
         }
