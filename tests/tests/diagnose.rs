@@ -137,6 +137,41 @@ fn a_load_lowers_the_held_out_error_once_it_is_found() {
 }
 
 /// Swaps two columns of a table by renaming them.
+#[test]
+fn a_healthy_drive_is_consistent_without_healthy_drives_beside_it_too() {
+    let folder = folder(&json!([]));
+    let made =
+        joulepath(folder.path(), &["diagnose", "--recording", "suspect.csv", "--out", "out", "--json"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    assert_eq!(report["verdict"], "consistent", "{report}");
+    let notes = report["notes"].to_string();
+    assert!(notes.contains("--reference"), "it says what it could not tell: {notes}");
+}
+
+#[test]
+fn a_payload_that_is_taken_up_on_the_way_is_named_with_its_mass_and_time() {
+    let folder = folder(&json!([{"effect": "payload", "strength": 12, "onset_s": 300}]));
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "healthy.csv", "--out", "out", "--json"];
+    let made = joulepath(folder.path(), &arguments);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    let finding = &report["findings"][0];
+    let alternatives = finding["indistinguishable_from"].as_array().unwrap();
+    let is_named = finding["mechanism"] == "payload" || alternatives.iter().any(|name| name == "payload");
+    assert!(is_named && alternatives.len() <= 2, "{finding}");
+    let value = |name: &str| {
+        let parameters = finding["parameters"].as_array().unwrap();
+        parameters.iter().find(|p| p["name"] == name).and_then(|p| p["value"].as_f64())
+    };
+    let from_s = value("from_s").unwrap();
+    assert!((from_s - 300.0).abs() < 60.0, "onset at {from_s} s");
+    if let Some(mass_kg) = value("mass_kg") {
+        assert!((mass_kg - 12.0).abs() < 3.0, "{mass_kg} kg");
+    }
+}
+
 fn swap_columns(folder: &Path, name: &str, out: &str, [a, b]: [&str; 2]) {
     let table = std::fs::read_to_string(folder.join(name)).unwrap();
     let (head, rows) = table.split_once('\n').unwrap();

@@ -30,6 +30,10 @@ const LITTLE: f64 = 0.06;
 /// Share of what was explainable before that may remain so.
 const REMAINS: f64 = 0.35;
 
+/// What a diagnosis without healthy drives has to say of itself.
+const ALONE: &str = "without drives known to be healthy (`--reference`) only what sets in during a drive or grows with time can be \
+     told; what acts all the time looks like what the model itself misses";
+
 /// Says where model and recording differ, which physics was left out, how big it is, and how sure that is.
 ///
 /// `healthy` are drives of the same robot known to be in order; what they share with the suspect ones is not looked for.
@@ -62,6 +66,9 @@ pub fn diagnose(
     let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
     let mut doubts = doubts(robot, suspect, &series, &found.after)?;
     doubts.append(&mut notes);
+    if healthy.is_none() {
+        doubts.push(ALONE.to_owned());
+    }
     let findings = judged.findings(&found);
     let mut diagnosis = Diagnosis {
         verdict: judged.verdict(&found),

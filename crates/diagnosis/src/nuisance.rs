@@ -7,15 +7,15 @@ const SHARE: f64 = 0.03;
 
 /// Functions of the inputs, scaled to one sigma of what they may take [W].
 ///
-/// With healthy drives beside the suspect ones they are as many as the model could be wrong by: what both share is nobody's
-/// mechanism. Without, they would take the mechanisms' own part, and only skid may bend gently with how tight a turn is.
-pub(crate) fn columns(averages: &[Average], predicted_w: &[f64], healthy: bool) -> Vec<Vec<f64>> {
+/// What suspect and healthy drives share is nobody's mechanism. Without healthy drives they take the part of mechanisms that
+/// act all the time as well, which then cannot be told from what the model is wrong by and are not named: with a few functions
+/// only, a healthy drive alone was taken for one on soft ground.
+pub(crate) fn columns(averages: &[Average], predicted_w: &[f64]) -> Vec<Vec<f64>> {
     let mean_w = predicted_w.iter().map(|p| p.abs()).sum::<f64>() / predicted_w.len().max(1) as f64;
-    let functions: &[fn(&Input) -> f64] = if healthy { &SHARED } else { &ALONE };
     let channels = averages.iter().map(|a| a.channel).max().map_or(0, |c| c + 1);
     let mut columns = Vec::new();
     for channel in 0..channels {
-        for function in functions {
+        for function in SHARED {
             let of = |a: &Average| if a.channel == channel { function(&a.input) } else { 0.0 };
             let values: Vec<f64> = averages.iter().map(of).collect();
             let size = (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt();
@@ -26,8 +26,6 @@ pub(crate) fn columns(averages: &[Average], predicted_w: &[f64], healthy: bool) 
     }
     columns
 }
-
-const ALONE: [fn(&Input) -> f64; 1] = [|x| tightness(x) * x.difference_mps.abs()];
 
 const SHARED: [fn(&Input) -> f64; 14] = [
     |x| x.rim_mps.abs(),

@@ -38,7 +38,7 @@ impl Plain {
         let base = Baseline::fit(series, robot, &[])?;
         let candidates = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
         let mut always = base.columns.clone();
-        always.extend(nuisance::columns(&series.averages, &base.predicted_w, series.has_healthy()));
+        always.extend(nuisance::columns(&series.averages, &base.predicted_w));
         let count = base.predicted_w.len().max(1) as f64;
         Ok(Plain {
             errors_w: DVector::from_vec(differences(&series.recorded, &base.predicted_w)),

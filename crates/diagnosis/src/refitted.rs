@@ -27,7 +27,7 @@ impl Refitted {
     pub(crate) fn new(series: &Series, base: &Baseline, found: &[&Found]) -> Result<Self, Error> {
         let mut columns = base.columns.clone();
         let mut before: Vec<f64> = base.moved.iter().map(|moved| -moved).collect();
-        let nuisances = nuisance::columns(&series.averages, &base.predicted_w, series.has_healthy());
+        let nuisances = nuisance::columns(&series.averages, &base.predicted_w);
         before.extend(vec![0.0; nuisances.len()]);
         columns.extend(nuisances);
         let mut known = vec![1.0; columns.len()];

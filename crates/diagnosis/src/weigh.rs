@@ -40,7 +40,7 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool) -> 
     let white = |values: &[f64]| noise.whiten(values, about_w, &series.averages);
     let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
     let mut offset: Vec<f64> = base.moved.iter().map(|m| -m).collect();
-    let mut nuisances = nuisance::columns(&series.averages, about_w, series.has_healthy());
+    let mut nuisances = nuisance::columns(&series.averages, about_w);
     if series.has_healthy() {
         nuisances.push(base.delays[1].clone());
     }

@@ -20,8 +20,8 @@ impl Mechanism for TowedLoad {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[
-            Parameter { name: "rolling_n", unit: "N", bounds: [-5.0, 500.0], probe: 1.0 },
-            Parameter { name: "mass_kg", unit: "kg", bounds: [-5.0, 500.0], probe: 1.0 },
+            Parameter { name: "rolling_n", unit: "N", bounds: [0.0, 500.0], probe: 1.0 },
+            Parameter { name: "mass_kg", unit: "kg", bounds: [0.0, 500.0], probe: 1.0 },
         ]
     }
 
