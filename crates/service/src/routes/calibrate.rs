@@ -8,11 +8,7 @@ use std::{
     },
 };
 
-use axum::{
-    Json,
-    extract::State,
-    http::{HeaderName, StatusCode, header},
-};
+use axum::extract::State;
 use calibration::{Method, Options, lift};
 use model::Robot;
 use recording::{Map, Recording, Watch};
@@ -20,7 +16,10 @@ use serde::Deserialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::{jobs::JobAnswer, robots::RobotChoice};
+use super::{
+    jobs::{Accepted, JobAnswer, accepted},
+    robots::RobotChoice,
+};
 use crate::{
     Engine,
     body::JsonBody,
@@ -71,14 +70,12 @@ pub struct CalibrateRequest {
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(request): JsonBody<CalibrateRequest>,
-) -> Result<(StatusCode, [(HeaderName, String); 1], Json<JobAnswer>), Problem> {
+) -> Result<Accepted, Problem> {
     let own = engine.clone();
     let work = engine.on_disk(move || Work::prepare(&own, request)).await?;
     let own = engine.clone();
     let job = engine.start("calibrate", move |job| work.run(&own, job))?;
-    let location = format!("/v1/jobs/{}", job.id);
-    let status = job.status();
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(JobAnswer::of(&job, status))))
+    Ok(accepted(&job))
 }
 
 /// A calibration whose request was found right.

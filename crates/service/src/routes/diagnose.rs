@@ -2,11 +2,7 @@
 
 use std::sync::Arc;
 
-use axum::{
-    Json,
-    extract::State,
-    http::{HeaderName, StatusCode, header},
-};
+use axum::extract::State;
 use diagnosis::diagnose;
 use model::Robot;
 use recording::Map;
@@ -16,7 +12,7 @@ use utoipa::ToSchema;
 
 use super::{
     calibrate::{MOST_RECORDINGS, notes, read},
-    jobs::JobAnswer,
+    jobs::{Accepted, JobAnswer, accepted},
     robots::RobotChoice,
 };
 use crate::{
@@ -63,14 +59,12 @@ pub struct DiagnoseRequest {
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(request): JsonBody<DiagnoseRequest>,
-) -> Result<(StatusCode, [(HeaderName, String); 1], Json<JobAnswer>), Problem> {
+) -> Result<Accepted, Problem> {
     let own = engine.clone();
     let work = engine.on_disk(move || Work::prepare(&own, request)).await?;
     let own = engine.clone();
     let job = engine.start("diagnose", move |job| work.run(&own, job))?;
-    let location = format!("/v1/jobs/{}", job.id);
-    let status = job.status();
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(JobAnswer::of(&job, status))))
+    Ok(accepted(&job))
 }
 
 /// A diagnosis whose request was found right.

@@ -5,7 +5,7 @@ use std::{convert::Infallible, sync::Arc};
 use axum::{
     Json,
     extract::State,
-    http::{HeaderMap, StatusCode},
+    http::{HeaderMap, HeaderName, StatusCode, header},
     response::{
         IntoResponse, Response,
         sse::{Event, KeepAlive, Sse},
@@ -23,6 +23,15 @@ use crate::{
     job::{Job, JobState, Progress, Status},
     problem::Problem,
 };
+
+/// What starting a job answers: where to follow it, and how it is.
+pub(crate) type Accepted = (StatusCode, [(HeaderName, String); 1], Json<JobAnswer>);
+
+/// The answer to a request that has started a job.
+pub(crate) fn accepted(job: &Job) -> Accepted {
+    let location = format!("/v1/jobs/{}", job.id);
+    (StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(JobAnswer::of(job, job.status())))
+}
 
 /// A job.
 #[derive(Debug, Serialize, ToSchema)]
