@@ -8,6 +8,7 @@ use crate::{
     alternatives::{Explanation, alternatives, detectable},
     baseline::{Baseline, differences},
     corrected::corrected,
+    discover::{Discovered, discover},
     doubts::doubts,
     explainable::explained_share,
     locate,
@@ -34,6 +35,10 @@ const REMAINS: f64 = 0.35;
 const ALONE: &str = "without drives known to be healthy (`--reference`) only what sets in during a drive or grows with time can be \
      told; what acts all the time looks like what the model itself misses";
 
+/// What a finding outside the list has to say of itself.
+const OUTSIDE: &str = "what is outside the list is described, not understood: no robot's file can hold it, and the corrected \
+     robot is without it";
+
 /// Says where model and recording differ, which physics was left out, how big it is, and how sure that is.
 ///
 /// `healthy` are drives of the same robot known to be in order; what they share with the suspect ones is not looked for.
@@ -55,12 +60,17 @@ pub fn diagnose(
     }
     let found = search(&series, robot, healthy, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
     progress("judging what is left", 0.7);
-    let judged = Judged::new(&series, robot, &found)?;
+    let mut judged = Judged::new(&series, robot, &found)?;
+    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
+    // Alone, what the model itself misses would pass for a discovery.
+    if judged.verdict(&found) == Verdict::Unexplained && series.has_healthy() {
+        progress("looking outside the list", 0.75);
+        judged.take_up(&series, &found, discover(&series, &found.after, &applied, &found.null)?)?;
+    }
     progress("locating the difference", 0.8);
     let places = judged.places(&series, &found, suspect)?;
     progress("planning the next drive", 0.85);
     let next_drive = decisive_drive(&series, robot, &found)?;
-    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
     let (corrected_robot, mut notes) = corrected(&found.after.robot, &applied, &series.surfaces());
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
@@ -69,7 +79,10 @@ pub fn diagnose(
     if healthy.is_none() {
         doubts.push(ALONE.to_owned());
     }
-    let findings = judged.findings(&found);
+    let findings = judged.findings(&series, &found);
+    if !judged.discovered.is_empty() {
+        doubts.push(OUTSIDE.to_owned());
+    }
     let mut diagnosis = Diagnosis {
         verdict: judged.verdict(&found),
         sentence: String::new(),
@@ -99,18 +112,20 @@ struct Judged {
     held_out_rmse_w: Vec<f64>,
     explainable: [f64; 2],
     filed_w: Vec<f64>,
+    /// Terms outside the list, which the last steps have.
+    discovered: Vec<Discovered>,
 }
 
 impl Judged {
     fn new(series: &Series, file: &Robot, found: &Search) -> Result<Self, Error> {
         let filed_w = series.predict(file, &[])?;
         let filed_errors_w = differences(&series.recorded, &filed_w);
-        let mut steps = vec![Refitted::new(series, &found.before, &[])?];
+        let mut steps = vec![Refitted::new(series, &found.before, &[], &[])?];
         for count in 1..=found.found.len() {
             let part: Vec<&Found> = found.found.iter().take(count).collect();
             let applied: Vec<Applied> = part.iter().map(|f| f.applied.clone()).collect();
             let base = Baseline::fit(series, file, &applied)?;
-            steps.push(Refitted::new(series, &base, &part)?);
+            steps.push(Refitted::new(series, &base, &part, &[])?);
         }
         let held_out_rmse_w: Vec<f64> = steps.iter().map(|step| rmse_w(series, &step.held_out_w)).collect();
         let last = steps.len() - 1;
@@ -130,7 +145,25 @@ impl Judged {
         } else {
             explained_share(series, &found.after, &steps[last].errors_w)
         };
-        Ok(Judged { baseline, corrected, steps, held_out_rmse_w, explainable: [before, after], filed_w })
+        let explainable = [before, after];
+        let discovered = Vec::new();
+        Ok(Judged { baseline, corrected, steps, held_out_rmse_w, explainable, filed_w, discovered })
+    }
+
+    /// Adds terms outside the list, one after the other.
+    fn take_up(&mut self, series: &Series, found: &Search, discovered: Vec<Discovered>) -> Result<(), Error> {
+        let mechanisms: Vec<&Found> = found.found.iter().collect();
+        for count in 1..=discovered.len() {
+            let step = Refitted::new(series, &found.after, &mechanisms, &discovered[..count])?;
+            self.corrected = CorrectedFit {
+                rmse_w: rmse_w(series, &step.errors_w),
+                held_out_rmse_w: rmse_w(series, &step.held_out_w),
+            };
+            self.held_out_rmse_w.push(self.corrected.held_out_rmse_w);
+            self.steps.push(step);
+        }
+        self.discovered = discovered;
+        Ok(())
     }
 
     fn verdict(&self, found: &Search) -> Verdict {
@@ -145,9 +178,12 @@ impl Judged {
         }
     }
 
-    fn findings(&self, found: &Search) -> Vec<Finding> {
-        let rmse = self.held_out_rmse_w.windows(2);
-        found.found.iter().zip(rmse).map(|(f, rmse)| finding(f, [rmse[0], rmse[1]])).collect()
+    fn findings(&self, series: &Series, found: &Search) -> Vec<Finding> {
+        let mut rmse_w = self.held_out_rmse_w.windows(2).map(|pair| [pair[0], pair[1]]);
+        let mut findings: Vec<Finding> =
+            found.found.iter().zip(&mut rmse_w).map(|(f, rmse_w)| finding(f, rmse_w)).collect();
+        findings.extend(self.discovered.iter().zip(rmse_w).map(|(d, rmse_w)| d.finding(series, rmse_w)));
+        findings
     }
 
     /// Where the errors are that the findings take away; where nothing was found, those beyond noise.

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
-const LEVEL: f64 = 0.01;
+pub(crate) const LEVEL: f64 = 0.01;
 /// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
 const LEAST_VISITS: usize = 6;
 /// Standard errors by which the fit of blocks that were held out has to gain.
@@ -42,13 +42,8 @@ pub(crate) fn best(
         }
         let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
         let system = if is_delay { &delay_apart } else { &all_fitted };
-        let acts = acting(system, series, one);
-        if acts.iter().filter(|acts| **acts).count() < LEAST_VISITS {
-            return None;
-        }
         let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white(c)).collect();
-        let gains = system.held_out(&columns, FOLDS);
-        Some((place, significant_gain(&gains, system, series, &acts)?))
+        Some((place, passes(system, series, &one.evidence, &columns)?))
     });
     let Some((place, gain)) = passing else { return Ok(None) };
     let chosen = weighed.remove(place);
@@ -62,16 +57,31 @@ pub(crate) fn best(
     Ok(Some((weighed, gain)))
 }
 
+/// The gain on held-out blocks of what has enough visits and gains significantly.
+pub(crate) fn passes(
+    system: &System,
+    series: &Series,
+    evidence: &Evidence,
+    columns: &[Vec<f64>],
+) -> Option<f64> {
+    let acts = acting(system, series, evidence);
+    if acts.iter().filter(|acts| **acts).count() < LEAST_VISITS {
+        return None;
+    }
+    let gains = system.held_out(columns, FOLDS);
+    significant_gain(&gains, system, series, &acts)
+}
+
 /// Cosine between what two candidates explain of the rows.
-fn cosine(a: &Evidence, b: &Evidence, rows: usize) -> f64 {
+pub(crate) fn cosine(a: &Evidence, b: &Evidence, rows: usize) -> f64 {
     let along = |e: &Evidence| (&e.own * DVector::from_column_slice(&e.values)).rows(0, rows).into_owned();
     let (a, b) = (along(a), along(b));
     a.dot(&b).abs() / (a.norm() * b.norm()).max(1e-300)
 }
 
 /// Blocks of the suspect drives in which a candidate acts: where it changes more than a tenth of what it does in a mean block.
-fn acting(system: &System, series: &Series, one: &Weighed) -> Vec<bool> {
-    let along = &one.evidence.own * DVector::from_column_slice(&one.evidence.values);
+fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
+    let along = &one.own * DVector::from_column_slice(&one.values);
     let block = blocks(series);
     let mut size = vec![0.0; system.blocks()];
     let mut suspect = vec![false; system.blocks()];

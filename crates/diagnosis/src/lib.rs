@@ -11,6 +11,7 @@ mod candidates;
 mod chart;
 mod corrected;
 mod diagnose;
+mod discover;
 mod doubts;
 mod error;
 mod evidence;
@@ -31,6 +32,7 @@ mod refitted;
 pub mod report;
 mod search;
 mod series;
+mod term;
 mod weigh;
 mod words;
 

@@ -4,6 +4,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     candidates,
+    discover::Discovered,
     linear::{FOLDS, Folded},
     nuisance,
     search::Found,
@@ -20,11 +21,17 @@ pub(crate) struct Refitted {
 }
 
 impl Refitted {
-    /// Fits the robot, what models miss of healthy drives, and the mechanisms' numbers about a baseline that has them.
+    /// Fits the robot, what models miss of healthy drives, and the mechanisms' numbers about a baseline that has them, with the
+    /// sizes of terms that were discovered.
     ///
     /// # Errors
     /// A surface that the robot does not know.
-    pub(crate) fn new(series: &Series, base: &Baseline, found: &[&Found]) -> Result<Self, Error> {
+    pub(crate) fn new(
+        series: &Series,
+        base: &Baseline,
+        found: &[&Found],
+        discovered: &[Discovered],
+    ) -> Result<Self, Error> {
         let mut columns = base.columns.clone();
         let mut before: Vec<f64> = base.moved.iter().map(|moved| -moved).collect();
         let nuisances = nuisance::columns(&series.averages, &base.predicted_w);
@@ -48,6 +55,9 @@ impl Refitted {
             known.extend(vec![0.0; linear.len()]);
             before.extend(vec![0.0; linear.len()]);
         }
+        columns.extend(discovered.iter().map(|one| one.column_w.clone()));
+        known.extend(vec![0.0; discovered.len()]);
+        before.extend(vec![0.0; discovered.len()]);
         let errors_w = differences(&series.recorded, &base.predicted_w);
         let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
         let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white(column)).collect();

@@ -46,6 +46,8 @@ pub struct Search {
     pub(crate) after: Baseline,
     /// Whitened errors that nothing took, before and after.
     pub left: [Vec<f64>; 2],
+    /// By how much evidence is discounted.
+    pub(crate) null: Null,
 }
 
 /// Looks for mechanisms in the suspect drives; `healthy` are those that the series holds beside them.
@@ -78,7 +80,7 @@ pub fn search(
         }
     }
     let left = [left_before, rows(series, &system(series, &after))];
-    Ok(Search { found, before, after, left })
+    Ok(Search { found, before, after, left, null })
 }
 
 /// Fits every rival in full and takes the one that explains most; those that explain as much stay beside it.

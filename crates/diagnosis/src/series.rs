@@ -33,6 +33,8 @@ struct Part {
     suspect: bool,
     /// By row [rad].
     heading_rad: Vec<f64>,
+    /// By row, above the mean [m].
+    height_m: Vec<f64>,
     /// By row: beginning of the run [s].
     began_s: Vec<f64>,
 }
@@ -80,6 +82,8 @@ pub struct Input {
     pub accel_mps2: f64,
     /// Heading; NaN where unknown [rad].
     pub heading_rad: f64,
+    /// Height above the mean of the drives of the same kind; NaN where unknown [m].
+    pub height_m: f64,
 }
 
 impl Series {
@@ -177,7 +181,8 @@ impl Part {
             let first = run.rows.clone().next().map_or(0.0, |row| recording.t_s[row]);
             began_s[run.rows.clone()].fill(first);
         }
-        Ok(Part { heading_rad: headings(recording, &drives), began_s, drives, suspect })
+        let heading_rad = headings(recording, &drives);
+        Ok(Part { heading_rad, height_m: heights(recording), began_s, drives, suspect })
     }
 
     fn averages(&self, channel: usize, first_run: usize) -> Vec<Average> {
@@ -196,6 +201,7 @@ impl Part {
             mean(&|i| rows[i].rim_mps2.sum() / 2.0),
             mean(&|i| self.heading_rad[i].cos()),
             mean(&|i| self.heading_rad[i].sin()),
+            mean(&|i| self.height_m[i]),
         ];
         let of = |(i, average): (usize, &average::Average)| Average {
             channel,
@@ -210,6 +216,7 @@ impl Part {
                 roll_rad: inputs[4][i],
                 accel_mps2: inputs[5][i],
                 heading_rad: inputs[7][i].atan2(inputs[6][i]),
+                height_m: inputs[8][i],
             },
         };
         self.drives.averages.iter().enumerate().map(of).collect()
@@ -310,6 +317,14 @@ fn seen_w(
     calibration::power::seen_w(robot, form, row, &power).map(|true_w| {
         acting.iter().fold(true_w, |w, applied| applied.mechanism.reading_w(&applied.values, w))
     })
+}
+
+/// Heights by row above their mean; NaN where there are none.
+fn heights(recording: &Recording) -> Vec<f64> {
+    let Some(heights_m) = recording.channel(Channel::Z) else { return vec![f64::NAN; recording.rows()] };
+    let known = || heights_m.iter().filter(|z| z.is_finite());
+    let mean_m = known().sum::<f64>() / known().count().max(1) as f64;
+    heights_m.iter().map(|z| z - mean_m).collect()
 }
 
 /// Headings by row: recorded, or from the yaw rate or the wheels, beginning at 0.

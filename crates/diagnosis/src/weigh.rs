@@ -21,21 +21,26 @@ pub(crate) const BLOCK_S: f64 = 20.0;
 
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
-    system_by(series, base, base, true)
+    system_by(series, base, base, true, &[])
+}
+
+/// The same beside columns that are fitted too.
+pub(crate) fn system_with(series: &Series, base: &Baseline, beside: &[Vec<f64>]) -> System {
+    system_by(series, base, base, true, beside)
 }
 
 /// The same for the candidate that is a delay itself.
 pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
-    system_by(series, base, base, false)
+    system_by(series, base, base, false, &[])
 }
 
 /// How well a fit explains the drives, by the noise of another, so that fits can be compared: squared errors that nothing
 /// takes, what departures from the robot's file cost included.
 pub(crate) fn misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
-    system_by(series, fit, by, true).left().norm_squared()
+    system_by(series, fit, by, true, &[]).left().norm_squared()
 }
 
-fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool) -> System {
+fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, beside: &[Vec<f64>]) -> System {
     let (noise, about_w): (&Noise, &[f64]) = (&by.noise, &by.predicted_w);
     let white = |values: &[f64]| noise.whiten(values, about_w, &series.averages);
     let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
@@ -49,7 +54,11 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool) -> 
     }
     offset.extend(vec![0.0; nuisances.len()]);
     columns.extend(nuisances.iter().map(|c| white(c)));
-    let known = vec![1.0; columns.len()];
+    let mut known = vec![1.0; columns.len()];
+    // Of what stands beside nothing is known before.
+    columns.extend(beside.iter().map(|c| white(c)));
+    offset.extend(vec![0.0; beside.len()]);
+    known.extend(vec![0.0; beside.len()]);
     let errors = white(&differences(&series.recorded, &base.predicted_w));
     System::new(errors, &columns, &known, &offset, blocks(series))
 }
@@ -104,9 +113,7 @@ pub(crate) fn weigh_all(
                 return None;
             }
             let count = columns.len() as f64;
-            let freedom = (blocks as f64 - count - 1.0).max(2.0);
-            let wald = evidence.wald / null.discount(name(&candidate), blocks);
-            let chance = FisherSnedecor::new(count, freedom).ok()?.sf(wald / count);
+            let (wald, chance) = judged(&evidence, null.discount(name(&candidate), blocks), blocks)?;
             let score = wald - count * (blocks as f64).ln();
             let tried = tried.get(name(&candidate)).copied().unwrap_or(1);
             Some(Weighed { candidate, evidence, tried, score, p_value: (chance * all).min(1.0) })
@@ -121,6 +128,14 @@ pub(crate) fn weigh_all(
         is_new
     });
     Ok((weighed, blocks))
+}
+
+/// Discounted evidence, and the chance of as much.
+pub(crate) fn judged(evidence: &Evidence, discount: f64, blocks: usize) -> Option<(f64, f64)> {
+    let count = evidence.values.len() as f64;
+    let freedom = (blocks as f64 - count - 1.0).max(2.0);
+    let wald = evidence.wald / discount;
+    Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
 }
 
 /// A delay of less than a row, but for rounding, is the sensors' business.

@@ -13,6 +13,9 @@ pub(crate) fn sentence(found: &Diagnosis) -> String {
             found.corrected.held_out_rmse_w
         ),
         Verdict::Explained | Verdict::Ambiguous => format!("{said}."),
+        Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == crate::discover::UNKNOWN) => {
+            format!("{said}.")
+        }
         Verdict::Unexplained if found.findings.is_empty() => format!(
             "Something is missing that no known mechanism describes: {left:.0} % of the remaining error follows from what was \
              recorded."
