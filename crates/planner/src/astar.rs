@@ -13,6 +13,7 @@ use crate::{
     prefetch::prefetch,
     queue::BUCKET_SHIFT,
     table::CostTable,
+    tile_builder::{QUAD, code_place},
     walk_back::walk_back,
 };
 
@@ -219,7 +220,7 @@ impl Passes<'_> {
             }
             if let Some(soon) = queue.peek(CODES_AHEAD) {
                 if let Some(codes) = table.codes_at_hand(Layout::tile(soon)) {
-                    prefetch(codes, Layout::within(soon) * stride);
+                    prefetch(codes, code_place(Layout::within(soon), stride));
                 }
                 labels.prefetch(soon);
             }
@@ -227,9 +228,9 @@ impl Passes<'_> {
                 queue.push(key, state);
                 return (best, Ended::Late);
             };
-            let codes = &codes[Layout::within(state) * stride..][..stride];
+            let codes = &codes[code_place(Layout::within(state), stride)..];
             let moves = &self.moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];
-            for (code, step) in codes.iter().zip(moves) {
+            for (code, step) in codes.iter().step_by(QUAD).zip(moves) {
                 if *code == FORBIDDEN {
                     continue;
                 }
@@ -298,7 +299,7 @@ impl Weighted {
 
 /// All motions by heading, `stride` slots each.
 fn moves(lattice: &Lattice) -> Vec<Move> {
-    let stride = lattice.motions_per_state().next_multiple_of(4);
+    let stride = lattice.motions_per_state();
     let mut moves = vec![Move::default(); HEADINGS * stride];
     for (heading, motions) in lattice.motions.iter().enumerate() {
         for (i, motion) in motions.iter().enumerate() {

@@ -10,6 +10,7 @@ use crate::{
     patience::Patience,
     queue::{BUCKET_SHIFT, BucketQueue},
     table::CostTable,
+    tile_builder::{QUAD, code_place},
 };
 
 /// Which costs a search adds up.
@@ -45,18 +46,17 @@ struct Step {
 const CLOCK_EVERY: u64 = 2048;
 
 impl<'t> Dijkstra<'t> {
-    /// Seeds come with the cost that lies beyond them, in the objective's unit.
+    /// Seeds come with the cost that lies beyond them, in the table's units.
     pub(crate) fn new(
         table: &'t CostTable,
         direction: Direction,
-        seeds: &[(State, f64)],
+        seeds: &[(State, u32)],
         patience: &'t Patience,
     ) -> Self {
         let layout = &table.lattice().layout;
         let mut labels = Labels::unlogged(layout);
         let mut queue = BucketQueue::new(BUCKET_SHIFT);
         for &(seed, beyond) in seeds {
-            let beyond = (beyond * table.units()) as u32;
             if labels.lower(layout.pack(seed), beyond) {
                 queue.push(beyond, layout.pack(seed));
             }
@@ -116,7 +116,7 @@ impl<'t> Dijkstra<'t> {
                 Direction::FromStarts => state,
             };
             let codes = self.table.codes(Layout::tile(driven_from), self.patience)?;
-            let place = Layout::within(driven_from) * stride + step.motion;
+            let place = code_place(Layout::within(driven_from), stride) + step.motion * QUAD;
             let code = codes.get(place).copied().unwrap_or(FORBIDDEN);
             let total = cost.saturating_add(decode(code));
             if code != FORBIDDEN && self.labels.lower(next, total) {

@@ -14,7 +14,7 @@ pub(crate) struct Displacement {
 impl Displacement {
     /// All steps of a lattice's motions from south to north; turning on the spot is none.
     pub(crate) fn of(lattice: &Lattice) -> Vec<Self> {
-        let stride = lattice.motions_per_state().next_multiple_of(4);
+        let stride = lattice.motions_per_state();
         let mut steps = BTreeMap::<(i32, i32), Vec<usize>>::new();
         for (heading, motions) in lattice.motions.iter().enumerate() {
             for (index, motion) in motions.iter().enumerate() {

@@ -4,13 +4,14 @@ use terrain::Cell;
 
 use crate::{
     cost::{ENDLESS, FORBIDDEN, decode},
-    dijkstra::{Dijkstra, Direction},
+    dijkstra::Direction,
     field::UNREACHED,
     heading::Heading,
-    labels::Labels,
     lattice::State,
     layout::Layout,
     patience::Patience,
+    pose_costs::PoseCosts,
+    pose_growth::grow,
     table::CostTable,
 };
 
@@ -33,7 +34,7 @@ use crate::{
 ///
 /// [`Lattice::potential_j`]: crate::Lattice::potential_j
 pub struct ExactField {
-    labels: Labels,
+    costs: PoseCosts,
     layout: Layout,
     units: f64,
     /// Costs beyond are not known to be the least.
@@ -75,10 +76,10 @@ impl ExactField {
         patience: &Patience,
     ) -> Option<Self> {
         let limit = ((limit * table.units()) as u32).min(ENDLESS - 1);
-        let mut search = Dijkstra::new(table, direction, seeds, patience);
-        search.settle_within(limit)?;
-        let layout = table.lattice().layout;
-        Some(ExactField { labels: search.labels, layout, units: table.units(), limit })
+        let seeds: Vec<(State, u32)> =
+            seeds.iter().map(|(seed, beyond)| (*seed, (beyond * table.units()) as u32)).collect();
+        let costs = grow(table, direction, &seeds, limit, patience)?;
+        Some(ExactField { costs, layout: table.lattice().layout, units: table.units(), limit })
     }
 
     /// Least cost of a state, in the objective's unit; `None` where no motions lead, or none within the limit.
@@ -97,13 +98,13 @@ impl ExactField {
 
     /// The same as [`ExactField::cost`] in the table's units; [`UNREACHED`] where there is none.
     fn units_of(&self, state: State) -> u32 {
-        let units = self.labels.cost(self.layout.pack(state));
+        let units = self.costs.cost(self.layout.pack(state));
         if units <= self.limit { units } else { UNREACHED }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.labels.bytes()
+        self.costs.bytes()
     }
 
     /// The best start and the motions from it to the nearest goal, in a field to goals; `None` where no motions lead there.

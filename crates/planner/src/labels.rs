@@ -77,6 +77,11 @@ impl Labels {
         self.tiles[Layout::tile(state)].as_ref().map_or(u32::MAX, |tile| !tile[Layout::within(state)])
     }
 
+    /// Whether a tile has any labels.
+    pub(crate) fn holds(&self, tile: usize) -> bool {
+        self.tiles[tile].is_some()
+    }
+
     /// Hints that a state will be asked for; the packing of one beyond the map may name no tile.
     #[inline(always)]
     pub(crate) fn prefetch(&self, state: u32) {

@@ -37,7 +37,9 @@ impl Near {
 
     /// Works back from goals, given with what follows there in the objective's unit; `None` when patience ends first.
     pub(crate) fn new(table: &CostTable, goals: &[(State, f64)], patience: &Patience) -> Option<Self> {
-        let mut search = Dijkstra::new(table, Direction::ToGoals, goals, patience);
+        let goals: Vec<(State, u32)> =
+            goals.iter().map(|(goal, after)| (*goal, (after * table.units()) as u32)).collect();
+        let mut search = Dijkstra::new(table, Direction::ToGoals, &goals, patience);
         let mut settled = Vec::new();
         search.settle_first(POSES, |state| settled.push(state))?;
         let mut costs = BTreeMap::new();

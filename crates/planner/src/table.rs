@@ -20,7 +20,7 @@ use crate::{
     objective::{Objective, Weights},
     patience::Patience,
     tile::TileKernel,
-    tile_builder::{Codes, Lanes, Least},
+    tile_builder::{Codes, Lanes, Least, QUAD, code_place},
 };
 
 /// Costs of all motions, with gravity taken out of energy so that none is negative.
@@ -32,7 +32,7 @@ pub struct CostTable {
     objective: Objective,
     kernel: TileKernel,
     units: f64,
-    /// Codes of all motions of each tile's states, by cell, heading and motion.
+    /// Codes of all motions of each tile's states, by quad of cells, heading, motion and cell.
     codes: Vec<OnceLock<Codes>>,
     /// Least codes of each tile's cells, by row, group of lanes, displacement and lane, over headings and motions.
     least: Vec<OnceLock<Least>>,
@@ -143,7 +143,7 @@ impl CostTable {
         self.least_units_per_cell
     }
 
-    /// Slots per state; those beyond the motions are forbidden.
+    /// Codes per state, one for each motion.
     pub(crate) fn stride(&self) -> usize {
         self.kernel.stride
     }
@@ -225,7 +225,7 @@ impl CostTable {
     /// Code of a motion from a packed state, whatever it takes to know it.
     pub(crate) fn code(&self, state: u32, motion: usize) -> u16 {
         let codes = self.codes(Layout::tile(state), &Patience::default());
-        let place = Layout::within(state) * self.stride() + motion;
+        let place = code_place(Layout::within(state), self.stride()) + motion * QUAD;
         codes.and_then(|codes| codes.get(place).copied()).unwrap_or(FORBIDDEN)
     }
 

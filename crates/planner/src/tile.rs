@@ -56,7 +56,7 @@ impl TileKernel {
         let limits = &lattice.limits;
         TileKernel {
             chains,
-            stride: lattice.motions_per_state().next_multiple_of(4),
+            stride: lattice.motions_per_state(),
             halo,
             swept,
             pricing: Pricing {

@@ -51,7 +51,7 @@ impl<'d> TileBuilder<'d> {
         store_row(slots, codes, self.displacements, least);
     }
 
-    /// Codes by cell, heading and motion, and the least by displacement and cell.
+    /// Codes by quad of cells, heading, motion and cell, and the least by displacement and cell.
     pub(crate) fn finish(self) -> (Codes, Least) {
         (self.codes.into(), self.least.into())
     }
@@ -59,13 +59,10 @@ impl<'d> TileBuilder<'d> {
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
 fn store_row(slots: &[RowCodes], codes: &mut [u16], displacements: &[Displacement], least: &mut [Lanes]) {
-    let stride = slots.len() / PACKED;
-    let (cells, _) = codes.as_chunks_mut::<PACKED>();
-    for (at, four) in slots.as_chunks::<PACKED>().0.iter().enumerate() {
-        for (x, packed) in pack(four).into_iter().enumerate() {
-            for (slot, code) in cells[x * stride + at].iter_mut().enumerate() {
-                *code = (packed >> (16 * slot)) as u16;
-            }
+    let (codes, _) = codes.as_chunks_mut::<QUAD>();
+    for (quad, codes) in codes.chunks_exact_mut(slots.len()).enumerate() {
+        for (four, slot) in codes.iter_mut().zip(slots) {
+            *four = slot.as_chunks().0[quad];
         }
     }
     let steps = displacements.len();
@@ -76,19 +73,15 @@ fn store_row(slots: &[RowCodes], codes: &mut [u16], displacements: &[Displacemen
     }
 }
 
-/// Codes that fill a word; every stride is a multiple of it.
-const PACKED: usize = 4;
+/// Cells of a row whose codes lie together by heading, motion and cell: those of a state are within a memory line or two,
+/// and those of a motion can be read four at a time.
+pub(crate) const QUAD: usize = 4;
 
-/// The codes of each cell in one word, the first slot lowest.
+/// Place of the code of the first motion from a state of a tile; those of its other motions follow every [`QUAD`] codes.
 #[inline(always)]
-fn pack(slots: &[RowCodes; PACKED]) -> [u64; TILE] {
-    let mut packed = [0; TILE];
-    for x in 0..TILE {
-        let low = u32::from(slots[0][x]) | u32::from(slots[1][x]) << 16;
-        let high = u32::from(slots[2][x]) | u32::from(slots[3][x]) << 16;
-        packed[x] = u64::from(low) | u64::from(high) << 32;
-    }
-    packed
+pub(crate) fn code_place(within: usize, stride: usize) -> usize {
+    let (cell, heading) = (within / HEADINGS, within % HEADINGS);
+    (cell / QUAD * HEADINGS + heading) * stride * QUAD + cell % QUAD
 }
 
 /// Lowers codes to others where those are lower.

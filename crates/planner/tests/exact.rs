@@ -8,6 +8,7 @@ use petgraph::{
 };
 use planner::{CostTable, ExactField, HEADINGS, Heading, Lattice, Objective, Patience, Settings, State};
 use rand::{Rng, RngExt};
+use terrain::{Cell, Grid, Terrain, synthetic};
 
 mod ground;
 
@@ -86,4 +87,87 @@ fn every_state_of_random_maps_costs_what_petgraph_says_in_both_directions_and_wi
         }
     }
     assert!(reached > 20_000, "{reached} states were reached");
+}
+
+#[test]
+fn costs_run_on_from_tile_to_tile() {
+    let mut random = ground::random(71);
+    let mut reached = 0;
+    for case in 0..3 {
+        let terrain = synthetic::mirrored(&ground::small_terrain(&mut random, 40), 131, 90).unwrap();
+        let mut settings = Settings::of(&ground::some_robot(&mut random, 0.5));
+        settings.reverse = case == 2;
+        let lattice = Lattice::new(&terrain, &ground::some_robot(&mut random, 0.5), settings).unwrap();
+        let table = CostTable::lazy(&lattice, Objective::Energy);
+        let seeds = seeds(&mut random, &lattice);
+        let limit = if case == 1 { 5000.0 } else { f64::INFINITY };
+        reached += check(&table, &seeds, true, limit) + check(&table, &seeds, false, limit);
+    }
+    assert!(reached > 100_000, "{reached} states were reached");
+}
+
+#[test]
+fn arcs_that_lead_past_the_next_tile_count_too() {
+    let grid = Grid { rows: 90, columns: 95, cell_size_m: 0.05, origin_m: [0.0, 0.0] };
+    let terrain = Terrain::new(grid, &synthetic::relief(grid, 4, 2.0, 0.2)).unwrap();
+    let mut robot = model::builtin::husky_a200();
+    robot.slip_track_m = 8.5;
+    let lattice = Lattice::new(&terrain, &robot, Settings::of(&robot)).unwrap();
+    let farthest = lattice.motions.iter().flatten().map(|m| m.columns.abs().max(m.rows.abs())).max();
+    assert!(farthest > Some(64), "{farthest:?} cells");
+    let table = CostTable::lazy(&lattice, Objective::Energy);
+    let seeds = [(State { cell: Cell { row: 44, column: 47 }, heading: Heading::new(3) }, 0.0)];
+    let reached = check(&table, &seeds, true, f64::INFINITY) + check(&table, &seeds, false, f64::INFINITY);
+    assert!(reached > 10_000, "{reached} states were reached");
+}
+
+#[test]
+fn energies_follow_from_costs_and_the_height_potentials_of_both_ends() {
+    let mut random = ground::random(72);
+    let mut compared = 0;
+    for _ in 0..12 {
+        let terrain = ground::small_terrain(&mut random, 20);
+        let robot = ground::some_robot(&mut random, 0.5);
+        let query = ground::some_query(&mut random, &terrain, &robot);
+        let Ok(found) = planner::plan(&terrain, &robot, &query, Objective::Energy) else { continue };
+        let lattice = Lattice::new(&terrain, &robot, query.settings).unwrap();
+        let table = CostTable::lazy(&lattice, Objective::Energy);
+        let state = |pose: &planner::Pose| State {
+            cell: terrain.grid.cell_at(pose.x_m, pose.y_m).unwrap(),
+            heading: Heading::nearest(pose.heading_rad),
+        };
+        let [first, last] =
+            [found.route.poses.first(), found.route.poses.last()].map(|pose| state(pose.unwrap()));
+        let [start_j, goal_j] = [first, last].map(|state| lattice.potential_j(state.cell));
+        let patience = Patience::default();
+        let outwards = ExactField::from_starts(&table, &[(first, 0.0)], f64::INFINITY, &patience).unwrap();
+        let homewards = ExactField::to_goals(&table, &[(last, 0.0)], f64::INFINITY, &patience).unwrap();
+        // c is φ of the start, and minus φ of the goal.
+        let outwards_j = outwards.cost(last).unwrap() + goal_j - start_j;
+        let homewards_j = homewards.cost(first).unwrap() - start_j + goal_j;
+        let energy_j = found.route.total.energy_j;
+        let room_j = 1e-3 * (energy_j - (goal_j - start_j)).abs() + 1e-2;
+        assert_eq!(outwards.cost(last), homewards.cost(first));
+        assert!((outwards_j - energy_j).abs() <= room_j, "{outwards_j} J, driven {energy_j} J");
+        assert!((homewards_j - energy_j).abs() <= room_j, "{homewards_j} J, driven {energy_j} J");
+        compared += 1;
+    }
+    assert!(compared > 4, "{compared} paths");
+}
+
+#[test]
+fn patience_that_ends_leaves_no_field() {
+    let mut random = ground::random(73);
+    let terrain = synthetic::mirrored(&ground::small_terrain(&mut random, 40), 131, 150).unwrap();
+    let robot = model::builtin::husky_a200();
+    let lattice = Lattice::new(&terrain, &robot, Settings::of(&robot)).unwrap();
+    let table = CostTable::new(&lattice, Objective::Energy, &Patience::default()).unwrap();
+    let seeds: Vec<(State, f64)> =
+        (0..terrain.grid.cells()).step_by(17).map(|cell| (lattice.state(cell * HEADINGS), 0.0)).collect();
+    for looks in 0..4 {
+        assert!(ExactField::to_goals(&table, &seeds, f64::INFINITY, &Patience::for_looks(looks)).is_none());
+        assert!(
+            ExactField::from_starts(&table, &seeds, f64::INFINITY, &Patience::for_looks(looks)).is_none()
+        );
+    }
 }
