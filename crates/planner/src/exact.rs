@@ -72,12 +72,13 @@ impl ExactField {
         table: &CostTable,
         direction: Direction,
         seeds: &[(State, f64)],
-        limit: f64,
+        limit_cost: f64,
         patience: &Patience,
     ) -> Option<Self> {
-        let limit = ((limit * table.units()) as u32).min(ENDLESS - 1);
+        let limit = ((limit_cost * table.units()) as u32).min(ENDLESS - 1);
+        let within = seeds.iter().filter(|(_, beyond)| *beyond <= limit_cost);
         let seeds: Vec<(State, u32)> =
-            seeds.iter().map(|(seed, beyond)| (*seed, (beyond * table.units()) as u32)).collect();
+            within.map(|(seed, beyond)| (*seed, (beyond * table.units()) as u32)).collect();
         let costs = grow(table, direction, &seeds, limit, patience)?;
         Some(ExactField { costs, layout: table.lattice().layout, units: table.units(), limit })
     }

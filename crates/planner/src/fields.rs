@@ -44,7 +44,7 @@ pub(crate) struct FieldCache {
 /// Goals that are remembered.
 const ENTRIES: usize = 8;
 /// Up to so many cells a goal that is asked for from a second start gets a field over the whole map: the table that this
-/// takes is a gigabyte and a half.
+/// takes is a gigabyte and a third.
 const MOST_CELLS_COVERED: usize = 1 << 22;
 
 impl FieldCache {

@@ -121,7 +121,7 @@ impl Planner {
     }
 
     /// Works out the exact cost to the query's goal from every pose and keeps it, so that any plan to that goal is only a
-    /// walk. It takes four bytes for each pose, and time as for a search over the whole map.
+    /// walk. It takes four bytes for each pose, and less time than a search over the whole map.
     ///
     /// # Errors
     /// As [`Planner::plan`]; the query's start is not looked at.

@@ -1,8 +1,8 @@
 //! How an exact field grows: tile by tile, in the order of the least cost at which anything in them may still fall.
 //!
 //! Dijkstra's search takes states one by one in the order of their costs, and waits for memory at each. Settled tile by
-//! tile a state is looked at some nine times instead of once, but sixteen together and where they are at hand: a third of
-//! the time (`joulepath bench`). Costs are the least in the end, in whatever order tiles are taken.
+//! tile a state is looked at some thirteen times instead of once, but rows of them together and where they are at hand: a third
+//! of the time (`joulepath bench`). Costs are the least in the end, in whatever order tiles are taken.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 

@@ -10,7 +10,7 @@ use crate::failure::BadInput;
 
 /// The lidar terrain of the demo, mirrored to size.
 const TILE: &[u8] = include_bytes!("../../../../maps/minnesota.tif");
-/// Largest side: its costs of motions take about 7 GB.
+/// Largest side: its costs of motions take about 6.5 GB.
 const LARGEST_SIDE: usize = 4500;
 /// Smallest side on which the robot has somewhere to go.
 const SMALLEST_SIDE: usize = 60;
