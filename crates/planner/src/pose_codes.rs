@@ -1,7 +1,6 @@
 //! Codes of motions as the poses of a tile pull by them, rows of cells side by side.
 
 use crate::{
-    cost::FORBIDDEN,
     heading::HEADINGS,
     layout::{TILE, TILE_CELLS},
     pose_stencil::{PoseStencil, Pull},
@@ -28,7 +27,7 @@ const CODES_IN_A_LINE: usize = 32;
 impl PoseCodes {
     pub(crate) fn new(stencil: &PoseStencil) -> Self {
         PoseCodes {
-            rows: vec![[FORBIDDEN; TILE]; TILE * HEADINGS * stencil.motions],
+            rows: vec![[0; TILE]; TILE * HEADINGS * stencil.motions],
             ready: 0,
             asked: vec![false; TILE + 2 * stencil.driven_within + 2],
         }

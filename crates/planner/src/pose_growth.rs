@@ -64,7 +64,7 @@ pub(crate) fn grow(
             front.seed(seed, cost);
         }
     }
-    let mut sweeps: Vec<PoseSweep> = (0..ABREAST).map(|_| PoseSweep::new(stencil.clone(), limit)).collect();
+    let mut sweeps = Vec::new();
     loop {
         let taken = front.pop(ABREAST);
         if taken.is_empty() {
@@ -74,6 +74,7 @@ pub(crate) fn grow(
             .iter()
             .map(|(tile, _)| codes_around(table, direction, *tile, patience))
             .collect::<Option<Vec<_>>>()?;
+        sweeps.resize_with(taken.len().max(sweeps.len()), || PoseSweep::new(stencil.clone(), limit));
         let known = &costs;
         taken.par_iter().zip(&mut sweeps).zip(codes).try_for_each(|(((tile, waiting), sweep), codes)| {
             if patience.is_over() {

@@ -4,7 +4,7 @@
 use multiversion::multiversion;
 
 use crate::{
-    cost::{ENDLESS, decode_lanes},
+    cost::decode_lanes,
     heading::HEADINGS,
     layout::TILE,
     pose_codes::{CodesAround, PoseCodes},
@@ -15,7 +15,7 @@ use crate::{
 /// The costs of a tile's poses and of those around it, and where they have fallen.
 pub(crate) struct PoseSweep {
     pub(crate) stencil: PoseStencil,
-    /// Costs, at most [`ENDLESS`], by heading, of a square of cells that reaches beyond the tile by the stencil's reach.
+    /// Costs, at most `ENDLESS`, by heading, of a square of cells that reaches beyond the tile by the stencil's reach.
     pub(crate) costs: Vec<u32>,
     codes: PoseCodes,
     /// By row: headings under which costs may fall.
@@ -31,7 +31,7 @@ pub(crate) struct PoseSweep {
 impl PoseSweep {
     pub(crate) fn new(stencil: PoseStencil, limit: u32) -> Self {
         PoseSweep {
-            costs: vec![ENDLESS; HEADINGS * stencil.width() * stencil.width()],
+            costs: vec![0; HEADINGS * stencil.width() * stencil.width()],
             codes: PoseCodes::new(&stencil),
             pending: [0; TILE],
             limit,
