@@ -1,6 +1,6 @@
 //! A candidate fitted together with the robot and everything found before, at its own nonlinear values.
 
-use model::{Robot, mechanism};
+use model::Robot;
 
 use crate::{
     Error,
@@ -36,7 +36,7 @@ pub(crate) fn polish(
 ) -> Result<Polished, Error> {
     let linear = one.candidate.linear.clone();
     let mut applied = one.candidate.applied.clone();
-    add(&mut applied, &linear, &one.evidence.values);
+    add(&mut applied, file, &linear, &one.evidence.values);
     let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
     let mut base = Baseline::fit(series, file, &with(&applied))?;
     let mut covariance = one.evidence.covariance.clone();
@@ -46,7 +46,7 @@ pub(crate) fn polish(
         let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
         let columns: Vec<Vec<f64>> = at.iter().map(|c| white(c)).collect();
         let Some(evidence) = system(series, &base).weigh(&columns) else { break };
-        add(&mut applied, &linear, &evidence.values);
+        add(&mut applied, file, &linear, &evidence.values);
         covariance = evidence.covariance;
         base = Baseline::fit(series, file, &with(&applied))?;
     }
@@ -58,10 +58,9 @@ pub(crate) fn polish(
 }
 
 /// Moves values, within what a mechanism can have.
-fn add(applied: &mut Applied, linear: &[usize], by: &[f64]) {
-    let parameters: &[mechanism::Parameter] = applied.mechanism.parameters();
+fn add(applied: &mut Applied, robot: &Robot, linear: &[usize], by: &[f64]) {
     for (parameter, by) in linear.iter().zip(by) {
-        let [low, high] = parameters[*parameter].bounds;
+        let [low, high] = applied.mechanism.bounds(robot, *parameter);
         applied.values[*parameter] = (applied.values[*parameter] + by).clamp(low, high);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use model::Robot;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -107,7 +108,7 @@ pub(crate) fn weigh_all(
             let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| white(c)).collect();
             let is_delay = name(&candidate) == "clock_offset";
             let evidence = (if is_delay { &delay_apart } else { &all_fitted }).weigh(&columns)?;
-            if !is_plausible(&candidate, &evidence)
+            if !is_plausible(&base.robot, &candidate, &evidence)
                 || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * series.row_s()
             {
                 return None;
@@ -141,10 +142,9 @@ pub(crate) fn judged(evidence: &Evidence, discount: f64, blocks: usize) -> Optio
 /// A delay of less than a row, but for rounding, is the sensors' business.
 const LEAST_DELAY_ROWS: f64 = 0.9;
 
-fn is_plausible(candidate: &Candidate, evidence: &Evidence) -> bool {
-    let parameters = candidate.applied.mechanism.parameters();
+fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bool {
     candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {
-        let [low, high] = parameters[parameter].bounds;
+        let [low, high] = candidate.applied.mechanism.bounds(robot, parameter);
         let sigma = evidence.covariance[(j, j)].max(0.0).sqrt();
         let value = candidate.applied.values[parameter] + value;
         value + 2.0 * sigma >= low && value - 2.0 * sigma <= high

@@ -140,6 +140,11 @@ pub trait Mechanism: Sync {
     /// Its parameters.
     fn parameters(&self) -> &'static [Parameter];
 
+    /// Least and greatest value of a parameter that a robot can have: the parameter's own bounds, or closer ones.
+    fn bounds(&self, _robot: &Robot, parameter: usize) -> [f64; 2] {
+        self.parameters()[parameter].bounds
+    }
+
     /// Its equation, in the symbols of the paper.
     fn equation(&self) -> &'static str;
 
