@@ -165,13 +165,13 @@ fn friction_parameters(
     let fit = &surface.fit.fit;
     let known = file.surfaces.get(&surface.surface);
     let parameter =
-        |field: &str, unit: &str, [value, share]: [f64; 2], determined: bool, before: Option<[f64; 2]>| {
+        |field: &str, i: usize, [value, share]: [f64; 2], determined: bool, before: Option<[f64; 2]>| {
             let [value, share] = before.filter(|_| !determined).unwrap_or([value, share]);
-            let half = if determined { fit.student } else { NORMAL_975 } * share * value;
+            let half = if determined { fit.student[i] } else { NORMAL_975 } * share * value;
             FittedParameter {
                 name: format!("surfaces.{}.{field}", surface.surface),
                 value,
-                unit: unit.into(),
+                unit: if i == SCALE { "rad" } else { "1" }.into(),
                 interval_95: Some([(value - half).max(0.0), value + half]),
                 determined,
             }
@@ -181,7 +181,7 @@ fn friction_parameters(
     let friction = |field: &str, i: usize, before: Option<[f64; 2]>| {
         let height = if i == SKID { surface.law.share } else { 1.0 };
         let value = [height * fit.values[i] / lifting_a, share(i).hypot(lifting_share)];
-        parameter(field, "1", value, fit.determined(i) && force_known, before)
+        parameter(field, i, value, fit.determined(i) && force_known, before)
     };
     // Scale and shape move together: of their ratio, what they share cancels.
     let together = fit.covariance[(SCALE, SHAPE)] / (fit.values[SCALE] * fit.values[SHAPE]);
@@ -192,7 +192,7 @@ fn friction_parameters(
     [
         friction("mu_roll", ROLLING, known.map(|s| [s.mu_roll, u.mu_roll])),
         friction("mu_skid", SKID, known.map(|s| [s.mu_skid, u.mu_skid])),
-        parameter("slip_angle_scale_rad", "rad", scale, fit.determined(SCALE), scale_before),
+        parameter("slip_angle_scale_rad", SCALE, scale, fit.determined(SCALE), scale_before),
     ]
 }
 
@@ -226,8 +226,8 @@ fn fitted_robot(robot: &Robot, found: &CurrentCalibration, parameters: &[FittedP
         else {
             continue;
         };
-        roll_share = roll_share.max(relative_sigma(roll, surface.fit.fit.student));
-        skid_share = skid_share.max(relative_sigma(skid, surface.fit.fit.student));
+        roll_share = roll_share.max(relative_sigma(roll, surface.fit.fit.student[ROLLING]));
+        skid_share = skid_share.max(relative_sigma(skid, surface.fit.fit.student[SKID]));
         let new = Surface {
             mu_roll: roll.value,
             mu_skid: skid.value,

@@ -14,7 +14,7 @@ use crate::{
     field::SCALE_SIGMA,
     fit::{Fit, Parameter, Problem},
     folds,
-    noise::Noise,
+    noise::{LARGEST, Noise},
 };
 
 /// Size of an error of a one-second average that stands for a sigma in a first, rough fit \[A\]: twice the spread of 1 A that is
@@ -189,11 +189,21 @@ fn solve(
 ) -> CurrentFit {
     let (part, some) = (thinned(drives, MOST_ROWS), thinned(drives, ROUGH_ROWS));
     let rough = |parameters: &Vec<Parameter>| {
-        let (noise, largest) = (ROUGH_NOISE_A, ROUGH_NOISE_A);
         let model = CurrentModel::new(robot, &some, slip_track_m, yaw, idle_a(&some));
         let predict = |values: &[f64]| model.averages_a(&numbers(values));
-        let (recorded, block) = (some.recorded_averages(), folds::blocks(&some));
-        Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict }.solve(parameters)
+        let (recorded, block, series) =
+            (some.recorded_averages(), folds::blocks(&some), folds::series(&some));
+        let sigma = vec![ROUGH_NOISE_A; recorded.len()];
+        let problem = Problem {
+            recorded: &recorded,
+            block: &block,
+            series: &series,
+            sigma: &sigma,
+            correlation: 0.0,
+            largest: 1.0,
+            predict: &predict,
+        };
+        problem.solve(parameters)
     };
     let rough: Vec<Fit> = starts.par_iter().map(rough).collect();
     let best = rough.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -204,11 +214,19 @@ fn solve(
     let idle_a = idle_a(&part);
     let model = CurrentModel::new(robot, &part, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
-    let (recorded, block) = (part.recorded_averages(), folds::blocks(&part));
+    let (recorded, block, series) = (part.recorded_averages(), folds::blocks(&part), folds::series(&part));
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
-    let noise = Noise::of(&predict(&start), &recorded, &part);
-    let (noise, largest) = (noise.weight(), noise.largest());
-    let problem = Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict };
+    let about = predict(&start);
+    let noise = Noise::even(&about, &recorded, &part);
+    let problem = Problem {
+        recorded: &recorded,
+        block: &block,
+        series: &series,
+        sigma: &noise.sigmas(&about),
+        correlation: noise.correlation,
+        largest: LARGEST,
+        predict: &predict,
+    };
     let fit = problem.solve_determined(&parameters);
     CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
 }

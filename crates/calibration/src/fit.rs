@@ -26,9 +26,13 @@ pub struct Problem<'a> {
     pub recorded: &'a [f64],
     /// Blocks of recorded values whose errors hang together; the errors of different blocks do not.
     pub block: &'a [usize],
-    /// An error of this size weighs as much as a prior that is off by its sigma.
-    pub noise: f64,
-    /// Errors beyond this count linearly rather than squared.
+    /// Spread of each recorded value about a right prediction, in its unit.
+    pub sigma: &'a [f64],
+    /// Which run, and which column of it, a value is of.
+    pub series: &'a [usize],
+    /// ρ: correlation of the errors of neighbours in a series.
+    pub correlation: f64,
+    /// Errors beyond so many sigmas count linearly rather than squared.
     pub largest: f64,
     /// Predicts what was recorded from all parameters.
     pub predict: &'a dyn Fn(&[f64]) -> Vec<f64>,
@@ -43,8 +47,8 @@ pub struct Fit {
     pub values: Vec<f64>,
     /// Covariance of the values; the prior's variance where held.
     pub covariance: DMatrix<f64>,
-    /// Quantile of Student's t that makes a 95 % interval of a sigma.
-    pub student: f64,
+    /// By parameter, the quantile of Student's t that makes a 95 % interval of a sigma.
+    pub student: Vec<f64>,
     /// Sum of squared robust errors and priors.
     pub cost: f64,
 }
@@ -69,27 +73,26 @@ impl Problem<'_> {
         };
         let residuals = |x: &[f64]| {
             let values = all(x);
-            let mut errors: Vec<f64> = (self.predict)(&values)
-                .iter()
-                .zip(self.recorded)
-                .map(|(p, r)| huber(p - r, self.largest))
-                .collect();
+            let mut errors = self.errors(&values);
             errors.extend(free.iter().filter_map(|&i| {
                 let [mean, sigma] = parameters[i].prior?;
-                Some(self.noise * (values[i] - mean) / sigma)
+                Some(self.prior_weight() * (values[i] - mean) / sigma)
             }));
             errors
         };
         let x = least_squares::nonlinear(residuals, &start, &lower, &upper);
         let errors = residuals(&x);
         let jacobian = least_squares::jacobian(residuals, &x, &lower, &upper);
-        let (covariance, student) = self.covariance(&jacobian, &errors);
+        let (covariance, free_student) = self.covariance(&jacobian, &errors);
         let mut whole = DMatrix::zeros(parameters.len(), parameters.len());
+        // What is held is known as it was before, by a normal distribution.
+        let mut student = vec![NORMAL_975; parameters.len()];
         for (i, parameter) in parameters.iter().enumerate().filter(|(_, parameter)| parameter.held) {
             // What is held keeps the width of what was known before.
             whole[(i, i)] = parameter.prior.map_or(0.0, |[_, sigma]| sigma * sigma);
         }
         for (a, &i) in free.iter().enumerate() {
+            student[i] = free_student[a];
             for (b, &j) in free.iter().enumerate() {
                 whole[(i, j)] = covariance[(a, b)];
             }
@@ -101,15 +104,20 @@ impl Problem<'_> {
     /// The fit of nothing: every parameter is held.
     fn unmoved(&self, parameters: &[Parameter]) -> Fit {
         let values: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-        let errors = (self.predict)(&values);
-        let errors = errors.iter().zip(self.recorded).map(|(p, r)| huber(p - r, self.largest));
         Fit {
             parameters: parameters.to_vec(),
             covariance: DMatrix::zeros(values.len(), values.len()),
-            student: student_975(0.0),
-            cost: errors.map(|e| e * e).sum(),
+            student: vec![NORMAL_975; values.len()],
+            cost: self.errors(&values).iter().map(|e| e * e).sum(),
             values,
         }
+    }
+
+    /// Robust errors in sigmas.
+    fn errors(&self, values: &[f64]) -> Vec<f64> {
+        let predicted = (self.predict)(values);
+        let of = |((p, r), sigma): ((&f64, &f64), &f64)| huber((p - r) / sigma, self.largest);
+        predicted.iter().zip(self.recorded).zip(self.sigma).map(of).collect()
     }
 
     /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
@@ -155,45 +163,95 @@ impl Problem<'_> {
         held
     }
 
-    /// The larger, parameter by parameter, of two covariances: `noise² A⁻¹`, which trusts that errors are alike everywhere, and
-    /// the sandwich `A⁻¹ B A⁻¹`, which does not, but is itself uncertain where blocks are few. A = JᵀJ; B sums the outer products
-    /// of each block's score, so errors may hang together within a block; a prior's row enters it with its own variance.
-    /// Taking the larger is the advice of Angrist & Pischke (2009), *Mostly Harmless Econometrics*, §8.1.
-    fn covariance(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> (DMatrix<f64>, f64) {
+    /// What a prior that is off by its sigma counts in sigmas of a value: neighbours that err alike say less than as many that do not,
+    /// by the variance of a mean of a first-order process over that of white noise.
+    fn prior_weight(&self) -> f64 {
+        ((1.0 + self.correlation) / (1.0 - self.correlation)).sqrt()
+    }
+
+    /// Covariance, and the quantile that makes an interval of each sigma.
+    ///
+    /// ```text
+    /// C = A⁻¹ B A⁻¹,   A = JᵀJ
+    /// ```
+    ///
+    /// There are two B: `Jᵀ R J` with `R = ρ^|i − j|` within a series, which trusts that errors are a first-order process of the spread
+    /// assumed; and the sum of the outer products of each block's score, which does not, but is itself uncertain where blocks are few:
+    /// it makes an interval by Student's t. Parameter by parameter the wider interval is taken, on the advice of Angrist & Pischke
+    /// (2009), *Mostly Harmless Econometrics*, §8.1. A prior's row enters both with its own variance.
+    fn covariance(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let count = jacobian.ncols();
-        let blocks = self.block.iter().max().map_or(0, |b| b + 1);
-        let mut scores = DMatrix::<f64>::zeros(count, blocks);
-        for (row, &block) in self.block.iter().enumerate() {
-            for j in 0..count {
-                scores[(j, block)] += jacobian[(row, j)] * errors[row];
-            }
-        }
         let normal = jacobian.transpose() * jacobian;
-        let mut middle = &scores * scores.transpose();
-        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
-        let student = student_975(blocks.saturating_sub(count) as f64);
+        let scatter = self.scatter_of_blocks(jacobian, errors);
         // Numbers out of all proportion overflow, and the decomposition of what is not finite never ends.
         let finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
-        if !finite(&normal) || !finite(&middle) {
-            return (DMatrix::from_diagonal_element(count, count, f64::INFINITY), student);
+        if !finite(&normal) || !finite(&scatter) {
+            let unknown = DMatrix::from_diagonal_element(count, count, f64::INFINITY);
+            return (unknown, vec![NORMAL_975; count]);
         }
         let bread = normal.pseudo_inverse(1e-14).unwrap_or_else(|_| DMatrix::zeros(count, count));
+        let blocks = self.block.iter().max().map_or(0, |b| b + 1);
         // Fitted errors are smaller than true ones by the share of the blocks that the parameters take up, the mean leverage of a
         // block: Bell & McCaffrey (2002), *Bias reduction in standard errors with multi-stage samples*, of which this is the mean.
         let data = jacobian.rows(0, self.recorded.len());
         let taken_up = (&bread * data.transpose() * data).trace();
-        middle *= blocks as f64 / (blocks as f64 - taken_up).max(1.0);
-        for row in self.recorded.len()..errors.len() {
+        let small_sample = blocks as f64 / (blocks as f64 - taken_up).max(1.0);
+        let mut known = DMatrix::<f64>::zeros(count, count);
+        for row in self.recorded.len()..jacobian.nrows() {
             let gradient = DVector::from_iterator(count, jacobian.row(row).iter().copied());
-            middle += &gradient * gradient.transpose() * self.noise * self.noise;
+            known += &gradient * gradient.transpose() * self.prior_weight().powi(2);
         }
-        let sandwich = &bread * middle * &bread;
+        let sandwich = |middle: DMatrix<f64>| &bread * (middle + &known) * &bread;
+        let (trusting, blockwise) =
+            (sandwich(self.trusted_scatter(jacobian)), sandwich(scatter * small_sample));
+        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
+        let few = student_975(blocks.saturating_sub(count) as f64);
+        let mut student = vec![few; count];
         let stretch = DVector::from_fn(count, |i, _| {
-            let trusting = self.noise * self.noise * bread[(i, i)];
-            if sandwich[(i, i)] > 0.0 { (trusting / sandwich[(i, i)]).max(1.0).sqrt() } else { 1.0 }
+            let (trusted, found) = (trusting[(i, i)].max(0.0).sqrt(), blockwise[(i, i)].max(0.0).sqrt());
+            if NORMAL_975 * trusted <= few * found {
+                return 1.0;
+            }
+            student[i] = NORMAL_975;
+            if found > 0.0 { trusted / found } else { 1.0 }
         });
-        let covariance = DMatrix::from_fn(count, count, |i, j| sandwich[(i, j)] * stretch[i] * stretch[j]);
+        let covariance = DMatrix::from_fn(count, count, |i, j| blockwise[(i, j)] * stretch[i] * stretch[j]);
         (covariance, student)
+    }
+
+    /// `Jᵀ R J` of errors that are a first-order process in each series.
+    fn trusted_scatter(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, rho) = (self.recorded.len(), self.correlation);
+        let data = jacobian.rows(0, rows).into_owned();
+        let mut spread = data.clone();
+        for mut column in spread.column_iter_mut() {
+            let own: Vec<f64> = column.iter().copied().collect();
+            let mut behind = 0.0;
+            for i in 1..rows {
+                let follows = self.series[i] == self.series[i - 1];
+                behind = if follows { rho * (behind + own[i - 1]) } else { 0.0 };
+                column[i] += behind;
+            }
+            let mut ahead = 0.0;
+            for i in (1..rows).rev() {
+                let follows = self.series[i] == self.series[i - 1];
+                ahead = if follows { rho * (ahead + own[i]) } else { 0.0 };
+                column[i - 1] += ahead;
+            }
+        }
+        data.tr_mul(&spread)
+    }
+
+    /// The sum over the blocks of the outer products of their scores.
+    fn scatter_of_blocks(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> DMatrix<f64> {
+        let blocks = self.block.iter().max().map_or(0, |b| b + 1);
+        let mut scores = DMatrix::<f64>::zeros(jacobian.ncols(), blocks);
+        for (row, &block) in self.block.iter().enumerate() {
+            for j in 0..jacobian.ncols() {
+                scores[(j, block)] += jacobian[(row, j)] * errors[row];
+            }
+        }
+        &scores * scores.transpose()
     }
 }
 
@@ -203,9 +261,14 @@ impl Fit {
         self.covariance[(index, index)].max(0.0).sqrt()
     }
 
+    /// Half the width of the 95 % interval of a parameter.
+    pub fn half_width(&self, index: usize) -> f64 {
+        self.student[index] * self.sigma(index)
+    }
+
     /// 95 % interval of a parameter.
     pub fn interval_95(&self, index: usize) -> [f64; 2] {
-        let half = self.student * self.sigma(index);
+        let half = self.half_width(index);
         [self.values[index] - half, self.values[index] + half]
     }
 
@@ -266,8 +329,15 @@ mod tests {
         recorded[20] += 50.0;
         let block: Vec<usize> = (0..40).map(|i| i / 2).collect();
         let predict = |p: &[f64]| x.iter().map(|x| p[0] + p[1] * x).collect::<Vec<f64>>();
-        let problem =
-            Problem { recorded: &recorded, block: &block, noise: 0.02, largest: 0.04, predict: &predict };
+        let problem = Problem {
+            recorded: &recorded,
+            block: &block,
+            sigma: &[0.02; 40],
+            series: &[0; 40],
+            correlation: 0.0,
+            largest: 2.0,
+            predict: &predict,
+        };
         let fit = problem.solve(&[
             parameter("offset", None),
             parameter("slope", None),

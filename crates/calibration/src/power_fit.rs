@@ -8,7 +8,7 @@ use crate::{
     field::{applied, known_before, with_new_ground},
     fit::{Fit, Problem},
     folds,
-    noise::Noise,
+    noise::{LARGEST, Noise},
     power::{PowerModel, seen_w},
 };
 
@@ -65,29 +65,42 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
     let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);
-    let problem = |noise: Noise| Problem {
-        recorded: &recorded,
-        block: &block,
-        noise: noise.weight(),
-        largest: noise.largest(),
-        predict: &predict,
-    };
+    let series = folds::series(drives);
+    let data = Data { recorded: &recorded, block: &block, series: &series, predict: &predict };
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-    let mut noise = Noise::of(&predict(&start), &recorded, drives);
+    let mut about = predict(&start);
+    let mut noise = Noise::growing(&about, &recorded, drives);
     // A file that is far off makes for noise that would keep the fit there, so both are worked out in turns.
     for _ in 0..if before.is_none() { MOST_ROUNDS } else { 0 } {
-        let rough = problem(noise).solve(&parameters);
+        let rough = data.problem(noise, &noise.sigmas(&about)).solve(&parameters);
         parameters.iter_mut().zip(&rough.values).for_each(|(parameter, value)| parameter.start = *value);
-        let weight = noise.weight();
-        noise = Noise::of(&predict(&rough.values), &recorded, drives);
-        if noise.weight() > SETTLED * weight {
+        let before = noise.typical(&about);
+        about = predict(&rough.values);
+        noise = Noise::growing(&about, &recorded, drives);
+        if noise.typical(&about) > SETTLED * before {
             break;
         }
     }
-    let fit = problem(noise).solve_determined(&parameters);
+    let fit = data.problem(noise, &noise.sigmas(&about)).solve_determined(&parameters);
     let fitted = applied(&robot, &fields, &fit.values);
     fitted.validate()?;
     Ok(PowerFit { robot: fitted, fit })
+}
+
+/// What is to be explained, whatever its noise.
+struct Data<'a> {
+    recorded: &'a [f64],
+    block: &'a [usize],
+    series: &'a [usize],
+    predict: &'a dyn Fn(&[f64]) -> Vec<f64>,
+}
+
+impl<'a> Data<'a> {
+    fn problem(&self, noise: Noise, sigma: &'a [f64]) -> Problem<'a> {
+        let Data { recorded, block, series, predict } = *self;
+        let correlation = noise.correlation;
+        Problem { recorded, block, series, sigma, correlation, largest: LARGEST, predict }
+    }
 }
 
 /// One-second averages of what a recording of a candidate would show, column behind column.
