@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use model::{Robot, Sides, rolling, skid};
 
 use crate::{
-    Drives,
+    Drives, Error,
     lag::{self, ATTITUDE_TIME_S},
     row::Row,
     slip_law,
@@ -161,11 +161,15 @@ impl<'a> CurrentModel<'a> {
     }
 
     /// One-second averages of the reading, left side behind right side.
-    pub fn averages_a(&self, parameters: &CurrentParameters) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn averages_a(&self, parameters: &CurrentParameters) -> Result<Vec<f64>, Error> {
+        self.drives.go_on()?;
         let readings = self.readings_a(parameters);
         let left = self.drives.averaged_by(|row| readings[row].left);
         let right = self.drives.averaged_by(|row| readings[row].right);
-        [left, right].concat()
+        Ok([left, right].concat())
     }
 
     /// The reading of every row \[A\].

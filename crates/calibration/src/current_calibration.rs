@@ -54,7 +54,8 @@ const SHAPE: usize = 4;
 /// Fits all surfaces.
 ///
 /// # Errors
-/// [`Error::NoReference`] where the surface asked for was not driven on, [`Error::TooFewRuns`] where it was driven on in one run.
+/// [`Error::NoReference`] where the surface asked for was not driven on, [`Error::TooFewRuns`] where it was driven on in one run,
+/// [`Error::Stopped`] when the drives' watch breaks.
 pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result<CurrentCalibration, Error> {
     let driven: Vec<usize> =
         (0..drives.surfaces.len()).filter(|i| drives.averages.iter().any(|a| a.surface == *i)).collect();
@@ -63,7 +64,7 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
             let found = driven.iter().map(|&i| drives.surfaces[i].clone()).collect();
             Error::NoReference { surface: name.clone(), found }
         })?,
-        None => best_reference(robot, drives, &driven),
+        None => best_reference(robot, drives, &driven)?,
     };
     let on_reference = drives.on_surface(reference);
     let runs = on_reference.judged_runs().len();
@@ -75,23 +76,23 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
     let fit = |drives: &Drives| fit_reference(&robot, drives);
     let (whole, (first, second)) =
         rayon::join(|| fit(&on_reference), || rayon::join(|| fit(&first), || fit(&second)));
-    let reference_halves = [first, second];
+    let (whole, reference_halves) = (whole?, [first?, second?]);
     let mut order = vec![reference];
     order.extend(driven.into_iter().filter(|&i| i != reference));
     let surfaces = order.into_par_iter().map(|i| {
         let here = drives.on_surface(i);
         let is_reference = i == reference;
         let fit =
-            if is_reference { whole.clone() } else { fit_surface(&robot, &here, &whole, YawSource::Wheels) };
+            if is_reference { whole.clone() } else { fit_surface(&robot, &here, &whole, YawSource::Wheels)? };
         let judged = here.judged_runs().len() > 1;
-        let verdict =
-            judged.then(|| judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels).0);
-        let force_alone = fit_force_alone(&robot, &here, &whole);
+        let judge = || judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels);
+        let verdict = judged.then(judge).transpose()?.map(|(verdict, _)| verdict);
+        let force_alone = fit_force_alone(&robot, &here, &whole)?;
         let p = &fit.parameters;
         let law = nearest_tanh(&robot, &here, p.slip_angle_scale_rad, p.slip_shape);
-        SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict }
+        Ok(SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict })
     });
-    let surfaces = surfaces.collect();
+    let surfaces = surfaces.collect::<Result<_, Error>>()?;
     Ok(CurrentCalibration {
         reference: drives.surfaces[reference].clone(),
         robot,
@@ -102,19 +103,19 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
 }
 
 /// The surface with two runs or more whose lifting current is known best, relative to its size.
-fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> usize {
+fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> Result<usize, Error> {
     let enough: Vec<usize> =
         driven.iter().copied().filter(|&i| drives.on_surface(i).judged_runs().len() > 1).collect();
     let candidates = if enough.is_empty() { driven } else { &enough };
     if let [only] = candidates {
-        return *only;
+        return Ok(*only);
     }
     let doubt = |i: usize| {
-        let fit = fit_reference(robot, &drives.on_surface(i));
-        fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)
+        let fit = fit_reference(robot, &drives.on_surface(i))?;
+        Ok((i, fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)))
     };
-    let doubts: Vec<_> = candidates.par_iter().map(|&i| (i, doubt(i))).collect();
-    doubts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
+    let doubts = candidates.par_iter().map(|&i| doubt(i)).collect::<Result<Vec<_>, Error>>()?;
+    Ok(doubts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i))
 }
 
 /// Fits a robot to recordings of motor current.

@@ -3,6 +3,8 @@
 use model::least_squares;
 use nalgebra::{DMatrix, DVector};
 
+use crate::{Error, correlation::Correlation};
+
 /// One number to be found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
@@ -30,12 +32,12 @@ pub struct Problem<'a> {
     pub sigma: &'a [f64],
     /// Which run, and which column of it, a value is of.
     pub series: &'a [usize],
-    /// ρ: correlation of the errors of neighbours in a series.
-    pub correlation: f64,
+    /// How neighbours in a series err alike.
+    pub correlation: Correlation,
     /// Errors beyond so many sigmas count linearly rather than squared.
     pub largest: f64,
     /// Predicts what was recorded from all parameters.
-    pub predict: &'a dyn Fn(&[f64]) -> Vec<f64>,
+    pub predict: &'a dyn Fn(&[f64]) -> Result<Vec<f64>, Error>,
 }
 
 /// A solution.
@@ -55,7 +57,10 @@ pub struct Fit {
 
 impl Problem<'_> {
     /// Finds the parameters.
-    pub fn solve(&self, parameters: &[Parameter]) -> Fit {
+    ///
+    /// # Errors
+    /// That of a prediction, which ends the search.
+    pub fn solve(&self, parameters: &[Parameter]) -> Result<Fit, Error> {
         let free: Vec<usize> = (0..parameters.len()).filter(|&i| !parameters[i].held).collect();
         if free.is_empty() {
             return self.unmoved(parameters);
@@ -73,16 +78,16 @@ impl Problem<'_> {
         };
         let residuals = |x: &[f64]| {
             let values = all(x);
-            let mut errors = self.errors(&values);
+            let mut errors = self.errors(&values)?;
             errors.extend(free.iter().filter_map(|&i| {
                 let [mean, sigma] = parameters[i].prior?;
                 Some(self.prior_weight() * (values[i] - mean) / sigma)
             }));
-            errors
+            Ok::<_, Error>(errors)
         };
-        let x = least_squares::nonlinear(residuals, &start, &lower, &upper);
-        let errors = residuals(&x);
-        let jacobian = least_squares::jacobian(residuals, &x, &lower, &upper);
+        let x = least_squares::nonlinear(residuals, &start, &lower, &upper)?;
+        let errors = residuals(&x)?;
+        let jacobian = least_squares::jacobian(residuals, &x, &lower, &upper)?;
         let (covariance, free_student) = self.covariance(&jacobian, &errors);
         let mut whole = DMatrix::zeros(parameters.len(), parameters.len());
         // What is held is known as it was before, by a normal distribution.
@@ -98,26 +103,26 @@ impl Problem<'_> {
             }
         }
         let cost = errors.iter().map(|e| e * e).sum();
-        Fit { parameters: parameters.to_vec(), values: all(&x), covariance: whole, student, cost }
+        Ok(Fit { parameters: parameters.to_vec(), values: all(&x), covariance: whole, student, cost })
     }
 
     /// The fit of nothing: every parameter is held.
-    fn unmoved(&self, parameters: &[Parameter]) -> Fit {
+    fn unmoved(&self, parameters: &[Parameter]) -> Result<Fit, Error> {
         let values: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-        Fit {
+        Ok(Fit {
             parameters: parameters.to_vec(),
             covariance: DMatrix::zeros(values.len(), values.len()),
             student: vec![NORMAL_975; values.len()],
-            cost: self.errors(&values).iter().map(|e| e * e).sum(),
+            cost: self.errors(&values)?.iter().map(|e| e * e).sum(),
             values,
-        }
+        })
     }
 
     /// Robust errors in sigmas.
-    fn errors(&self, values: &[f64]) -> Vec<f64> {
-        let predicted = (self.predict)(values);
+    fn errors(&self, values: &[f64]) -> Result<Vec<f64>, Error> {
+        let predicted = (self.predict)(values)?;
         let of = |((p, r), sigma): ((&f64, &f64), &f64)| huber((p - r) / sigma, self.largest);
-        predicted.iter().zip(self.recorded).zip(self.sigma).map(of).collect()
+        Ok(predicted.iter().zip(self.recorded).zip(self.sigma).map(of).collect())
     }
 
     /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
@@ -127,8 +132,11 @@ impl Problem<'_> {
     /// ```text
     /// C = C_f + S diag(σ²) Sᵀ,   S = C_fh C_hh⁻¹ of the fit of all
     /// ```
-    pub fn solve_determined(&self, parameters: &[Parameter]) -> Fit {
-        let free = self.solve(parameters);
+    ///
+    /// # Errors
+    /// As [`Problem::solve`].
+    pub fn solve_determined(&self, parameters: &[Parameter]) -> Result<Fit, Error> {
+        let free = self.solve(parameters)?;
         let mut again = parameters.to_vec();
         for (i, parameter) in again.iter_mut().enumerate() {
             if free.determined(i) {
@@ -140,9 +148,9 @@ impl Problem<'_> {
         }
         let newly: Vec<usize> = (0..again.len()).filter(|&i| again[i].held && !parameters[i].held).collect();
         if newly.is_empty() {
-            return free;
+            return Ok(free);
         }
-        let mut held = self.solve(&again);
+        let mut held = self.solve(&again)?;
         let width = |i: usize| parameters[i].prior.map_or_else(|| free.sigma(i), |[_, sigma]| sigma);
         let all = |a: &[usize], b: &[usize]| {
             DMatrix::from_fn(a.len(), b.len(), |i, j| free.covariance[(a[i], b[j])])
@@ -160,13 +168,12 @@ impl Problem<'_> {
         }
         // Held values keep the width of what was known before.
         newly.iter().for_each(|&i| held.covariance[(i, i)] = width(i).powi(2));
-        held
+        Ok(held)
     }
 
-    /// What a prior that is off by its sigma counts in sigmas of a value: neighbours that err alike say less than as many that do not,
-    /// by the variance of a mean of a first-order process over that of white noise.
+    /// What a prior that is off by its sigma counts in sigmas of a value: neighbours that err alike say less than as many that do not.
     fn prior_weight(&self) -> f64 {
-        ((1.0 + self.correlation) / (1.0 - self.correlation)).sqrt()
+        self.correlation.inflation().sqrt()
     }
 
     /// Covariance, and the quantile that makes an interval of each sigma.
@@ -175,37 +182,33 @@ impl Problem<'_> {
     /// C = A⁻¹ B A⁻¹,   A = JᵀJ
     /// ```
     ///
-    /// There are two B: `Jᵀ R J` with `R = ρ^|i − j|` within a series, which trusts that errors are a first-order process of the spread
-    /// assumed; and the sum of the outer products of each block's score, which does not, but is itself uncertain where blocks are few:
-    /// it makes an interval by Student's t. Parameter by parameter the wider interval is taken, on the advice of Angrist & Pischke
-    /// (2009), *Mostly Harmless Econometrics*, §8.1. A prior's row enters both with its own variance.
+    /// There are two B: `Jᵀ R J` with R of [`Correlation`], which trusts the spread and the correlation assumed; and that of
+    /// [`Problem::scatter_of_blocks`], which does not, but is itself uncertain where blocks are few: it makes an interval by Student's
+    /// t. Parameter by parameter the wider interval is taken, on the advice of Angrist & Pischke (2009), *Mostly Harmless
+    /// Econometrics*, §8.1. A prior's row enters both with its own variance.
     fn covariance(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let count = jacobian.ncols();
         let normal = jacobian.transpose() * jacobian;
-        let scatter = self.scatter_of_blocks(jacobian, errors);
+        let unknown =
+            || (DMatrix::from_diagonal_element(count, count, f64::INFINITY), vec![NORMAL_975; count]);
         // Numbers out of all proportion overflow, and the decomposition of what is not finite never ends.
         let finite = |matrix: &DMatrix<f64>| matrix.iter().all(|value| value.is_finite());
-        if !finite(&normal) || !finite(&scatter) {
-            let unknown = DMatrix::from_diagonal_element(count, count, f64::INFINITY);
-            return (unknown, vec![NORMAL_975; count]);
+        if !finite(&normal) {
+            return unknown();
         }
         let bread = normal.pseudo_inverse(1e-14).unwrap_or_else(|_| DMatrix::zeros(count, count));
-        let blocks = self.block.iter().max().map_or(0, |b| b + 1);
-        // Fitted errors are smaller than true ones by the share of the blocks that the parameters take up, the mean leverage of a
-        // block: Bell & McCaffrey (2002), *Bias reduction in standard errors with multi-stage samples*, of which this is the mean.
-        let data = jacobian.rows(0, self.recorded.len());
-        let taken_up = (&bread * data.transpose() * data).trace();
-        let small_sample = blocks as f64 / (blocks as f64 - taken_up).max(1.0);
+        let scatter = self.scatter_of_blocks(jacobian, errors, &bread);
+        if !finite(&scatter) {
+            return unknown();
+        }
         let mut known = DMatrix::<f64>::zeros(count, count);
         for row in self.recorded.len()..jacobian.nrows() {
             let gradient = DVector::from_iterator(count, jacobian.row(row).iter().copied());
             known += &gradient * gradient.transpose() * self.prior_weight().powi(2);
         }
         let sandwich = |middle: DMatrix<f64>| &bread * (middle + &known) * &bread;
-        let (trusting, blockwise) =
-            (sandwich(self.trusted_scatter(jacobian)), sandwich(scatter * small_sample));
-        // Each parameter is told by some of the blocks only, so fewer than blocks − 1 are taken for free.
-        let few = student_975(blocks.saturating_sub(count) as f64);
+        let (trusting, blockwise) = (sandwich(self.trusted_scatter(jacobian)), sandwich(scatter));
+        let few = student_975(self.blocks().saturating_sub(1) as f64);
         let mut student = vec![few; count];
         let stretch = DVector::from_fn(count, |i, _| {
             let (trusted, found) = (trusting[(i, i)].max(0.0).sqrt(), blockwise[(i, i)].max(0.0).sqrt());
@@ -219,39 +222,53 @@ impl Problem<'_> {
         (covariance, student)
     }
 
-    /// `Jᵀ R J` of errors that are a first-order process in each series.
+    fn blocks(&self) -> usize {
+        self.block.iter().max().map_or(0, |block| block + 1)
+    }
+
+    /// `Jᵀ R J`.
     fn trusted_scatter(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
-        let (rows, rho) = (self.recorded.len(), self.correlation);
-        let data = jacobian.rows(0, rows).into_owned();
+        let data = jacobian.rows(0, self.recorded.len()).into_owned();
         let mut spread = data.clone();
-        for mut column in spread.column_iter_mut() {
-            let own: Vec<f64> = column.iter().copied().collect();
-            let mut behind = 0.0;
-            for i in 1..rows {
-                let follows = self.series[i] == self.series[i - 1];
-                behind = if follows { rho * (behind + own[i - 1]) } else { 0.0 };
-                column[i] += behind;
-            }
-            let mut ahead = 0.0;
-            for i in (1..rows).rev() {
-                let follows = self.series[i] == self.series[i - 1];
-                ahead = if follows { rho * (ahead + own[i]) } else { 0.0 };
-                column[i - 1] += ahead;
-            }
-        }
+        spread
+            .as_mut_slice()
+            .chunks_mut(self.recorded.len().max(1))
+            .for_each(|column| self.correlation.spread(column, self.series));
         data.tr_mul(&spread)
     }
 
-    /// The sum over the blocks of the outer products of their scores.
-    fn scatter_of_blocks(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> DMatrix<f64> {
-        let blocks = self.block.iter().max().map_or(0, |b| b + 1);
-        let mut scores = DMatrix::<f64>::zeros(jacobian.ncols(), blocks);
+    /// How far the fit would move if blocks were left out in turn, brought back to scores: the jackknife,
+    ///
+    /// ```text
+    /// B = (G − 1)/G Σ s̃ s̃ᵀ,   s̃ = (I − A_g A⁻¹)⁻¹ J_gᵀ e_g,   A_g = J_gᵀ J_g
+    /// ```
+    ///
+    /// over G blocks, whose fitted errors are smaller than true ones by their leverage. MacKinnon, Nielsen & Webb (2023), *Cluster-robust
+    /// inference: a guide to empirical practice*, eq. 15 (CV3), which they advise with t(G − 1).
+    fn scatter_of_blocks(
+        &self,
+        jacobian: &DMatrix<f64>,
+        errors: &[f64],
+        bread: &DMatrix<f64>,
+    ) -> DMatrix<f64> {
+        let (count, blocks) = (jacobian.ncols(), self.blocks());
+        let mut scores = vec![DVector::<f64>::zeros(count); blocks];
+        let mut normals = vec![DMatrix::<f64>::zeros(count, count); blocks];
         for (row, &block) in self.block.iter().enumerate() {
-            for j in 0..jacobian.ncols() {
-                scores[(j, block)] += jacobian[(row, j)] * errors[row];
+            for j in 0..count {
+                let slope = jacobian[(row, j)];
+                scores[block][j] += slope * errors[row];
+                (0..count).for_each(|k| normals[block][(j, k)] += slope * jacobian[(row, k)]);
             }
         }
-        &scores * scores.transpose()
+        let mut scatter = DMatrix::<f64>::zeros(count, count);
+        for (score, normal) in scores.into_iter().zip(normals) {
+            let others = DMatrix::identity(count, count) - normal * bread;
+            // Without a block that alone tells a parameter there would be no fit.
+            let score = others.lu().solve(&score).unwrap_or(score);
+            scatter += &score * score.transpose();
+        }
+        scatter * (blocks.saturating_sub(1) as f64 / blocks.max(1) as f64)
     }
 }
 
@@ -328,13 +345,13 @@ mod tests {
             x.iter().enumerate().map(|(i, x)| 1.0 + 0.2 * x + 0.01 * ((i * 7 % 5) as f64 - 2.0)).collect();
         recorded[20] += 50.0;
         let block: Vec<usize> = (0..40).map(|i| i / 2).collect();
-        let predict = |p: &[f64]| x.iter().map(|x| p[0] + p[1] * x).collect::<Vec<f64>>();
+        let predict = |p: &[f64]| Ok(x.iter().map(|x| p[0] + p[1] * x).collect::<Vec<f64>>());
         let problem = Problem {
             recorded: &recorded,
             block: &block,
             sigma: &[0.02; 40],
             series: &[0; 40],
-            correlation: 0.0,
+            correlation: Correlation::NONE,
             largest: 2.0,
             predict: &predict,
         };
@@ -343,6 +360,7 @@ mod tests {
             parameter("slope", None),
             parameter("idle", Some([3.0, 0.5])),
         ]);
+        let fit = fit.unwrap();
         assert_relative_eq!(fit.values[0], 1.0, epsilon = 0.03);
         assert_relative_eq!(fit.values[1], 0.2, epsilon = 0.002);
         // The search ends within a thirtieth of a sigma.

@@ -1,6 +1,6 @@
 //! How far one-second averages scatter about a fit.
 
-use crate::{Drives, folds, score::median};
+use crate::{Drives, correlation::Correlation, folds, score::median};
 
 /// Share of the averages, at the lowest and at the highest predictions, whose spreads are compared.
 const END_SHARE: usize = 3;
@@ -12,8 +12,8 @@ pub(crate) struct Noise {
     floor: f64,
     /// Its growth with what is predicted.
     gain: f64,
-    /// Correlation of neighbouring seconds.
-    pub(crate) correlation: f64,
+    /// How neighbouring seconds err alike.
+    pub(crate) correlation: Correlation,
 }
 
 impl Noise {
@@ -32,19 +32,13 @@ impl Noise {
     pub(crate) fn even(predicted: &[f64], recorded: &[f64], drives: &Drives) -> Noise {
         let errors: Vec<f64> = predicted.iter().zip(recorded).map(|(p, r)| p - r).collect();
         let floor = spread(errors.iter().copied()).max(least(recorded));
-        Noise { floor, gain: 0.0, correlation: 0.0 }.correlated(predicted, &errors, drives)
+        Noise { floor, gain: 0.0, correlation: Correlation::NONE }.correlated(predicted, &errors, drives)
     }
 
     fn correlated(self, predicted: &[f64], errors: &[f64], drives: &Drives) -> Noise {
-        let clipped = |i: usize| (errors[i] / self.sigma(predicted[i])).clamp(-3.0, 3.0);
-        let series = folds::series(drives);
-        let (mut product, mut square) = (0.0, 0.0);
-        for i in (1..errors.len()).filter(|&i| series[i] == series[i - 1]) {
-            product += clipped(i - 1) * clipped(i);
-            square += clipped(i - 1).powi(2);
-        }
-        let correlation = if square > 0.0 { (product / square).clamp(0.0, MOST_CORRELATION) } else { 0.0 };
-        Noise { correlation, ..self }
+        let clipped: Vec<f64> =
+            (0..errors.len()).map(|i| (errors[i] / self.sigma(predicted[i])).clamp(-3.0, 3.0)).collect();
+        Noise { correlation: Correlation::of(&clipped, &folds::series(drives)), ..self }
     }
 
     fn about(predicted: &[f64], errors: &[f64], least: f64) -> Noise {
@@ -58,10 +52,10 @@ impl Noise {
         let whole = spread(errors.iter().copied()).max(least);
         let gain = if high[0] > low[0] { ((high[1] - low[1]) / (high[0] - low[0])).max(0.0) } else { 0.0 };
         if gain == 0.0 {
-            return Noise { floor: whole, gain, correlation: 0.0 };
+            return Noise { floor: whole, gain, correlation: Correlation::NONE };
         }
         let floor = (low[1] - gain * low[0]).max((LEAST_FLOOR * whole).powi(2)).sqrt();
-        Noise { floor, gain: gain.sqrt(), correlation: 0.0 }
+        Noise { floor, gain: gain.sqrt(), correlation: Correlation::NONE }
     }
 
     /// Spread of a one-second average of which so much is predicted.
@@ -76,15 +70,12 @@ impl Noise {
 
     /// One number for how noisy it is: the median spread, more where neighbours err alike.
     pub(crate) fn typical(&self, predicted: &[f64]) -> f64 {
-        median(&self.sigmas(predicted)) / (1.0 - self.correlation)
+        median(&self.sigmas(predicted)) * self.correlation.inflation().sqrt()
     }
 }
 
 /// The floor is no lower than this share of the spread over all, so that standstill does not decide everything.
 const LEAST_FLOOR: f64 = 0.2;
-
-/// Neighbours that err more alike than this are one value, of which nothing more can be told.
-const MOST_CORRELATION: f64 = 0.9;
 
 /// Errors beyond so many sigmas count linearly: Huber's choice of 1.5 to 3 keeps 95 % efficiency or more on normal errors.
 pub(crate) const LARGEST: f64 = 2.5;

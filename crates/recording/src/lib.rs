@@ -44,7 +44,7 @@ pub use combine::Combine;
 pub use error::Error;
 pub use map::{Map, Place, Source, Stamp, Target};
 pub use reading::{
-    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
+    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched, unwatched,
 };
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{

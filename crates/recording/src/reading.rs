@@ -112,7 +112,7 @@ pub fn read_file(
 }
 
 /// A watch that lets everything pass.
-fn unwatched() -> Watch {
+pub fn unwatched() -> Watch {
     Arc::new(|_| ControlFlow::Continue(()))
 }
 
