@@ -11,7 +11,7 @@ use crate::{Repair, gap::GAP_STEPS};
 #[derive(Clone, Debug)]
 pub(crate) struct Coarse {
     /// Rows of the file that a row stands for at most: a power of two.
-    pub(crate) per_row: u32,
+    per_row: u32,
     /// How many rows of the file each row stands for. Rows behind its end were read since and stand for themselves.
     weight: Vec<u32>,
 }
@@ -41,6 +41,11 @@ impl Coarse {
         before.sum::<usize>() + row.saturating_sub(self.weight.len())
     }
 
+    /// Whether any row stands for several.
+    pub(crate) fn is_joined(&self) -> bool {
+        self.per_row > 1
+    }
+
     /// What was done, for the report; `None` where every row stands for itself.
     pub(crate) fn told(&self, place: &str, t_s: &[f64]) -> Option<Repair> {
         let rows: usize = self.first_in_file(t_s.len());
@@ -50,7 +55,7 @@ impl Coarse {
             self.per_row,
             median_rise(t_s)
         );
-        (self.per_row > 1).then(|| Repair { place: place.to_owned(), what })
+        self.is_joined().then(|| Repair { place: place.to_owned(), what })
     }
 
     /// Groups neighbours so that at most so many rows are left, each of twice as many rows of the file as often as need be. `None`

@@ -155,10 +155,11 @@ impl Plan {
     /// The recording of what was read, and the beginning of its report. `position` says where a row of the file stands.
     pub(crate) fn assemble(
         mut self,
-        table: Table,
+        mut table: Table,
         name: &str,
         position: impl Fn(usize) -> Position,
     ) -> Result<(Recording, ReadingReport), Error> {
+        table.settle()?;
         let Table { mut columns, coarse, .. } = table;
         let position = |row: usize| position(coarse.first_in_file(row));
         let (t_s, time_column) = self.take_time(&mut columns)?;

@@ -63,6 +63,10 @@ impl Samples {
 
     /// Makes one of neighbouring messages until half as many are left. False: there are none that follow one another.
     pub(crate) fn halve(&mut self) -> bool {
+        self.join(self.log_ns.len() / 2)
+    }
+
+    fn join(&mut self, most: usize) -> bool {
         let t_s = seconds(&self.log_ns);
         let stamps = &self.stamp_ns;
         // What the stamps have of jumps and late messages is to be seen later.
@@ -71,7 +75,7 @@ impl Samples {
             let apart_s = |ns: i64| ns as f64 / NS_PER_S - (t_s[at] - t_s[at - 1]);
             step_ns(stamps).is_none_or(|ns| ns > 0 && apart_s(ns).abs() < CLOCK_JUMP_S)
         };
-        let Some(groups) = self.coarse.group(&t_s, t_s.len() / 2, follows) else { return false };
+        let Some(groups) = self.coarse.group(&t_s, most, follows) else { return false };
         groups.average_ns(&mut self.log_ns);
         if self.stamp_ns.len() == t_s.len() {
             groups.average_ns(&mut self.stamp_ns);
@@ -86,11 +90,15 @@ impl Samples {
 
     /// Chooses the clock, refuses one that was set on the way, sorts late messages in and drops repeated stamps.
     pub(crate) fn into_stream(
-        self,
+        mut self,
         topic: &str,
         stamp: Stamp,
         repairs: &mut Vec<Repair>,
     ) -> Result<Stream, Error> {
+        if self.coarse.is_joined() {
+            // What was read last becomes as coarse as what was before, so that the stream has one rhythm.
+            self.join(usize::MAX);
+        }
         repairs.extend(self.coarse.told(&format!("topic {topic}"), &seconds(&self.log_ns)));
         let has_stamps = self.stamp_ns.len() == self.log_ns.len() && self.stamp_ns.iter().all(|ns| *ns != 0);
         let by_header = stamp == Stamp::Header && has_stamps;

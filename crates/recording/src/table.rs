@@ -61,6 +61,15 @@ impl Table {
         if self.rows < self.most_rows {
             return Ok(());
         }
+        self.join(self.most_rows / 2)
+    }
+
+    /// Brings the rows that were read last to means of as many as those before, so that a run has one rhythm.
+    pub(crate) fn settle(&mut self) -> Result<(), Error> {
+        if self.coarse.is_joined() { self.join(usize::MAX) } else { Ok(()) }
+    }
+
+    fn join(&mut self, most_rows: usize) -> Result<(), Error> {
         let labels: Vec<Vec<u32>> =
             self.columns.iter_mut().filter_map(Column::index).map(|index| index.clone()).collect();
         let same = |row: usize| labels.iter().all(|index| index[row] == index[row - 1]);
@@ -68,7 +77,7 @@ impl Table {
             Some(Column::Numbers(t)) => t,
             _ => &[],
         };
-        let Some(groups) = self.coarse.group(t, self.most_rows / 2, same) else {
+        let Some(groups) = self.coarse.group(t, most_rows, same) else {
             return Err(Error::TooLarge { most: self.most_rows });
         };
         for (column, period) in self.columns.iter_mut().zip(&self.periods) {
