@@ -228,6 +228,31 @@ fn a_cancelled_job_stays_cancelled_and_can_then_be_forgotten() {
     server.get(&path).problem(404, "unknown-job");
 }
 
+/// The fit of so long a recording takes many times as long as reading it; a turn for the next job comes only when it has ended.
+#[test]
+fn a_fit_under_way_gives_up_its_turn_soon_after_it_is_called_off() {
+    let server = Server::start();
+    let long = server.post("/v1/recordings", "text/csv", drive_csv(40, 10_000).as_bytes());
+    let long = long.json()["id"].as_str().unwrap().to_owned();
+    let short = stored(&server);
+    let body = json!({ "robot": "husky-a200", "recordings": [long] });
+    // As many as run side by side, so that the short one has to wait for one of them.
+    let turns = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs: Vec<String> = (0..turns).map(|_| started(&server, &body)).collect();
+    let fitting = |event: &joulepath_tests::Event| event.data["progress"]["step"] == "fitting";
+    let events = server.events(&format!("/v1/jobs/{}/events", jobs[0]), None);
+    assert!(events.into_iter().any(|event| fitting(&event)), "it ended before it was called off");
+    for job in &jobs {
+        assert_eq!(server.delete(&format!("/v1/jobs/{job}")).json()["state"], "cancelled");
+    }
+    let job = ended(&server, &started(&server, &json!({ "robot": "husky-a200", "recordings": [short] })));
+    assert_eq!(job["state"], "done", "{job}");
+    for job in &jobs {
+        let job = server.get(&format!("/v1/jobs/{job}")).json();
+        assert_eq!((&job["state"], &job["result"]), (&json!("cancelled"), &Value::Null), "{job}");
+    }
+}
+
 #[test]
 fn jobs_are_bounded_and_do_not_keep_plans_or_the_end_waiting() {
     let Held { mut server, recording, pipe: _, _folder } = held();

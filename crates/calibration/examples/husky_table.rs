@@ -90,7 +90,7 @@ fn print_snow(found: &CurrentCalibration, snow: &Drives) {
     println!("\nsnow, held out: rows judged and yaw rate from      R² 1→2  R² 2→1  pooled");
     for (label, drives) in [("all rows", snow.clone().including_stuck()), ("rows not stuck", snow.clone())] {
         for (source, yaw) in [("wheels", YawSource::Wheels), ("gyroscope", YawSource::Gyroscope)] {
-            let (v, _) = judge(&found.robot, &drives, &found.reference_halves, false, yaw);
+            let (v, _) = judge(&found.robot, &drives, &found.reference_halves, false, yaw).unwrap();
             println!(
                 "{label:<15} {source:<30} {:>10.3}  {:>6.3}  {:>6.3}",
                 v.r2_a[0], v.r2_a[1], v.pooled_r2_a

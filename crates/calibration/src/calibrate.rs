@@ -1,7 +1,7 @@
 //! A robot fitted to its recordings.
 
 use model::Robot;
-use recording::{PowerForm, Recording};
+use recording::{PowerForm, Recording, Watch};
 use serde::Serialize;
 
 use crate::{
@@ -79,15 +79,31 @@ pub struct Calibration {
 /// # Errors
 /// [`Error::NothingToFit`], or [`Error::Robot`] where the result is no robot.
 pub fn calibrate(robot: &Robot, recording: &Recording, options: &Options) -> Result<Calibration, Error> {
-    let drives = Drives::new(robot, recording)?;
+    calibrate_drives(robot, &Drives::new(robot, recording)?, options)
+}
+
+/// Fits a robot as [`calibrate()`] does, followed by a watch.
+///
+/// # Errors
+/// As [`calibrate()`], and [`Error::Stopped`] soon after the watch breaks.
+pub fn calibrate_watched(
+    robot: &Robot,
+    recording: &Recording,
+    options: &Options,
+    watch: &Watch,
+) -> Result<Calibration, Error> {
+    calibrate_drives(robot, &Drives::watched(robot, recording, watch)?, options)
+}
+
+fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result<Calibration, Error> {
     if drives.form == Some(PowerForm::MotorCurrents) {
-        return current_calibration::calibrate(robot, &drives, options);
+        return current_calibration::calibrate(robot, drives, options);
     }
-    let (robot, track) = with_slip_track(robot, &drives);
-    let found = fit_power(&robot, &drives)?;
+    let (robot, track) = with_slip_track(robot, drives);
+    let found = fit_power(&robot, drives)?;
     let mut parameters = vec![track];
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
-    let held_out = power_held_out(&robot, &drives)?;
+    let held_out = power_held_out(&robot, drives)?;
     let mut notes: Vec<String> = held_note(&parameters).into_iter().collect();
     if held_out.is_none() {
         notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());

@@ -1,11 +1,11 @@
 //! What an unsigned motor current reads while a robot drives.
 
-use std::cell::RefCell;
+use std::{cell::RefCell, rc::Rc};
 
 use model::{Robot, Sides, rolling, skid};
 
 use crate::{
-    Drives,
+    Drives, Error,
     lag::{self, ATTITUDE_TIME_S},
     row::Row,
     slip_law,
@@ -121,12 +121,36 @@ pub struct CurrentModel<'a> {
     load_shift_per_m: Vec<f64>,
     /// sin of the pitch without the filter's mistake, by row.
     weight_along: Vec<f64>,
-    /// The skid moment over S of the last shapes asked for: only four of the numbers enter it, and it costs the most.
-    mobilized: RefCell<Vec<([f64; 4], Vec<f64>)>>,
+    /// M/S by the three numbers that enter it: it costs the most.
+    quasi_static: Kept<3>,
+    /// M'/S by these and the relaxation length.
+    mobilized: Kept<4>,
 }
 
-/// Shapes that are kept: that of the point at hand and those on both sides of it.
-const KEPT_SHAPES: usize = 3;
+/// What was worked out last for some of the numbers, by row.
+struct Kept<const N: usize>(RefCell<Vec<([f64; N], Rc<[f64]>)>>);
+
+/// Points that are kept: that at hand, and those on both sides of it along two numbers, in the order in which derivatives are taken.
+const KEPT_POINTS: usize = 5;
+
+impl<const N: usize> Kept<N> {
+    fn new() -> Self {
+        Kept(RefCell::new(Vec::new()))
+    }
+
+    /// What is kept of a point, or is now worked out.
+    fn at(&self, point: [f64; N], work_out: impl FnOnce() -> Vec<f64>) -> Rc<[f64]> {
+        let known = self.0.borrow().iter().position(|(known, _)| *known == point);
+        let values = match known {
+            Some(place) => self.0.borrow_mut().remove(place).1,
+            None => work_out().into(),
+        };
+        let mut kept = self.0.borrow_mut();
+        kept.truncate(KEPT_POINTS - 1);
+        kept.insert(0, (point, Rc::clone(&values)));
+        values
+    }
+}
 
 impl<'a> CurrentModel<'a> {
     /// Prepares the inputs of drives.
@@ -156,16 +180,21 @@ impl<'a> CurrentModel<'a> {
             idle_a,
             load_shift_per_m,
             weight_along,
-            mobilized: RefCell::new(Vec::new()),
+            quasi_static: Kept::new(),
+            mobilized: Kept::new(),
         }
     }
 
     /// One-second averages of the reading, left side behind right side.
-    pub fn averages_a(&self, parameters: &CurrentParameters) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn averages_a(&self, parameters: &CurrentParameters) -> Result<Vec<f64>, Error> {
+        self.drives.go_on()?;
         let readings = self.readings_a(parameters);
         let left = self.drives.averaged_by(|row| readings[row].left);
         let right = self.drives.averaged_by(|row| readings[row].right);
-        [left, right].concat()
+        Ok([left, right].concat())
     }
 
     /// The reading of every row \[A\].
@@ -200,21 +229,21 @@ impl<'a> CurrentModel<'a> {
     }
 
     /// M'/S by row.
-    fn mobilized(&self, p: &CurrentParameters) -> Vec<f64> {
-        let shape = [p.slip_angle_scale_rad, p.slip_shape, p.relaxation_length_m, p.wheel_mismatch];
-        let mut kept = self.mobilized.borrow_mut();
-        if let Some(place) = kept.iter().position(|(known, _)| *known == shape) {
-            kept[..=place].rotate_right(1);
-            return kept[0].1.clone();
-        }
-        let mut values: Vec<f64> = self.drives.rows.iter().map(|row| self.quasi_static(p, row)).collect();
-        for stretch in &self.drives.stretches {
-            let rows = stretch.rows.clone();
-            lag::relax(&mut values[rows.clone()], &self.drives.rows[rows], p.relaxation_length_m);
-        }
-        kept.truncate(KEPT_SHAPES - 1);
-        kept.insert(0, (shape, values.clone()));
-        values
+    fn mobilized(&self, p: &CurrentParameters) -> Rc<[f64]> {
+        let [scale, shape, length, mismatch] =
+            [p.slip_angle_scale_rad, p.slip_shape, p.relaxation_length_m, p.wheel_mismatch];
+        let rows = &self.drives.rows;
+        self.mobilized.at([scale, shape, length, mismatch], || {
+            let steady = self
+                .quasi_static
+                .at([scale, shape, mismatch], || rows.iter().map(|row| self.quasi_static(p, row)).collect());
+            let mut values = steady.to_vec();
+            for stretch in &self.drives.stretches {
+                let part = stretch.rows.clone();
+                lag::relax(&mut values[part.clone()], &rows[part], length);
+            }
+            values
+        })
     }
 
     /// M/S: share of the full skid moment, with the sign of the turn.

@@ -54,7 +54,8 @@ const SHAPE: usize = 4;
 /// Fits all surfaces.
 ///
 /// # Errors
-/// [`Error::NoReference`] where the surface asked for was not driven on, [`Error::TooFewRuns`] where it was driven on in one run.
+/// [`Error::NoReference`] where the surface asked for was not driven on, [`Error::TooFewRuns`] where it was driven on in one run,
+/// [`Error::Stopped`] when the drives' watch breaks.
 pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result<CurrentCalibration, Error> {
     let driven: Vec<usize> =
         (0..drives.surfaces.len()).filter(|i| drives.averages.iter().any(|a| a.surface == *i)).collect();
@@ -63,7 +64,7 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
             let found = driven.iter().map(|&i| drives.surfaces[i].clone()).collect();
             Error::NoReference { surface: name.clone(), found }
         })?,
-        None => best_reference(robot, drives, &driven),
+        None => best_reference(robot, drives, &driven)?,
     };
     let on_reference = drives.on_surface(reference);
     let runs = on_reference.judged_runs().len();
@@ -75,23 +76,23 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
     let fit = |drives: &Drives| fit_reference(&robot, drives);
     let (whole, (first, second)) =
         rayon::join(|| fit(&on_reference), || rayon::join(|| fit(&first), || fit(&second)));
-    let reference_halves = [first, second];
+    let (whole, reference_halves) = (whole?, [first?, second?]);
     let mut order = vec![reference];
     order.extend(driven.into_iter().filter(|&i| i != reference));
     let surfaces = order.into_par_iter().map(|i| {
         let here = drives.on_surface(i);
         let is_reference = i == reference;
         let fit =
-            if is_reference { whole.clone() } else { fit_surface(&robot, &here, &whole, YawSource::Wheels) };
+            if is_reference { whole.clone() } else { fit_surface(&robot, &here, &whole, YawSource::Wheels)? };
         let judged = here.judged_runs().len() > 1;
-        let verdict =
-            judged.then(|| judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels).0);
-        let force_alone = fit_force_alone(&robot, &here, &whole);
+        let judge = || judge(&robot, &here, &reference_halves, is_reference, YawSource::Wheels);
+        let verdict = judged.then(judge).transpose()?.map(|(verdict, _)| verdict);
+        let force_alone = fit_force_alone(&robot, &here, &whole)?;
         let p = &fit.parameters;
         let law = nearest_tanh(&robot, &here, p.slip_angle_scale_rad, p.slip_shape);
-        SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict }
+        Ok(SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict })
     });
-    let surfaces = surfaces.collect();
+    let surfaces = surfaces.collect::<Result<_, Error>>()?;
     Ok(CurrentCalibration {
         reference: drives.surfaces[reference].clone(),
         robot,
@@ -102,19 +103,19 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
 }
 
 /// The surface with two runs or more whose lifting current is known best, relative to its size.
-fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> usize {
+fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> Result<usize, Error> {
     let enough: Vec<usize> =
         driven.iter().copied().filter(|&i| drives.on_surface(i).judged_runs().len() > 1).collect();
     let candidates = if enough.is_empty() { driven } else { &enough };
     if let [only] = candidates {
-        return *only;
+        return Ok(*only);
     }
     let doubt = |i: usize| {
-        let fit = fit_reference(robot, &drives.on_surface(i));
-        fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)
+        let fit = fit_reference(robot, &drives.on_surface(i))?;
+        Ok((i, fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)))
     };
-    let doubts: Vec<_> = candidates.par_iter().map(|&i| (i, doubt(i))).collect();
-    doubts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i)
+    let doubts = candidates.par_iter().map(|&i| doubt(i)).collect::<Result<Vec<_>, Error>>()?;
+    Ok(doubts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i))
 }
 
 /// Fits a robot to recordings of motor current.
@@ -165,13 +166,13 @@ fn friction_parameters(
     let fit = &surface.fit.fit;
     let known = file.surfaces.get(&surface.surface);
     let parameter =
-        |field: &str, unit: &str, [value, share]: [f64; 2], determined: bool, before: Option<[f64; 2]>| {
+        |field: &str, i: usize, [value, share]: [f64; 2], determined: bool, before: Option<[f64; 2]>| {
             let [value, share] = before.filter(|_| !determined).unwrap_or([value, share]);
-            let half = if determined { fit.student } else { NORMAL_975 } * share * value;
+            let half = if determined { fit.student[i] } else { NORMAL_975 } * share * value;
             FittedParameter {
                 name: format!("surfaces.{}.{field}", surface.surface),
                 value,
-                unit: unit.into(),
+                unit: if i == SCALE { "rad" } else { "1" }.into(),
                 interval_95: Some([(value - half).max(0.0), value + half]),
                 determined,
             }
@@ -181,7 +182,7 @@ fn friction_parameters(
     let friction = |field: &str, i: usize, before: Option<[f64; 2]>| {
         let height = if i == SKID { surface.law.share } else { 1.0 };
         let value = [height * fit.values[i] / lifting_a, share(i).hypot(lifting_share)];
-        parameter(field, "1", value, fit.determined(i) && force_known, before)
+        parameter(field, i, value, fit.determined(i) && force_known, before)
     };
     // Scale and shape move together: of their ratio, what they share cancels.
     let together = fit.covariance[(SCALE, SHAPE)] / (fit.values[SCALE] * fit.values[SHAPE]);
@@ -192,7 +193,7 @@ fn friction_parameters(
     [
         friction("mu_roll", ROLLING, known.map(|s| [s.mu_roll, u.mu_roll])),
         friction("mu_skid", SKID, known.map(|s| [s.mu_skid, u.mu_skid])),
-        parameter("slip_angle_scale_rad", "rad", scale, fit.determined(SCALE), scale_before),
+        parameter("slip_angle_scale_rad", SCALE, scale, fit.determined(SCALE), scale_before),
     ]
 }
 
@@ -226,8 +227,8 @@ fn fitted_robot(robot: &Robot, found: &CurrentCalibration, parameters: &[FittedP
         else {
             continue;
         };
-        roll_share = roll_share.max(relative_sigma(roll, surface.fit.fit.student));
-        skid_share = skid_share.max(relative_sigma(skid, surface.fit.fit.student));
+        roll_share = roll_share.max(relative_sigma(roll, surface.fit.fit.student[ROLLING]));
+        skid_share = skid_share.max(relative_sigma(skid, surface.fit.fit.student[SKID]));
         let new = Surface {
             mu_roll: roll.value,
             mu_skid: skid.value,

@@ -9,12 +9,13 @@ use model::{Robot, STANDARD_GRAVITY_MPS2};
 use rayon::prelude::*;
 
 use crate::{
-    Drives,
+    Drives, Error,
+    correlation::Correlation,
     current::{COUNT, CurrentModel, CurrentParameters, YawSource, idle_a},
     field::SCALE_SIGMA,
     fit::{Fit, Parameter, Problem},
     folds,
-    noise::Noise,
+    noise::{LARGEST, Noise},
 };
 
 /// Size of an error of a one-second average that stands for a sigma in a first, rough fit \[A\]: twice the spread of 1 A that is
@@ -112,7 +113,10 @@ fn after(robot: &Robot, drives: &Drives, reference: &CurrentParameters) -> [Opti
 ///
 /// The lifting current's prior is centred on the robot file's force per ampere where it gives one. The others are those of a robot
 /// of a Husky's size.
-pub fn fit_reference(robot: &Robot, drives: &Drives) -> CurrentFit {
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub fn fit_reference(robot: &Robot, drives: &Drives) -> Result<CurrentFit, Error> {
     let mut priors = FIRST.each_ref().map(|before| before.prior);
     if let (Some([mean, sigma]), Some(force_n_per_a)) = (priors[LIFTING], robot.motors.left.force_n_per_a) {
         let lifting_a = force_n_per_a_inverse(robot, force_n_per_a);
@@ -128,13 +132,24 @@ pub fn fit_reference(robot: &Robot, drives: &Drives) -> CurrentFit {
 }
 
 /// Fits another surface of the same robot.
-pub fn fit_surface(robot: &Robot, drives: &Drives, reference: &CurrentFit, yaw: YawSource) -> CurrentFit {
+///
+/// # Errors
+/// As [`fit_reference`].
+pub fn fit_surface(
+    robot: &Robot,
+    drives: &Drives,
+    reference: &CurrentFit,
+    yaw: YawSource,
+) -> Result<CurrentFit, Error> {
     let parameters = parameters(&after(robot, drives, &reference.parameters), drives);
     solve(robot, drives, reference.slip_track_m, yaw, &[parameters])
 }
 
 /// Fits with the lifting current left open: what one surface alone says about newtons per ampere.
-pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -> CurrentFit {
+///
+/// # Errors
+/// As [`fit_reference`].
+pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -> Result<CurrentFit, Error> {
     let mut priors = after(robot, drives, &reference.parameters);
     priors[LIFTING] = None;
     let parameters = parameters(&priors, drives);
@@ -186,16 +201,26 @@ fn solve(
     slip_track_m: f64,
     yaw: YawSource,
     starts: &[Vec<Parameter>],
-) -> CurrentFit {
+) -> Result<CurrentFit, Error> {
     let (part, some) = (thinned(drives, MOST_ROWS), thinned(drives, ROUGH_ROWS));
     let rough = |parameters: &Vec<Parameter>| {
-        let (noise, largest) = (ROUGH_NOISE_A, ROUGH_NOISE_A);
         let model = CurrentModel::new(robot, &some, slip_track_m, yaw, idle_a(&some));
         let predict = |values: &[f64]| model.averages_a(&numbers(values));
-        let (recorded, block) = (some.recorded_averages(), folds::blocks(&some));
-        Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict }.solve(parameters)
+        let (recorded, block, series) =
+            (some.recorded_averages(), folds::blocks(&some), folds::series(&some));
+        let sigma = vec![ROUGH_NOISE_A; recorded.len()];
+        let problem = Problem {
+            recorded: &recorded,
+            block: &block,
+            series: &series,
+            sigma: &sigma,
+            correlation: Correlation::NONE,
+            largest: 1.0,
+            predict: &predict,
+        };
+        problem.solve(parameters)
     };
-    let rough: Vec<Fit> = starts.par_iter().map(rough).collect();
+    let rough = starts.par_iter().map(rough).collect::<Result<Vec<Fit>, Error>>()?;
     let best = rough.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut parameters = starts.first().cloned().unwrap_or_default();
     for (parameter, value) in parameters.iter_mut().zip(best.iter().flat_map(|fit| &fit.values)) {
@@ -204,13 +229,21 @@ fn solve(
     let idle_a = idle_a(&part);
     let model = CurrentModel::new(robot, &part, slip_track_m, yaw, idle_a);
     let predict = |values: &[f64]| model.averages_a(&numbers(values));
-    let (recorded, block) = (part.recorded_averages(), folds::blocks(&part));
+    let (recorded, block, series) = (part.recorded_averages(), folds::blocks(&part), folds::series(&part));
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
-    let noise = Noise::of(&predict(&start), &recorded, &part);
-    let (noise, largest) = (noise.weight(), noise.largest());
-    let problem = Problem { recorded: &recorded, block: &block, noise, largest, predict: &predict };
-    let fit = problem.solve_determined(&parameters);
-    CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw }
+    let about = predict(&start)?;
+    let noise = Noise::even(&about, &recorded, &part);
+    let problem = Problem {
+        recorded: &recorded,
+        block: &block,
+        series: &series,
+        sigma: &noise.sigmas(&about),
+        correlation: noise.correlation,
+        largest: LARGEST,
+        predict: &predict,
+    };
+    let fit = problem.solve_determined(&parameters)?;
+    Ok(CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw })
 }
 
 /// About so many rows, or all where those are none that count.
@@ -225,7 +258,10 @@ fn numbers(values: &[f64]) -> CurrentParameters {
 
 impl CurrentFit {
     /// One-second averages of the reading on other drives, left behind right \[A\].
-    pub fn predict_a(&self, robot: &Robot, drives: &Drives) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn predict_a(&self, robot: &Robot, drives: &Drives) -> Result<Vec<f64>, Error> {
         CurrentModel::new(robot, drives, self.slip_track_m, self.yaw, self.idle_a)
             .averages_a(&self.parameters)
     }

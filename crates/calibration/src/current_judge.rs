@@ -4,7 +4,7 @@ use model::{Robot, WarmMotor};
 use serde::Serialize;
 
 use crate::{
-    Drives,
+    Drives, Error,
     current::YawSource,
     current_fit::{CurrentFit, fit_surface},
     folds,
@@ -54,21 +54,28 @@ struct Judged {
 ///
 /// The references are fits of the reference surface's own halves: the half that is fitted leans on the reference's half of the same
 /// parity. On the reference surface itself, they are the fits.
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
 pub fn judge(
     robot: &Robot,
     drives: &Drives,
     references: &[CurrentFit; 2],
     on_reference: bool,
     yaw: YawSource,
-) -> (SurfaceVerdict, [CurrentFit; 2]) {
+) -> Result<(SurfaceVerdict, [CurrentFit; 2]), Error> {
     let halves = folds::halves(drives);
-    let fits: [CurrentFit; 2] = std::array::from_fn(|i| {
-        if on_reference { references[i].clone() } else { fit_surface(robot, &halves[i], &references[i], yaw) }
-    });
-    let judged: [Judged; 2] = std::array::from_fn(|i| {
-        Judged::of(robot, &halves[1 - i], &fits[i], references[i].force_n_per_a(robot))
-    });
-    (verdict(drives, &judged), fits)
+    let fit = |i: usize| {
+        if on_reference {
+            Ok(references[i].clone())
+        } else {
+            fit_surface(robot, &halves[i], &references[i], yaw)
+        }
+    };
+    let fits = [fit(0)?, fit(1)?];
+    let judge = |i: usize| Judged::of(robot, &halves[1 - i], &fits[i], references[i].force_n_per_a(robot));
+    let judged = [judge(0)?, judge(1)?];
+    Ok((verdict(drives, &judged), fits))
 }
 
 fn verdict(drives: &Drives, judged: &[Judged; 2]) -> SurfaceVerdict {
@@ -96,8 +103,8 @@ fn verdict(drives: &Drives, judged: &[Judged; 2]) -> SurfaceVerdict {
 }
 
 impl Judged {
-    fn of(robot: &Robot, drives: &Drives, fit: &CurrentFit, force_n_per_a: f64) -> Judged {
-        let (predicted_a, recorded_a) = (fit.predict_a(robot, drives), drives.recorded_averages());
+    fn of(robot: &Robot, drives: &Drives, fit: &CurrentFit, force_n_per_a: f64) -> Result<Judged, Error> {
+        let (predicted_a, recorded_a) = (fit.predict_a(robot, drives)?, drives.recorded_averages());
         let left = drives.averaged_by(|row| drives.rows[row].rim_mps.left.abs());
         let right = drives.averaged_by(|row| drives.rows[row].rim_mps.right.abs());
         let count = drives.averages.len();
@@ -114,6 +121,6 @@ impl Judged {
             (drives.runs[*run].clone(), drives.energy_error_percent(*run, &predicted_w, &recorded_w))
         };
         let energies = drives.judged_runs().iter().map(energy_error).collect();
-        Judged { predicted_a, recorded_a, predicted_w, recorded_w, energies }
+        Ok(Judged { predicted_a, recorded_a, predicted_w, recorded_w, energies })
     }
 }

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use model::Robot;
 use rayon::prelude::*;
-use recording::{Channel, PowerForm, Recording};
+use recording::{Channel, PowerForm, Recording, Watch};
 
-use crate::{Error, average::Average, copies::copies, losses, row, row::Row, stuck};
+use crate::{Error, average::Average, copies::copies, losses, row, row::Row, stuck, watch::Watched};
 
 /// Rows of one run on one surface without a gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Drives {
     pub stretches: Vec<Stretch>,
     /// Averages in order of rows.
     pub averages: Vec<Average>,
+    /// Asked before every pass over the rows.
+    pub(crate) watch: Watched,
 }
 
 impl Drives {
@@ -45,6 +47,20 @@ impl Drives {
     /// # Errors
     /// [`Error::NothingToFit`] where no row is left that could be judged.
     pub fn new(robot: &Robot, recording: &Recording) -> Result<Self, Error> {
+        Drives::prepared(robot, recording, Watched::default())
+    }
+
+    /// Prepares a recording as [`Drives::new`] does, followed by a watch: it, and all that is computed from these drives, ends soon
+    /// after the watch breaks.
+    ///
+    /// # Errors
+    /// As [`Drives::new`], and [`Error::Stopped`] when the watch breaks.
+    pub fn watched(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Self, Error> {
+        Drives::prepared(robot, recording, Watched::by(watch))
+    }
+
+    fn prepared(robot: &Robot, recording: &Recording, watch: Watched) -> Result<Self, Error> {
+        watch.go_on()?;
         let form = recording.power_form().ok_or(Error::NothingToFit { reason: "it tells no power" })?;
         let recorded = recorded(recording, form);
         let mut drives = Drives {
@@ -52,6 +68,7 @@ impl Drives {
             form: Some(form),
             rows: row::inputs(robot, recording, &recorded),
             recorded,
+            watch,
             ..Drives::default()
         };
         let copies = copies(recording);
@@ -60,6 +77,7 @@ impl Drives {
                 drives.split(robot, recording, run, rows);
             }
         }
+        drives.watch.go_on()?;
         drives.each_stretch(row::accelerations);
         stuck::flag(&mut drives, robot);
         drives.remember_losses(robot);
@@ -158,6 +176,7 @@ impl Drives {
             surfaces: self.surfaces.clone(),
             form: self.form,
             recorded: vec![Vec::new(); self.recorded.len()],
+            watch: self.watch.clone(),
             ..Drives::default()
         };
         for stretch in stretches {
@@ -180,6 +199,14 @@ impl Drives {
             self.average();
         }
         self
+    }
+
+    /// Asks the watch whether to go on.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when it breaks.
+    pub fn go_on(&self) -> Result<(), Error> {
+        self.watch.go_on()
     }
 
     /// The drives on one surface.

@@ -65,6 +65,9 @@ pub enum Error {
         /// What the recording lacks.
         needs: &'static str,
     },
+    /// Who asked for it stopped the computation.
+    #[error("the computation was stopped")]
+    Stopped,
     /// The fitted robot does not pass its own checks.
     #[error("the fitted robot cannot be: {0}")]
     Robot(#[from] model::Error),

@@ -38,3 +38,11 @@ pub fn blocks(drives: &Drives) -> Vec<usize> {
     let once = block_of_averages(drives);
     (0..drives.recorded.len()).flat_map(|_| once.iter().copied()).collect()
 }
+
+/// The run and column of every recorded average, numbered column behind column.
+pub(crate) fn series(drives: &Drives) -> Vec<usize> {
+    let runs = drives.runs.len();
+    (0..drives.recorded.len())
+        .flat_map(|column| drives.averages.iter().map(move |average| column * runs + average.run))
+        .collect()
+}

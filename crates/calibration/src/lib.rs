@@ -6,6 +6,7 @@
 pub mod average;
 pub mod calibrate;
 mod copies;
+pub mod correlation;
 pub mod current;
 pub mod current_calibration;
 pub mod current_fit;
@@ -30,10 +31,11 @@ mod scatter;
 pub mod score;
 pub mod slip_law;
 mod stuck;
+mod watch;
 
-pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate};
+pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
 pub use drives::Drives;
 pub use error::Error;
 pub use method::Method;
-pub use predict::{PredictedDrives, Prediction, RunPrediction, predict};
+pub use predict::{PredictedDrives, Prediction, RunPrediction, predict, predict_watched};
 pub use stuck::{SlipTrack, slip_track};

@@ -1,10 +1,10 @@
 //! The procedures that a robot can be fitted by, as a person chooses between them.
 
 use model::Robot;
-use recording::Recording;
+use recording::{Recording, Watch};
 use serde::{Deserialize, Serialize};
 
-use crate::{Calibration, Error, Options, calibrate, dogru_marques};
+use crate::{Calibration, Error, Options, calibrate, calibrate_watched, dogru_marques};
 
 /// A procedure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,6 +30,23 @@ impl Method {
     ) -> Result<Calibration, Error> {
         match self {
             Method::Fit => calibrate(robot, recording, options),
+            Method::DogruMarques => dogru_marques::calibrate(robot, recording),
+        }
+    }
+
+    /// Fits a robot as [`Method::calibrate`] does, followed by a watch. The paper's procedure is over before anyone could stop it.
+    ///
+    /// # Errors
+    /// As [`Method::calibrate`], and [`Error::Stopped`] soon after the watch breaks.
+    pub fn calibrate_watched(
+        self,
+        robot: &Robot,
+        recording: &Recording,
+        options: &Options,
+        watch: &Watch,
+    ) -> Result<Calibration, Error> {
+        match self {
+            Method::Fit => calibrate_watched(robot, recording, options, watch),
             Method::DogruMarques => dogru_marques::calibrate(robot, recording),
         }
     }

@@ -45,12 +45,13 @@ impl<'a> PowerModel<'a> {
     /// One-second averages of what is wanted of the power of each row.
     ///
     /// # Errors
-    /// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on.
+    /// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on, [`Error::Stopped`] when the drives' watch breaks.
     pub fn averages<const N: usize>(
         &self,
         robot: &Robot,
         wanted: impl Fn(&Row, &Power) -> [f64; N] + Sync,
     ) -> Result<Vec<[f64; N]>, Error> {
+        self.drives.go_on()?;
         let ground = self.prepare(robot)?;
         let kept = self.shapes.borrow();
         let shapes: &[FrictionShape] = kept.first().map_or(&[], |shapes| &shapes.by_row);
@@ -102,12 +103,13 @@ impl<'a> PowerModel<'a> {
 /// Power of every row, reduced to what is wanted of the row at an index; for asking once.
 ///
 /// # Errors
-/// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on.
+/// [`Error::UnknownSurface`] where the robot lacks a surface that was driven on, [`Error::Stopped`] when the drives' watch breaks.
 pub fn by_row<T: Send>(
     drives: &Drives,
     robot: &Robot,
     wanted: impl Fn(usize, &Power) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
+    drives.go_on()?;
     let ground = ground(drives, robot)?;
     let surface = surface_of_rows(drives);
     let value = |(i, row): (usize, &Row)| wanted(i, &ground[surface[i] as usize].power(robot, row));

@@ -8,7 +8,7 @@ use crate::{
     field::{applied, known_before, with_new_ground},
     fit::{Fit, Problem},
     folds,
-    noise::Noise,
+    noise::{LARGEST, Noise},
     power::{PowerModel, seen_w},
 };
 
@@ -24,6 +24,10 @@ pub struct PowerFit {
 /// Rows on which a first fit of a long recording is made, before all of them have their say.
 const FIRST_ROWS: usize = 20_000;
 
+/// One-second averages that are fitted at most, about 28 hours, spread evenly over a longer recording: chance alone would move no
+/// parameter by a hundredth of what the model misses, and each takes 5 kB.
+const MOST_AVERAGES: usize = 100_000;
+
 /// Rounds of fit and noise at most, and the share of the noise before that counts as no change.
 const MOST_ROUNDS: usize = 5;
 const SETTLED: f64 = 0.9;
@@ -31,13 +35,17 @@ const SETTLED: f64 = 0.9;
 /// Fits friction per surface, motor constants, regeneration and standing powers to all rows.
 ///
 /// # Errors
-/// [`Error::Robot`] where the result does not pass the robot's own checks.
+/// [`Error::Robot`] where the result does not pass the robot's own checks, [`Error::Stopped`] when the drives' watch breaks.
 pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
     if drives.rows.len() <= FIRST_ROWS {
         return fit_from(robot, drives, None);
     }
-    let first = fit_thinned(robot, drives)?;
-    fit_from(robot, drives, Some(&first.fit))
+    let first = fit_thinned(robot, drives)?.fit;
+    if drives.averages.len() <= MOST_AVERAGES {
+        return fit_from(robot, drives, Some(&first));
+    }
+    let most_rows = (drives.rows.len() as f64 * MOST_AVERAGES as f64 / drives.averages.len() as f64) as usize;
+    fit_from(robot, &drives.thinned(most_rows), Some(&first))
 }
 
 /// Fits to a part of a long recording, spread evenly over it: what judges other runs need not be as sharp as what is kept.
@@ -61,39 +69,54 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
         }
     }
     let model = PowerModel::new(drives);
-    model.averages(&robot, |_, _| [])?;
     let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);
-    let problem = |noise: Noise| Problem {
-        recorded: &recorded,
-        block: &block,
-        noise: noise.weight(),
-        largest: noise.largest(),
-        predict: &predict,
-    };
+    let series = folds::series(drives);
+    let data = Data { recorded: &recorded, block: &block, series: &series, predict: &predict };
     let start: Vec<f64> = parameters.iter().map(|p| p.start).collect();
-    let mut noise = Noise::of(&predict(&start), &recorded, drives);
+    let mut about = predict(&start)?;
+    let mut noise = Noise::growing(&about, &recorded, drives);
     // A file that is far off makes for noise that would keep the fit there, so both are worked out in turns.
     for _ in 0..if before.is_none() { MOST_ROUNDS } else { 0 } {
-        let rough = problem(noise).solve(&parameters);
+        let rough = data.problem(noise, &noise.sigmas(&about)).solve(&parameters)?;
         parameters.iter_mut().zip(&rough.values).for_each(|(parameter, value)| parameter.start = *value);
-        let weight = noise.weight();
-        noise = Noise::of(&predict(&rough.values), &recorded, drives);
-        if noise.weight() > SETTLED * weight {
+        let before = noise.typical(&about);
+        about = predict(&rough.values)?;
+        noise = Noise::growing(&about, &recorded, drives);
+        if noise.typical(&about) > SETTLED * before {
             break;
         }
     }
-    let fit = problem(noise).solve_determined(&parameters);
+    let fit = data.problem(noise, &noise.sigmas(&about)).solve_determined(&parameters)?;
     let fitted = applied(&robot, &fields, &fit.values);
     fitted.validate()?;
     Ok(PowerFit { robot: fitted, fit })
 }
 
+/// What is to be explained, whatever its noise.
+struct Data<'a> {
+    recorded: &'a [f64],
+    block: &'a [usize],
+    series: &'a [usize],
+    predict: &'a dyn Fn(&[f64]) -> Result<Vec<f64>, Error>,
+}
+
+impl<'a> Data<'a> {
+    fn problem(&self, noise: Noise, sigma: &'a [f64]) -> Problem<'a> {
+        let Data { recorded, block, series, predict } = *self;
+        let correlation = noise.correlation;
+        Problem { recorded, block, series, sigma, correlation, largest: LARGEST, predict }
+    }
+}
+
 /// One-second averages of what a recording of a candidate would show, column behind column.
-fn predicted(model: &PowerModel<'_>, candidate: &Robot, drives: &Drives, form: PowerForm) -> Vec<f64> {
-    let Ok(seen) = model.averages(candidate, |row, power| seen_w(candidate, form, row, power)) else {
-        return Vec::new();
-    };
-    (0..drives.recorded.len()).flat_map(|column| seen.iter().map(move |watts| watts[column])).collect()
+fn predicted(
+    model: &PowerModel<'_>,
+    candidate: &Robot,
+    drives: &Drives,
+    form: PowerForm,
+) -> Result<Vec<f64>, Error> {
+    let seen = model.averages(candidate, |row, power| seen_w(candidate, form, row, power))?;
+    Ok((0..drives.recorded.len()).flat_map(|column| seen.iter().map(move |watts| watts[column])).collect())
 }

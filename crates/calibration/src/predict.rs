@@ -2,7 +2,7 @@
 
 use model::{Power, PowerKernel, Robot, Sides};
 use rayon::prelude::*;
-use recording::{PowerForm, Recording};
+use recording::{PowerForm, Recording, Watch};
 use serde::Serialize;
 
 use crate::{
@@ -72,7 +72,22 @@ pub struct PredictedDrives {
 /// # Errors
 /// [`Error::NothingToFit`], [`Error::UnknownSurface`] or [`Error::NoForcePerAmpere`].
 pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, Error> {
-    let drives = Drives::new(robot, recording)?;
+    predict_drives(robot, Drives::new(robot, recording)?)
+}
+
+/// Predicts as [`predict()`] does, followed by a watch.
+///
+/// # Errors
+/// As [`predict()`], and [`Error::Stopped`] soon after the watch breaks.
+pub fn predict_watched(
+    robot: &Robot,
+    recording: &Recording,
+    watch: &Watch,
+) -> Result<PredictedDrives, Error> {
+    predict_drives(robot, Drives::watched(robot, recording, watch)?)
+}
+
+fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {
     let stuck: Vec<bool> = drives.rows.iter().map(|row| row.stuck).collect();
     // A prediction is judged on all of a drive; being stuck is part of it.
     let drives = drives.including_stuck();
@@ -92,6 +107,7 @@ pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, 
         Some(amperes) => currents(robot, &drives, amperes)?,
         None => Vec::new(),
     };
+    drives.go_on()?;
     let order = drives.judged_runs();
     let averages = Averages {
         predicted_w: drives.averaged(&predicted_w),

@@ -66,7 +66,7 @@ fn held_out_runs_of_the_real_husky_reach_the_targets_and_force_per_ampere_agrees
     let (snow, _) = recording::read_paths(&snow, None).unwrap();
     let snow = Drives::new(&found.robot, &snow).unwrap();
     let all = snow.clone().including_stuck();
-    let r2 = |yaw| judge(&found.robot, &all, &found.reference_halves, false, yaw).0.pooled_r2_a;
+    let r2 = |yaw| judge(&found.robot, &all, &found.reference_halves, false, yaw).unwrap().0.pooled_r2_a;
     let (wheels, gyroscope) = (r2(YawSource::Wheels), r2(YawSource::Gyroscope));
     assert!(gyroscope > wheels + 0.05, "the measured yaw rate explains more of snow: {gyroscope} {wheels}");
     let share = |name: &str| {

@@ -2,119 +2,31 @@
 
 #![allow(clippy::unwrap_used)]
 
-use calibration::{Drives, Options, calibrate, power_fit::fit_power, predict};
+use calibration::{Options, calibrate, predict};
 use model::{Attitude, Motion, Robot, Sides, builtin, power};
 use proptest::prelude::*;
 use rand_pcg::Pcg64Mcg;
-use rayon::prelude::*;
 use recording::{Channel, Recording};
 
 mod simulated;
 use simulated::{
-    Coverage, ROWS, RUNS, drives, normal, over_two_grounds, seeded, with_battery_power, with_heat, with_power,
+    ROWS, RUNS, drives, normal, seeded, with_power,
+    worlds::{World, file, truth},
 };
-
-/// What the robot file says; the truth of each trial is drawn from it with its own uncertainty.
-fn file() -> Robot {
-    let mut robot = builtin::husky_a200();
-    robot.motors.regeneration = 0.5;
-    robot.drive_electronics_w = 20.0;
-    robot
-}
-
-fn truth(random: &mut Pcg64Mcg) -> Robot {
-    let mut robot = file();
-    let u = robot.uncertainty;
-    let mut vary = |value: &mut f64, relative: f64| *value *= 1.0 + relative * normal(random);
-    let marble = robot.surfaces.get_mut("marble").unwrap();
-    vary(&mut marble.mu_roll, u.mu_roll);
-    vary(&mut marble.mu_skid, u.mu_skid);
-    vary(&mut marble.slip_angle_scale_rad, 0.2);
-    for motor in [&mut robot.motors.left, &mut robot.motors.right] {
-        vary(&mut motor.k1_w_per_n2, u.k1);
-        vary(&mut motor.k2, u.k2);
-    }
-    vary(&mut robot.motors.regeneration, 0.3);
-    vary(&mut robot.drive_electronics_w, 0.3);
-    robot
-}
-
-fn value(robot: &Robot, name: &str) -> f64 {
-    let json = serde_json::to_value(robot).unwrap();
-    json.pointer(&format!("/{}", name.replace('.', "/"))).unwrap().as_f64().unwrap()
-}
-
-/// Fits a hundred recordings of robots that are drawn from what the file says of them.
-fn coverage(seeds: u64, simulate: impl Fn(&mut Pcg64Mcg) -> (Robot, Recording) + Sync) -> Coverage {
-    let trial = |seed: u64| {
-        let (truth, recording) = simulate(&mut seeded(seed));
-        let fit = fit_power(&file(), &Drives::new(&file(), &recording).unwrap()).unwrap().fit;
-        let inside = |i: usize| {
-            let name = &fit.parameters[i].name;
-            let [low, high] = fit.interval_95(i);
-            fit.determined(i).then(|| (name.clone(), (low..=high).contains(&value(&truth, name))))
-        };
-        (0..fit.values.len()).filter_map(inside).collect::<Vec<_>>()
-    };
-    let trials: Vec<_> = (seeds..seeds + 100).into_par_iter().map(trial).collect();
-    let mut coverage = Coverage::default();
-    trials.into_iter().for_each(|trial| coverage.add(trial));
-    coverage
-}
 
 #[test]
 fn determined_parameters_lie_in_their_95_per_cent_intervals_about_as_often_as_promised() {
-    // Other seeds than those that the intervals were worked out on.
-    let coverage = coverage(1000, |random| {
-        let truth = truth(random);
-        let plain = drives(random, RUNS, ROWS);
-        let recording = with_power(&truth, plain, random);
-        (truth, recording)
-    });
-    let names = [
-        "surfaces.marble.mu_roll",
-        "surfaces.marble.mu_skid",
-        "surfaces.marble.slip_angle_scale_rad",
-        "motors.left.k1_w_per_n2",
-        "motors.right.k1_w_per_n2",
-        "motors.regeneration",
-        "drive_electronics_w",
-    ];
-    coverage.assert_as_promised(&names);
+    World::Sides.assert_as_promised();
 }
 
 #[test]
 fn motors_that_warm_tell_their_temperature_coefficients_and_each_ground_its_friction() {
-    let coverage = coverage(3000, |random| {
-        let mut truth = truth(random);
-        truth.motors.resistance_per_k += 0.001 * normal(random);
-        truth.motors.motor_constant_per_k = (-0.0012 + 0.0006 * normal(random)).min(0.0);
-        let plain = over_two_grounds(drives(random, RUNS, ROWS), ["marble", "sandy_loam"]);
-        let recording = with_power(&truth, with_heat(plain, random), random);
-        (truth, recording)
-    });
-    let names = [
-        "motors.resistance_per_k",
-        "motors.motor_constant_per_k",
-        "surfaces.marble.mu_roll",
-        "surfaces.sandy_loam.mu_roll",
-        "surfaces.sandy_loam.mu_skid",
-    ];
-    coverage.assert_as_promised(&names);
+    World::Warming.assert_as_promised();
 }
 
 #[test]
 fn the_battery_alone_tells_hotel_power_and_friction() {
-    let coverage = coverage(4000, |random| {
-        let mut truth = truth(random);
-        truth.hotel_power_w = 40.0 + 10.0 * normal(random);
-        let plain = drives(random, RUNS, ROWS);
-        let recording = with_battery_power(&truth, plain, random);
-        (truth, recording)
-    });
-    let names =
-        ["hotel_power_w", "drive_electronics_w", "surfaces.marble.mu_roll", "surfaces.marble.mu_skid"];
-    coverage.assert_as_promised(&names);
+    World::Battery.assert_as_promised();
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A diagnosis from beginning to end.
 
 use model::Robot;
-use recording::{Channel, Recording};
+use recording::{Channel, Recording, Watch, unwatched};
 
 use crate::{
     Error,
@@ -52,8 +52,22 @@ pub fn diagnose(
     healthy: Option<&Recording>,
     progress: &dyn Fn(&str, f64),
 ) -> Result<Diagnosis, Error> {
+    diagnose_watched(robot, suspect, healthy, progress, &unwatched())
+}
+
+/// Diagnoses as [`diagnose()`] does, followed by a watch, which is asked before every prediction.
+///
+/// # Errors
+/// As [`diagnose()`], and [`calibration::Error::Stopped`] soon after the watch breaks.
+pub fn diagnose_watched(
+    robot: &Robot,
+    suspect: &Recording,
+    healthy: Option<&Recording>,
+    progress: &dyn Fn(&str, f64),
+    watch: &Watch,
+) -> Result<Diagnosis, Error> {
     progress("preparing the drives", 0.0);
-    let series = Series::new(robot, suspect, healthy)?;
+    let series = Series::watched(robot, suspect, healthy, watch)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });

@@ -28,7 +28,7 @@ pub(crate) fn doubts(
     let given = follows(robot, series)?;
     for (change, words) in CHANGES {
         let Some(changed) = change(recording) else { continue };
-        let other = follows(robot, &Series::new(robot, &changed, None)?)?;
+        let other = follows(robot, &Series::watched(robot, &changed, None, series.watch())?)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
             said.push(format!(
                 "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",

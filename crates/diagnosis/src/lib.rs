@@ -36,7 +36,7 @@ mod term;
 mod weigh;
 mod words;
 
-pub use diagnose::diagnose;
+pub use diagnose::{diagnose, diagnose_watched};
 pub use error::Error;
 pub use plain::Plain;
 pub use report::{Diagnosis, Verdict};

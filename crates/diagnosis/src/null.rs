@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use model::Robot;
-use recording::Recording;
+use recording::{Recording, Watch};
 
 use crate::{
     Error,
@@ -29,12 +29,18 @@ impl Null {
     /// Takes each healthy drive for suspect in turn. Without healthy drives nothing is discounted.
     ///
     /// # Errors
-    /// A surface that the robot does not know.
-    pub(crate) fn of(robot: &Robot, healthy: Option<&Recording>) -> Result<Self, Error> {
+    /// A surface that the robot does not know, or that the watch breaks.
+    pub(crate) fn of(robot: &Robot, healthy: Option<&Recording>, watch: &Watch) -> Result<Self, Error> {
         let Some(healthy) = healthy else { return Ok(Null::default()) };
         let mut surplus: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
         for (suspect, others) in one_and_others(healthy) {
-            let Ok(series) = Series::new(robot, &suspect, Some(&others)) else { continue };
+            let series = match Series::watched(robot, &suspect, Some(&others), watch) {
+                Ok(series) => series,
+                Err(Error::Calibration(calibration::Error::Stopped)) => {
+                    return Err(calibration::Error::Stopped.into());
+                }
+                Err(_) => continue,
+            };
             let base = Baseline::fit(&series, robot, &[])?;
             let (weighed, blocks) = weigh_all(&series, &base, &[], &Null::default())?;
             for Weighed { candidate, evidence, tried, .. } in &weighed {

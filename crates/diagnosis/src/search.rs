@@ -61,7 +61,7 @@ pub fn search(
     progress: &dyn Fn(&str, f64),
 ) -> Result<Search, Error> {
     progress("comparing healthy drives", 0.0);
-    let null = Null::of(file, healthy)?;
+    let null = Null::of(file, healthy, series.watch())?;
     progress("fitting the robot", 0.05);
     let before = Baseline::fit(series, file, &[])?;
     let mut after = Baseline::fit(series, file, &[])?;

@@ -6,7 +6,7 @@ use model::{
     mechanism::{Mechanism, Moment},
 };
 use rayon::prelude::*;
-use recording::{Channel, PowerForm, Recording};
+use recording::{Channel, PowerForm, Recording, Watch, unwatched};
 
 use crate::Error;
 
@@ -48,6 +48,7 @@ pub struct Series {
     /// What each value is of, in the same order.
     pub averages: Vec<Average>,
     channels: usize,
+    watch: Watch,
 }
 
 /// What one value is an average of.
@@ -92,16 +93,30 @@ impl Series {
     /// # Errors
     /// As [`Drives::new`]; drives that tell power in different forms.
     pub fn new(robot: &Robot, suspect: &Recording, healthy: Option<&Recording>) -> Result<Self, Error> {
-        let mut parts = vec![Part::new(robot, suspect, true)?];
+        Series::watched(robot, suspect, healthy, &unwatched())
+    }
+
+    /// Prepares drives as [`Series::new`] does; predictions end when the watch breaks.
+    ///
+    /// # Errors
+    /// As [`Series::new`].
+    pub fn watched(
+        robot: &Robot,
+        suspect: &Recording,
+        healthy: Option<&Recording>,
+        watch: &Watch,
+    ) -> Result<Self, Error> {
+        let mut parts = vec![Part::new(robot, suspect, true, watch)?];
         if let Some(healthy) = healthy {
-            parts.push(Part::new(robot, healthy, false)?);
+            parts.push(Part::new(robot, healthy, false, watch)?);
         }
         let form = parts[0].drives.form.unwrap_or(PowerForm::Battery);
         if form == PowerForm::MotorCurrents || parts.iter().any(|part| part.drives.form != Some(form)) {
             return Err(Error::Form);
         }
         let channels = if form == PowerForm::Sides { 2 } else { 1 };
-        let mut series = Series { parts, form, recorded: Vec::new(), averages: Vec::new(), channels };
+        let watch = Watch::clone(watch);
+        let mut series = Series { parts, form, recorded: Vec::new(), averages: Vec::new(), channels, watch };
         let mut runs = 0;
         for part in &series.parts {
             series.recorded.extend(part.drives.recorded_averages());
@@ -111,6 +126,11 @@ impl Series {
             runs += part.drives.runs.len();
         }
         Ok(series)
+    }
+
+    /// Who is asked whether to go on.
+    pub(crate) fn watch(&self) -> &Watch {
+        &self.watch
     }
 
     /// Number of channels of power.
@@ -173,9 +193,9 @@ impl Series {
 }
 
 impl Part {
-    fn new(robot: &Robot, recording: &Recording, suspect: bool) -> Result<Self, Error> {
+    fn new(robot: &Robot, recording: &Recording, suspect: bool, watch: &Watch) -> Result<Self, Error> {
         // Being stuck is a mechanism's business here.
-        let drives = Drives::new(robot, recording)?.including_stuck();
+        let drives = Drives::watched(robot, recording, watch)?.including_stuck();
         let mut began_s = vec![0.0; recording.rows()];
         for run in &recording.runs {
             let first = run.rows.clone().next().map_or(0.0, |row| recording.t_s[row]);
@@ -224,6 +244,7 @@ impl Part {
 
     /// What each channel would show, by row.
     fn predict(&self, robot: &Robot, applied: &[Applied], form: PowerForm) -> Result<Vec<[f64; 2]>, Error> {
+        self.drives.go_on()?;
         let mut changed = robot.clone();
         for applied in applied {
             changed = applied.mechanism.robot(&changed, &applied.values).unwrap_or(changed);

@@ -129,11 +129,11 @@ pub fn temperature_coefficients(
     let before = spread(&[0.0, 0.0])?;
     let start = [shared.resistance_per_k, shared.motor_constant_per_k];
     let best = least_squares::nonlinear(
-        |alphas| spread(alphas).unwrap_or_else(|_| vec![f64::MAX.sqrt(); samples.len()]),
+        |alphas| Ok::<_, Error>(spread(alphas).unwrap_or_else(|_| vec![f64::MAX.sqrt(); samples.len()])),
         &start,
         &[0.0, -0.005],
         &[0.01, 0.0],
-    );
+    )?;
     let deviation = |r: &[f64]| (r.iter().map(|x| x * x).sum::<f64>() / r.len() as f64).sqrt();
     Ok(TemperatureCoefficients {
         resistance_per_k: best[0],

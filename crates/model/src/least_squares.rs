@@ -2,11 +2,11 @@
 //!
 //! The solver crate is young, so it is used in this file only.
 
-use std::convert::Infallible;
+use std::marker::PhantomData;
 
 use basin::{
-    BoundedLevenbergMarquardt, BoxBounds, ConstraintDescription, ConstraintSet, Constraints, CostFunction,
-    Executor, Jacobian, PointState, Residual,
+    BoundedLevenbergMarquardt, BoxBounds, ConstraintDescription, ConstraintSet, ConstraintSolveError,
+    Constraints, CostFunction, Executor, Jacobian, PointState, Residual,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -44,16 +44,20 @@ pub fn linear<const N: usize>(rows: &[([f64; N], f64)]) -> Option<[f64; N]> {
 ///
 /// Derivatives are central differences with a step relative to each parameter's range. Returns the best
 /// parameters found; the residual function must be finite inside the bounds.
-pub fn nonlinear(
-    residuals: impl Fn(&[f64]) -> Vec<f64>,
+///
+/// # Errors
+/// That of the residual function, which ends the search.
+pub fn nonlinear<E: std::error::Error + 'static>(
+    residuals: impl Fn(&[f64]) -> Result<Vec<f64>, E>,
     start: &[f64],
     lower: &[f64],
     upper: &[f64],
-) -> Vec<f64> {
+) -> Result<Vec<f64>, E> {
     let range: Vec<f64> = lower.iter().zip(upper).map(|(low, high)| high - low).collect();
     let unscaled = |z: &[f64]| -> Vec<f64> { (0..z.len()).map(|i| lower[i] + z[i] * range[i]).collect() };
     let problem = Problem {
         residuals: |z: &[f64]| residuals(&unscaled(z)),
+        error: PhantomData,
         lower: DVector::zeros(range.len()),
         upper: DVector::repeat(range.len(), 1.0),
     };
@@ -63,28 +67,34 @@ pub fn nonlinear(
     let solver = BoundedLevenbergMarquardt::new().with_relative_cost_change_tolerance(COST_CHANGE);
     let outcome = Executor::new(problem, solver, initial).max_iter(MAX_ITERATIONS).run();
     match outcome {
-        Ok(result) => unscaled(result.param().as_slice()),
-        Err(_) => start.to_vec(),
+        Ok(result) => Ok(unscaled(result.param().as_slice())),
+        Err(ConstraintSolveError::Evaluation(error)) => Err(error),
+        Err(_) => Ok(start.to_vec()),
     }
 }
 
 /// Derivatives of the residuals at x by central differences, one column a parameter.
-pub fn jacobian(
-    residuals: impl Fn(&[f64]) -> Vec<f64>,
+///
+/// # Errors
+/// That of the residual function.
+pub fn jacobian<E>(
+    residuals: impl Fn(&[f64]) -> Result<Vec<f64>, E>,
     x: &[f64],
     lower: &[f64],
     upper: &[f64],
-) -> DMatrix<f64> {
-    let columns: Vec<DVector<f64>> = (0..x.len())
+) -> Result<DMatrix<f64>, E> {
+    let columns: Result<Vec<DVector<f64>>, E> = (0..x.len())
         .map(|j| {
             let step = (upper[j] - lower[j]) * DIFFERENCE_STEP;
             let (mut above, mut below) = (x.to_vec(), x.to_vec());
             above[j] += step;
             below[j] -= step;
-            (DVector::from_vec(residuals(&above)) - DVector::from_vec(residuals(&below))) / (2.0 * step)
+            let [above, below] =
+                [DVector::from_vec(residuals(&above)?), DVector::from_vec(residuals(&below)?)];
+            Ok((above - below) / (2.0 * step))
         })
         .collect();
-    DMatrix::from_columns(&columns)
+    Ok(DMatrix::from_columns(&columns?))
 }
 
 /// The search ends when a step lowers the sum of squares by less than this share. Of n values that is n/1e8 in χ², for 100 000 of
@@ -94,19 +104,20 @@ const MAX_ITERATIONS: u64 = 200;
 /// Step of the central differences, as a fraction of a parameter's range: near the cube root of the rounding.
 const DIFFERENCE_STEP: f64 = 1e-5;
 
-struct Problem<F> {
+struct Problem<F, E> {
     residuals: F,
+    error: PhantomData<E>,
     lower: DVector<f64>,
     upper: DVector<f64>,
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> Problem<F> {
-    fn at(&self, x: &DVector<f64>) -> DVector<f64> {
-        DVector::from_vec((self.residuals)(x.as_slice()))
+impl<E, F: Fn(&[f64]) -> Result<Vec<f64>, E>> Problem<F, E> {
+    fn at(&self, x: &DVector<f64>) -> Result<DVector<f64>, E> {
+        (self.residuals)(x.as_slice()).map(DVector::from_vec)
     }
 }
 
-impl<F> Constraints for Problem<F> {
+impl<F, E> Constraints for Problem<F, E> {
     type Set = ConstraintSet<BoxBounds<DVector<f64>>>;
 
     fn constraints(&self) -> <Self::Set as ConstraintDescription>::Borrowed<'_> {
@@ -114,36 +125,38 @@ impl<F> Constraints for Problem<F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> CostFunction for Problem<F> {
+impl<E: std::error::Error + 'static, F: Fn(&[f64]) -> Result<Vec<f64>, E>> CostFunction for Problem<F, E> {
     type Param = DVector<f64>;
     type Output = f64;
-    type Error = Infallible;
+    type Error = E;
 
-    fn cost(&self, x: &DVector<f64>) -> Result<f64, Infallible> {
-        Ok(0.5 * self.at(x).norm_squared())
+    fn cost(&self, x: &DVector<f64>) -> Result<f64, E> {
+        Ok(0.5 * self.at(x)?.norm_squared())
     }
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> Residual for Problem<F> {
+impl<E: std::error::Error + 'static, F: Fn(&[f64]) -> Result<Vec<f64>, E>> Residual for Problem<F, E> {
     type Param = DVector<f64>;
     type Output = DVector<f64>;
-    type Error = Infallible;
+    type Error = E;
 
-    fn residual(&self, x: &DVector<f64>) -> Result<DVector<f64>, Infallible> {
-        Ok(self.at(x))
+    fn residual(&self, x: &DVector<f64>) -> Result<DVector<f64>, E> {
+        self.at(x)
     }
 }
 
-impl<F: Fn(&[f64]) -> Vec<f64>> Jacobian for Problem<F> {
+impl<E: std::error::Error + 'static, F: Fn(&[f64]) -> Result<Vec<f64>, E>> Jacobian for Problem<F, E> {
     type Jacobian = DMatrix<f64>;
 
-    fn jacobian(&self, x: &DVector<f64>) -> Result<DMatrix<f64>, Infallible> {
-        Ok(jacobian(&self.residuals, x.as_slice(), self.lower.as_slice(), self.upper.as_slice()))
+    fn jacobian(&self, x: &DVector<f64>) -> Result<DMatrix<f64>, E> {
+        jacobian(&self.residuals, x.as_slice(), self.lower.as_slice(), self.upper.as_slice())
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::{cell::Cell, convert::Infallible};
+
     use approx::assert_relative_eq;
 
     use super::*;
@@ -164,12 +177,24 @@ mod tests {
     fn a_decay_is_found_and_bounds_hold() {
         let data: Vec<(f64, f64)> =
             (0..20).map(|i| f64::from(i) * 0.1).map(|t| (t, 2.0 * (-1.5 * t).exp())).collect();
-        let residuals =
-            |p: &[f64]| data.iter().map(|(t, y)| p[0] * (-p[1] * t).exp() - y).collect::<Vec<_>>();
-        let free = nonlinear(residuals, &[1.0, 1.0], &[0.0, 0.0], &[5.0, 5.0]);
+        let residuals = |p: &[f64]| {
+            Ok::<_, Infallible>(data.iter().map(|(t, y)| p[0] * (-p[1] * t).exp() - y).collect::<Vec<_>>())
+        };
+        let free = nonlinear(residuals, &[1.0, 1.0], &[0.0, 0.0], &[5.0, 5.0]).unwrap();
         assert_relative_eq!(free[0], 2.0, epsilon = 1e-5);
         assert_relative_eq!(free[1], 1.5, epsilon = 1e-5);
-        let bounded = nonlinear(residuals, &[1.0, 0.5], &[0.0, 0.0], &[5.0, 1.0]);
+        let bounded = nonlinear(residuals, &[1.0, 0.5], &[0.0, 0.0], &[5.0, 1.0]).unwrap();
         assert!(bounded[1] <= 1.0 && bounded[1] > 0.99, "{}", bounded[1]);
+    }
+
+    #[test]
+    fn an_error_of_the_residuals_ends_the_search() {
+        let asked = Cell::new(0);
+        let residuals = |p: &[f64]| {
+            asked.set(asked.get() + 1);
+            if asked.get() < 5 { Ok(vec![p[0] - 3.0, p[0] * p[0] - 5.0]) } else { Err(std::fmt::Error) }
+        };
+        assert!(nonlinear(residuals, &[1.0], &[0.0], &[9.0]).is_err());
+        assert_eq!(asked.get(), 5, "it is not asked again");
     }
 }

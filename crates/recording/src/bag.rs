@@ -11,6 +11,7 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
+    room::Room,
     topic::{Schema, Topics},
 };
 
@@ -47,10 +48,10 @@ impl<'b> Header<'b> {
 }
 
 /// Reads a bag front to back; its index is not needed, so one that was cut off is read as far as it goes.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
     let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
     let mut source = opened(source, MAGIC, "ROS 1 bag", older)?;
-    let mut topics = topics(map)?;
+    let mut topics = topics(map, room)?;
     let mut header = Vec::new();
     let (mut body, mut plain) = (Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
@@ -112,7 +113,7 @@ fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) ->
             let packed = u64::from_le_bytes(time);
             let (seconds, nanoseconds) = (packed & u64::from(u32::MAX), packed >> 32);
             let log_ns = i64::try_from(seconds * 1_000_000_000 + nanoseconds).unwrap_or(i64::MAX);
-            topics.message(connection, log_ns, body);
+            topics.message(connection, log_ns, body)?;
             Ok(())
         }
         (Some(CONNECTION), Some(connection)) => {

@@ -4,11 +4,13 @@ use std::mem;
 
 use crate::{
     Channel, Combine, Conversion, Error, Ignored, Labels, Map, Recording,
+    coarse::period,
     divide::{check_order, divide},
     error::Position,
     label_column::LabelColumn,
     map::{Place, Target},
     report::{ChannelReport, ReadingReport},
+    table::Table,
     units,
 };
 
@@ -69,6 +71,9 @@ impl Plan {
         };
         plan.add_mapped(map);
         plan.add_named_by_contract()?;
+        if plan.time().is_none() {
+            return Err(Error::missing_names(&["t_s".into()], &["t_s"], &plan.headers));
+        }
         for entry in &plan.entries {
             let kind = match entry.target {
                 Target::Run | Target::Surface => Kind::Label,
@@ -131,13 +136,32 @@ impl Plan {
         Ok(())
     }
 
-    /// The recording of what was read, and the beginning of its report.
+    /// The column that tells time, or the first of those that do together.
+    pub(crate) fn time(&self) -> Option<usize> {
+        let entry = self.entries.iter().find(|entry| entry.target == Target::Time)?;
+        entry.columns.first().copied()
+    }
+
+    /// By column, where its numbers begin again, in their own unit: those of headings do.
+    pub(crate) fn periods(&self) -> Vec<Option<f64>> {
+        let mut periods = vec![None; self.headers.len()];
+        let heading = Target::Channel(Channel::Heading);
+        for entry in self.entries.iter().filter(|entry| entry.target == heading) {
+            entry.columns.iter().for_each(|&column| periods[column] = Some(period(entry.conversion.factor)));
+        }
+        periods
+    }
+
+    /// The recording of what was read, and the beginning of its report. `position` says where a row of the file stands.
     pub(crate) fn assemble(
         mut self,
-        mut columns: Vec<Column>,
+        mut table: Table,
         name: &str,
         position: impl Fn(usize) -> Position,
     ) -> Result<(Recording, ReadingReport), Error> {
+        table.settle()?;
+        let Table { mut columns, coarse, .. } = table;
+        let position = |row: usize| position(coarse.first_in_file(row));
         let (t_s, time_column) = self.take_time(&mut columns)?;
         if t_s.is_empty() {
             return Err(Error::Empty {
@@ -177,6 +201,7 @@ impl Plan {
         let order = divide(&mut recording, runs, name, &mut report);
         check_order(&recording, |row| position(order.as_ref().map_or(row, |order| order[row])))?;
         report.ignored = self.ignored;
+        report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
     }
 

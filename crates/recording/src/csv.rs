@@ -8,16 +8,17 @@ use crate::{
     Error, Map, Repair,
     column::{Column, Kind, Plan},
     error::{Position, excerpt},
-    label_column::{LabelColumn, MOST_NAMES},
-    limit::refuse_too_many,
+    label_column::MOST_NAMES,
     reading::{Part, Reading},
+    room::Room,
+    table::Table,
 };
 
 /// Bytes read at a time: large enough that calls to the system do not matter, small against any file that takes long.
 const BUFFER_BYTES: usize = 1 << 20;
 
 /// Reads comma-, semicolon- or tab-separated text with a header line, in one pass.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
     let mut source = BufReader::with_capacity(BUFFER_BYTES, source);
     let beginning = source.fill_buf()?;
     let delimiter = delimiter(beginning);
@@ -32,14 +33,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
         Err(error) => return Err(csv_error(&error)),
     };
     let plan = Plan::new(headers.clone(), map)?;
-    let mut columns: Vec<Column> = plan
-        .kinds
-        .iter()
-        .map(|kind| match kind {
-            Kind::Label => Column::Labels(LabelColumn::default()),
-            Kind::Number | Kind::Perhaps => Column::Numbers(Vec::new()),
-        })
-        .collect();
+    let mut table = Table::new(&plan, room);
     let mut lines = Lines::default();
     let mut repairs = Vec::new();
     while reader.read_byte_record(&mut record).map_err(|error| csv_error(&error))? {
@@ -58,12 +52,12 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<R
             return Err(Error::Csv { line, message });
         }
         lines.push(line);
-        refuse_too_many(lines.rows, headers.len())?;
         for (index, cell) in record.iter().enumerate() {
-            push(&mut columns[index], plan.kinds[index], cell, &headers[index], line)?;
+            push(&mut table.columns[index], plan.kinds[index], cell, &headers[index], line)?;
         }
+        table.end_rows(1)?;
     }
-    let (recording, mut report) = plan.assemble(columns, name, |row| Position::Line(lines.of(row)))?;
+    let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(repairs);
     let found = headers;
     Reading::finish(Part { recording, report, found, format: "CSV" }, name, map)

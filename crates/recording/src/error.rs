@@ -168,13 +168,22 @@ pub enum Error {
         /// The most that are read.
         most: usize,
     },
-    /// More numbers than are held in memory.
+    /// More rows or messages than are held in memory, of which neighbours cannot become one.
     #[error(
-        "the recording holds more than {most} numbers, which do not fit in memory together: cut it into several files, or name fewer columns or topics in a map"
+        "the file has more than the {most} rows that are held in memory, and neighbours cannot be joined where time does not increase \
+         or runs take turns: sort it by run and time, or cut it into several files"
     )]
     TooLarge {
-        /// The most that are read.
+        /// The most that are held.
         most: usize,
+    },
+    /// A table that claims more rows than any recording has.
+    #[error(
+        "the file claims {rows} rows, which no recording has; it is damaged, or cut it into several files"
+    )]
+    Claims {
+        /// What it claims.
+        rows: u64,
     },
     /// Who asked for it stopped the reading.
     #[error("the reading was stopped")]

@@ -2,7 +2,7 @@
 
 /// A step longer than so many median steps is a gap: jitter alone reaches two, a lost sample between two jittered ones
 /// stays below three, so three mean that at least two samples are missing.
-const GAP_STEPS: f64 = 3.0;
+pub(crate) const GAP_STEPS: f64 = 3.0;
 
 /// Steps longer than this are gaps in a stretch of increasing times \[s\]; infinite where there are fewer than two.
 pub(crate) fn threshold_s(t_s: &[f64]) -> f64 {

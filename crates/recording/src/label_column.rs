@@ -39,6 +39,11 @@ impl LabelColumn {
         true
     }
 
+    /// Which name each row has.
+    pub(crate) fn index(&mut self) -> &mut Vec<u32> {
+        &mut self.labels.index
+    }
+
     pub(crate) fn into_labels(self) -> Labels {
         self.labels
     }

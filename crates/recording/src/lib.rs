@@ -9,6 +9,7 @@
 pub mod align;
 mod bag;
 mod channel;
+mod coarse;
 mod column;
 mod combine;
 mod compression;
@@ -22,7 +23,6 @@ mod field;
 mod gap;
 mod label_column;
 mod layout;
-mod limit;
 mod map;
 mod mcap;
 mod merge;
@@ -30,8 +30,10 @@ mod parquet;
 mod reading;
 mod recording;
 mod report;
+mod room;
 mod stream;
 mod suspicion;
+mod table;
 mod topic;
 mod units;
 mod walk;
@@ -42,12 +44,13 @@ pub use combine::Combine;
 pub use error::Error;
 pub use map::{Map, Place, Source, Stamp, Target};
 pub use reading::{
-    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
+    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched, unwatched,
 };
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{
     AlignmentReport, ChannelReport, Ignored, ReadingReport, Repair, RunReport, StreamReport, Suspicion,
     SuspicionKind,
 };
+pub use room::Room;
 pub use units::{Conversion, unit_names};
 pub use watch::Watch;

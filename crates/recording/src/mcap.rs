@@ -11,6 +11,7 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
+    room::Room,
     topic::{Schema, Topics},
 };
 
@@ -40,9 +41,9 @@ struct Reader<'m> {
 }
 
 /// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
     let mut source = opened(source, MAGIC, "MCAP", "it does not begin with the MCAP magic")?;
-    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map)?, plain: Vec::new() };
+    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map, room)?, plain: Vec::new() };
     let mut bytes = Vec::new();
     let mut at = MAGIC.len() as u64;
     loop {
@@ -96,7 +97,10 @@ impl Reader<'_> {
             _ if !whole => return Ok(()),
             SCHEMA => self.schema(body),
             CHANNEL => return self.channel(body, at),
-            MESSAGE => self.message(body),
+            MESSAGE => match self.message(body) {
+                Ok(read) => return read,
+                Err(short) => Err(short),
+            },
             _ => return Ok(()),
         };
         if read.is_err() {
@@ -141,13 +145,12 @@ impl Reader<'_> {
         self.topics.connect(u32::from(id), &topic, &Schema { type_name, definition, encoding })
     }
 
-    fn message(&mut self, body: &[u8]) -> Result<(), Short> {
+    fn message(&mut self, body: &[u8]) -> Result<Result<(), Error>, Short> {
         let mut cursor = Cursor::packed(body);
         let (channel, _sequence, log_ns, _publish_ns) =
             (cursor.u16()?, cursor.u32()?, cursor.u64()?, cursor.u64()?);
         let log_ns = i64::try_from(log_ns).unwrap_or(i64::MAX);
-        self.topics.message(u32::from(channel), log_ns, cursor.rest());
-        Ok(())
+        Ok(self.topics.message(u32::from(channel), log_ns, cursor.rest()))
     }
 
     /// Reads the records of a chunk: all of them when its checksum holds, those before the break when it is the one that

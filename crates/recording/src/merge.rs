@@ -6,7 +6,6 @@ use crate::{
     Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
     align::{Between, interpolate},
     gap,
-    limit::refuse_too_many,
     map::{Place, Target},
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
@@ -17,7 +16,6 @@ use crate::{
 impl Topics<'_> {
     /// Brings what was read onto one clock.
     pub(crate) fn finish(mut self, name: &str, format: &'static str) -> Result<Reading, Error> {
-        refuse_too_many(self.numbers, 1)?;
         let mut report = ReadingReport::default();
         let mut streams = Vec::new();
         for topic in std::mem::take(&mut self.topics) {
@@ -28,7 +26,7 @@ impl Topics<'_> {
                 self.ignored.push(Ignored { name: topic.name, reason: "it has no message".into() });
                 continue;
             }
-            let messages = topic.samples.log_ns.len();
+            let messages = topic.samples.messages();
             let stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
             let step_s = gap::median_step_s(&stream.t_s(stream.t_ns.first().copied().unwrap_or(0)));
             let rate_hz = step_s.map(|step_s| 1.0 / step_s);

@@ -15,40 +15,76 @@ use crate::{
     column::{Column, Kind, Plan},
     error::Position,
     label_column::{LabelColumn, MOST_NAMES},
-    limit::refuse_too_many,
     reading::{Part, Reading},
+    room::Room,
+    table::Table,
 };
 
 /// Rows read at a time: small enough to stay in the cache while they are widened.
 const BATCH_ROWS: usize = 8192;
 
-/// Reads every row group, a column at a time.
+/// Most rows that a file may claim: constant columns take hardly any bytes, so that a damaged one may claim without end. At
+/// 1 kHz it is four years.
+const MOST_ROWS: u64 = 1 << 37;
+
+/// Reads every row group, all columns side by side.
 pub(crate) fn read(
     source: impl ChunkReader + 'static,
     name: &str,
     map: Option<&Map>,
+    room: Room,
 ) -> Result<Reading, Error> {
     // The library asserts some of what a damaged file may say (negative offsets among it). Nothing of it outlives the
     // closure, so that stopping in the middle leaves nothing half done.
-    let read = AssertUnwindSafe(|| read_file(source, name, map));
-    catch_unwind(read).unwrap_or_else(|_| {
-        let reason = "its contents contradict one another; it is damaged".into();
-        Err(Error::NotTheFormat { format: "Parquet", reason })
-    })
+    let read = AssertUnwindSafe(|| read_file(source, name, map, room));
+    catch_unwind(read).unwrap_or_else(|_| Err(damaged()))
 }
 
-fn read_file(source: impl ChunkReader + 'static, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+fn damaged() -> Error {
+    let reason = "its contents contradict one another; it is damaged".into();
+    Error::NotTheFormat { format: "Parquet", reason }
+}
+
+fn read_file(
+    source: impl ChunkReader + 'static,
+    name: &str,
+    map: Option<&Map>,
+    room: Room,
+) -> Result<Reading, Error> {
     let file_bytes = source.len();
     let file = SerializedFileReader::new(source)?;
     refuse_contradictions(&file, file_bytes)?;
     let schema = file.metadata().file_metadata().schema_descr_ptr();
     let headers: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
     let plan = Plan::new(headers.clone(), map)?;
-    let mut columns = Vec::with_capacity(headers.len());
+    let mut table = Table::new(&plan, room);
+    let mut sources = Vec::with_capacity(headers.len());
     for (index, kind) in plan.kinds.iter().enumerate() {
-        columns.push(read_column(&file, index, *kind, &schema.column(index))?);
+        let descriptor = schema.column(index);
+        sources.push(Source::new(&descriptor, *kind, &mut table.columns[index])?);
     }
-    let (recording, report) = plan.assemble(columns, name, |row| Position::Row(row as u64 + 1))?;
+    let mut before = 0;
+    for group in 0..file.num_row_groups() {
+        let group = file.get_row_group(group)?;
+        let readers = (0..sources.len()).map(|index| group.get_column_reader(index));
+        let mut readers = readers.collect::<Result<Vec<ColumnReader>, _>>()?;
+        loop {
+            let mut rows = None;
+            for ((reader, source), column) in readers.iter_mut().zip(&sources).zip(&mut table.columns) {
+                if matches!(column, Column::Unusable(_)) {
+                    continue;
+                }
+                let read = source.read(reader, column, before)?;
+                if *rows.get_or_insert(read) != read && !matches!(column, Column::Unusable(_)) {
+                    return Err(damaged());
+                }
+            }
+            let Some(rows @ 1..) = rows else { break };
+            before += rows as u64;
+            table.end_rows(rows)?;
+        }
+    }
+    let (recording, report) = plan.assemble(table, name, |row| Position::Row(row as u64 + 1))?;
     Reading::finish(Part { recording, report, found: headers, format: "Parquet" }, name, map)
 }
 
@@ -57,13 +93,12 @@ fn refuse_contradictions<R: ChunkReader + 'static>(
     file: &SerializedFileReader<R>,
     file_bytes: u64,
 ) -> Result<(), Error> {
-    let rows = file
-        .metadata()
-        .row_groups()
-        .iter()
-        .map(|group| usize::try_from(group.num_rows()).unwrap_or(usize::MAX));
-    let rows = rows.fold(0usize, usize::saturating_add);
-    refuse_too_many(rows, file.metadata().file_metadata().schema_descr().num_columns())?;
+    let groups = file.metadata().row_groups().iter();
+    let rows = groups.map(|group| u64::try_from(group.num_rows()).unwrap_or(u64::MAX));
+    let rows = rows.fold(0u64, u64::saturating_add);
+    if rows > MOST_ROWS {
+        return Err(Error::Claims { rows });
+    }
     for group in file.metadata().row_groups() {
         for column in group.columns() {
             let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
@@ -78,77 +113,108 @@ fn refuse_contradictions<R: ChunkReader + 'static>(
     Ok(())
 }
 
-fn read_column<R: ChunkReader + 'static>(
-    file: &SerializedFileReader<R>,
-    index: usize,
+/// What is to be read of a column.
+struct Source {
+    name: String,
     kind: Kind,
-    descriptor: &ColumnDescriptor,
-) -> Result<Column, Error> {
-    let scale = match meaning(descriptor, kind) {
-        Ok(scale) => scale,
-        Err(found) if kind == Kind::Perhaps => return Ok(Column::Unusable(found)),
-        Err(found) => {
-            let (field, topic) = (descriptor.path().string(), "of the table".into());
-            return Err(Error::Field { topic, field, reason: format!("{found}; write it as a double") });
-        }
-    };
-    let mut column = match kind {
-        Kind::Label => Column::Labels(LabelColumn::default()),
-        Kind::Number | Kind::Perhaps => Column::Numbers(Vec::new()),
-    };
-    let mut rows = 0;
-    let mut too_many = None;
-    let mut add = |labels: &mut LabelColumn, name: &str| {
-        rows += 1;
-        if !labels.push(name) {
-            too_many.get_or_insert(rows);
-        }
-    };
-    for group in 0..file.num_row_groups() {
-        let reader = file.get_row_group(group)?.get_column_reader(index)?;
-        let full = descriptor.max_def_level();
-        match (reader, &mut column) {
-            (ColumnReader::DoubleColumnReader(r), Column::Numbers(v)) => numbers(r, full, v, |x| x * scale)?,
+    /// Definition level of a value that is there.
+    full: i16,
+    /// What a stored number is multiplied with.
+    scale: f64,
+}
+
+impl Source {
+    fn new(descriptor: &ColumnDescriptor, kind: Kind, column: &mut Column) -> Result<Source, Error> {
+        let (name, full) = (descriptor.path().string(), descriptor.max_def_level());
+        let scale = match meaning(descriptor, kind) {
+            Ok(scale) => scale,
+            Err(found) if kind == Kind::Perhaps => {
+                *column = Column::Unusable(found);
+                1.0
+            }
+            Err(found) => {
+                let topic = "of the table".into();
+                return Err(Error::Field {
+                    topic,
+                    field: name,
+                    reason: format!("{found}; write it as a double"),
+                });
+            }
+        };
+        Ok(Source { name, kind, full, scale })
+    }
+
+    /// Reads the next rows into the column and says how many; so many were read before.
+    fn read(&self, reader: &mut ColumnReader, column: &mut Column, before: u64) -> Result<usize, Error> {
+        let rows = match (reader, &mut *column) {
+            (ColumnReader::DoubleColumnReader(r), Column::Numbers(v)) => self.numbers(r, v, |x| *x)?,
             (ColumnReader::FloatColumnReader(r), Column::Numbers(v)) => {
-                numbers(r, full, v, |x| f64::from(*x) * scale)?;
+                self.numbers(r, v, |x| f64::from(*x))?
             }
             (ColumnReader::Int32ColumnReader(r), Column::Numbers(v)) => {
-                numbers(r, full, v, |x| f64::from(*x) * scale)?;
+                self.numbers(r, v, |x| f64::from(*x))?
             }
-            (ColumnReader::Int64ColumnReader(r), Column::Numbers(v)) => {
-                numbers(r, full, v, |x| *x as f64 * scale)?;
-            }
+            (ColumnReader::Int64ColumnReader(r), Column::Numbers(v)) => self.numbers(r, v, |x| *x as f64)?,
             (ColumnReader::BoolColumnReader(r), Column::Numbers(v)) => {
-                numbers(r, full, v, |x| f64::from(u8::from(*x)))?;
+                self.numbers(r, v, |x| f64::from(u8::from(*x)))?
             }
             (ColumnReader::ByteArrayColumnReader(r), Column::Labels(labels)) => {
-                for_each(r, full, |text: Option<&ByteArray>| {
-                    add(labels, text.and_then(|text| text.as_utf8().ok()).unwrap_or_default());
-                })?;
+                self.labels(r, labels, before, |text: &ByteArray| {
+                    text.as_utf8().unwrap_or_default().to_owned()
+                })?
             }
             (ColumnReader::Int32ColumnReader(r), Column::Labels(labels)) => {
-                for_each(r, full, |x: Option<&i32>| add(labels, &x.map_or(String::new(), i32::to_string)))?;
+                self.labels(r, labels, before, i32::to_string)?
             }
             (ColumnReader::Int64ColumnReader(r), Column::Labels(labels)) => {
-                for_each(r, full, |x: Option<&i64>| add(labels, &x.map_or(String::new(), i64::to_string)))?;
+                self.labels(r, labels, before, i64::to_string)?
             }
-            _ => return Ok(Column::Unusable("its type changes within the file".into())),
+            _ => {
+                *column = Column::Unusable("its type changes within the file".into());
+                return Ok(0);
+            }
+        };
+        if let (Kind::Number, Column::Numbers(values)) = (self.kind, &*column) {
+            let new = &values[values.len() - rows..];
+            if let Some(row) = new.iter().position(|value| value.is_infinite()) {
+                let (position, column) = (Position::Row(before + row as u64 + 1), self.name.clone());
+                return Err(Error::Number { position, column, found: format!("{}", new[row]) });
+            }
+        }
+        Ok(rows)
+    }
+
+    fn numbers<T: DataType>(
+        &self,
+        reader: &mut ColumnReaderImpl<T>,
+        values: &mut Vec<f64>,
+        widen: impl Fn(&T::T) -> f64,
+    ) -> Result<usize, Error> {
+        for_each(reader, self.full, |value| values.push(value.map_or(f64::NAN, |x| widen(x) * self.scale)))
+    }
+
+    fn labels<T: DataType>(
+        &self,
+        reader: &mut ColumnReaderImpl<T>,
+        labels: &mut LabelColumn,
+        before: u64,
+        text: impl Fn(&T::T) -> String,
+    ) -> Result<usize, Error> {
+        let (mut row, mut too_many) = (before, None);
+        let rows = for_each(reader, self.full, |name| {
+            row += 1;
+            if !labels.push(&name.map_or(String::new(), &text)) {
+                too_many.get_or_insert(row);
+            }
+        })?;
+        match too_many {
+            Some(row) => {
+                let (position, column) = (Position::Row(row), self.name.clone());
+                Err(Error::TooManyNames { position, column, most: MOST_NAMES })
+            }
+            None => Ok(rows),
         }
     }
-    if let Some(row) = too_many {
-        let (position, column) = (Position::Row(row), descriptor.path().string());
-        return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
-    }
-    if let (Kind::Number, Column::Numbers(values)) = (kind, &column)
-        && let Some(row) = values.iter().position(|value| value.is_infinite())
-    {
-        return Err(Error::Number {
-            position: Position::Row(row as u64 + 1),
-            column: descriptor.path().string(),
-            found: format!("{}", values[row]),
-        });
-    }
-    Ok(column)
 }
 
 /// What a stored number is multiplied with, or in words what the column holds instead of what is wanted.
@@ -182,37 +248,33 @@ fn seconds(unit: &TimeUnit) -> f64 {
     }
 }
 
-fn numbers<T: DataType>(
-    reader: ColumnReaderImpl<T>,
-    full: i16,
-    values: &mut Vec<f64>,
-    widen: impl Fn(&T::T) -> f64,
-) -> Result<(), Error> {
-    for_each(reader, full, |value| values.push(value.map_or(f64::NAN, &widen)))
-}
-
-/// Calls with every value of a column chunk, `None` for nulls: those whose definition level is not the full one.
+/// Calls with every value of the next rows of a column chunk, `None` for nulls: those whose definition level is not the full one.
+/// Says how many rows there were.
 fn for_each<T: DataType>(
-    mut reader: ColumnReaderImpl<T>,
+    reader: &mut ColumnReaderImpl<T>,
     full: i16,
     mut take: impl FnMut(Option<&T::T>),
-) -> Result<(), Error> {
+) -> Result<usize, Error> {
     let (mut batch, mut levels) = (Vec::with_capacity(BATCH_ROWS), Vec::new());
-    loop {
+    let mut read = 0;
+    while read < BATCH_ROWS {
         batch.clear();
         levels.clear();
         let levels_wanted = (full > 0).then_some(&mut levels);
-        let (rows, found, _) = reader.read_records(BATCH_ROWS, levels_wanted, None, &mut batch)?;
+        let (rows, found, _) = reader.read_records(BATCH_ROWS - read, levels_wanted, None, &mut batch)?;
         if rows == 0 && found == 0 {
-            return Ok(());
+            break;
         }
         if full == 0 {
+            read += batch.len();
             batch.iter().for_each(|value| take(Some(value)));
             continue;
         }
+        read += levels.len();
         let mut values = batch.iter();
         for level in &levels {
             take(if *level == full { values.next() } else { None });
         }
     }
+    Ok(read)
 }

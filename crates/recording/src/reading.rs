@@ -1,7 +1,7 @@
 //! Reading a file, whatever its format.
 
 use std::{
-    fs::File,
+    fs::{self, File},
     io::{Cursor, Read},
     ops::ControlFlow,
     path::Path,
@@ -11,7 +11,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Watch, bag, csv, mcap, parquet,
+    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv, mcap, parquet,
     suspicion, watch::Watched,
 };
 
@@ -59,7 +59,8 @@ impl Format {
 /// Reads a file; its ending says which format it is in. Without a map, a table's columns are what their names say and a
 /// bag's topics are taken for a Husky's.
 ///
-/// The file is read once, front to back (Parquet by columns), and of it only the numbers of the channels are held.
+/// The file is read once, front to back, and of it only the numbers of the channels are held, in the [`Room`] that there is: where they
+/// fill it, neighbouring rows become means, as the report then says.
 ///
 /// # Errors
 /// What is wrong, with file and line, row or topic.
@@ -72,10 +73,14 @@ pub fn read_path(path: &Path, map: Option<&Map>) -> Result<Reading, Error> {
 /// # Errors
 /// As [`read_path`], and [`Error::Stopped`] when the watch breaks.
 pub fn read_path_watched(path: &Path, map: Option<&Map>, watch: &Watch) -> Result<Reading, Error> {
+    read_path_within(path, map, watch, Room::default())
+}
+
+fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Reading, Error> {
     let read = || {
         let format = Format::of(path)?;
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
-        read_file(File::open(path)?, format, name, map, watch)
+        read_file(File::open(path)?, format, name, map, watch, room)
     };
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
     reading.report.source = path.display().to_string();
@@ -93,20 +98,21 @@ pub fn read_file(
     name: &str,
     map: Option<&Map>,
     watch: &Watch,
+    room: Room,
 ) -> Result<Reading, Error> {
     let file = Watched::new(file, Arc::clone(watch));
     let stopped = file.stopped();
     let reading = match format {
-        Format::Csv => csv::read(file, name, map),
-        Format::Parquet => parquet::read(file, name, map),
-        Format::Mcap => mcap::read(file, name, map),
-        Format::Bag => bag::read(file, name, map),
+        Format::Csv => csv::read(file, name, map, room),
+        Format::Parquet => parquet::read(file, name, map, room),
+        Format::Mcap => mcap::read(file, name, map, room),
+        Format::Bag => bag::read(file, name, map, room),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
 }
 
 /// A watch that lets everything pass.
-fn unwatched() -> Watch {
+pub fn unwatched() -> Watch {
     Arc::new(|_| ControlFlow::Continue(()))
 }
 
@@ -130,9 +136,12 @@ pub fn read_paths_watched<P: AsRef<Path>>(
     map: Option<&Map>,
     watch: &Watch,
 ) -> Result<(Recording, Vec<ReadingReport>), Error> {
+    let bytes_of = |path: &P| fs::metadata(path).map_or(0, |data| data.len());
+    let all_bytes = paths.iter().map(bytes_of).sum();
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for path in paths {
-        let reading = read_path_watched(path.as_ref(), map, watch)?;
+        let room = Room::default().share(bytes_of(path), all_bytes);
+        let reading = read_path_within(path.as_ref(), map, watch, room)?;
         recordings.push(reading.recording);
         reports.push(reading.report);
     }
@@ -145,11 +154,22 @@ pub fn read_paths_watched<P: AsRef<Path>>(
 /// # Errors
 /// What is wrong, with line, row or topic.
 pub fn read(bytes: Vec<u8>, format: Format, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+    read_within(bytes, format, name, map, Room::default())
+}
+
+/// Reads what is in memory into the room that there is.
+pub(crate) fn read_within(
+    bytes: Vec<u8>,
+    format: Format,
+    name: &str,
+    map: Option<&Map>,
+    room: Room,
+) -> Result<Reading, Error> {
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map),
-        Format::Csv => csv::read(Cursor::new(bytes), name, map),
-        Format::Mcap => mcap::read(Cursor::new(bytes), name, map),
-        Format::Bag => bag::read(Cursor::new(bytes), name, map),
+        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, room),
+        Format::Csv => csv::read(Cursor::new(bytes), name, map, room),
+        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, room),
+        Format::Bag => bag::read(Cursor::new(bytes), name, map, room),
     }
 }
 
@@ -214,4 +234,69 @@ pub(crate) fn read_up_to(source: &mut impl Read, bytes: u64, buffer: &mut Vec<u8
     buffer.clear();
     let got = source.take(bytes).read_to_end(buffer)?;
     Ok(got as u64 == bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+
+    const ROWS: usize = 20_000;
+
+    /// Two drives of 100 s at 100 Hz with a pause, in which the power is that of the time.
+    fn long_table() -> Vec<u8> {
+        let mut text = String::from("run,t_s,v_left_mps,v_right_mps,power_w,heading_deg,note,gear\n");
+        for row in 0..ROWS {
+            let t_s = (row % (ROWS / 2)) as f64 * 0.01 + if row % (ROWS / 2) < 5000 { 0.0 } else { 7.0 };
+            let (drive, heading_deg) = (row * 2 / ROWS, 180.0 + 20.0 * t_s.sin());
+            let heading_deg = (heading_deg + 180.0).rem_euclid(360.0) - 180.0;
+            writeln!(text, "drive-{drive},{t_s:.2},0.5,0.6,{:.4},{heading_deg:.3},x,3", 50.0 + t_s).unwrap();
+        }
+        text.into_bytes()
+    }
+
+    fn map() -> Map {
+        let source = r#"{"channel": "heading_rad", "column": "heading_deg", "unit": "deg"}"#;
+        Map::from_json(&format!(r#"{{"name": "lab", "sources": [{source}]}}"#)).unwrap()
+    }
+
+    #[test]
+    fn a_table_beyond_its_room_becomes_means_and_says_so() {
+        let whole = read(long_table(), Format::Csv, "long", Some(&map())).unwrap();
+        let room = Room::of_rows(1000);
+        let Reading { recording, report } =
+            read_within(long_table(), Format::Csv, "long", Some(&map()), room).unwrap();
+        assert_eq!(whole.recording.rows(), ROWS);
+        assert!((250..=700).contains(&recording.rows()), "{}", recording.rows());
+        let told = &report.repairs[0].what;
+        assert!(told.starts_with("20000 are more than are held") && told.contains("up to 32"), "{told}");
+        assert!(report.ignored.iter().any(|i| i.name == "gear" && i.reason.contains("too long")), "{report}");
+        assert_eq!(report.runs.iter().map(|run| run.gaps).collect::<Vec<_>>(), [1, 1], "the pause stays");
+        let steps_s = recording.t_s.windows(2).map(|pair| pair[1] - pair[0]);
+        let even = steps_s.filter(|step_s| (step_s - 0.32).abs() < 1e-6).count();
+        assert!(10 * even > 9 * recording.rows(), "one rhythm throughout: {even} of {}", recording.rows());
+        // Power is linear in time, so that means lie on the same line, and headings never point east.
+        let power_w = recording.channel(Channel::Power).unwrap();
+        for (row, t_s) in recording.t_s.iter().enumerate() {
+            assert!((power_w[row] - (50.0 + t_s)).abs() < 1e-3, "row {row}");
+            assert!(recording.channel(Channel::Heading).unwrap()[row].cos() < -0.9, "row {row}");
+        }
+        assert_eq!(recording.runs.len(), 2);
+    }
+
+    #[test]
+    fn what_is_wrong_far_into_a_long_table_is_still_named_by_its_line() {
+        let text = String::from_utf8(long_table()).unwrap();
+        let back = text.replacen("drive-1,80.01,", "drive-1,3.5,", 1);
+        let line = back.lines().position(|line| line.starts_with("drive-1,3.5,")).unwrap() + 1;
+        let refused = read_within(back.into_bytes(), Format::Csv, "long", None, Room::of_rows(1000));
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains(&format!("line {line}")) && message.contains("goes back"), "{message}");
+        let mut turns = String::from("run,t_s,v_left_mps,v_right_mps,power_w\n");
+        (0..4000).for_each(|row| writeln!(turns, "{},{}.0,0.5,0.5,40", row % 2, row / 2).unwrap());
+        let refused = read_within(turns.into_bytes(), Format::Csv, "turns", None, Room::of_rows(1000));
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("runs take turns") && message.contains("sort it by run"), "{message}");
+    }
 }

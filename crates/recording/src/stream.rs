@@ -1,12 +1,20 @@
 //! The samples of one topic, in the order of one clock.
 
-use crate::{Error, Repair, Stamp};
+use std::f64::consts::TAU;
+
+use crate::{Channel, Error, Repair, Source, Stamp, Target, coarse::Coarse};
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
 /// messages are delayed by fractions of a second on a robot's own network.
 const CLOCK_JUMP_S: f64 = 2.0;
 
 const NS_PER_S: f64 = 1e9;
+
+/// Seconds after the first.
+fn seconds(t_ns: &[i64]) -> Vec<f64> {
+    let origin_ns = t_ns.first().copied().unwrap_or(0);
+    t_ns.iter().map(|t| t.saturating_sub(origin_ns) as f64 / NS_PER_S).collect()
+}
 
 /// Samples as they were logged.
 #[derive(Debug, Default)]
@@ -16,6 +24,10 @@ pub(crate) struct Samples {
     pub(crate) stamp_ns: Vec<i64>,
     /// By source, then by message.
     pub(crate) columns: Vec<Vec<f64>>,
+    /// Where a column's numbers begin again, as headings do.
+    periods: Vec<Option<f64>>,
+    /// How a message stands for several of the file.
+    coarse: Coarse,
 }
 
 /// Samples in increasing order of time.
@@ -27,19 +39,73 @@ pub(crate) struct Stream {
 }
 
 impl Samples {
+    /// None yet, of these sources.
+    pub(crate) fn new<'m>(sources: impl Iterator<Item = &'m Source>) -> Samples {
+        let heading = |source: &Source| source.target == Target::Channel(Channel::Heading);
+        let periods: Vec<Option<f64>> = sources.map(|source| heading(source).then_some(TAU)).collect();
+        Samples { columns: vec![Vec::new(); periods.len()], periods, ..Samples::default() }
+    }
+
+    /// Messages of the file that it holds.
+    pub(crate) fn messages(&self) -> usize {
+        self.coarse.first_in_file(self.log_ns.len())
+    }
+
+    /// Numbers of a message; stamps count like values.
+    pub(crate) fn width(&self) -> usize {
+        self.columns.len() + 2
+    }
+
+    /// Numbers held.
+    pub(crate) fn numbers(&self) -> usize {
+        self.width() * self.log_ns.len()
+    }
+
+    /// Makes one of neighbouring messages until half as many are left. False: there are none that follow one another.
+    pub(crate) fn halve(&mut self) -> bool {
+        self.join(self.log_ns.len() / 2)
+    }
+
+    fn join(&mut self, most: usize) -> bool {
+        let t_s = seconds(&self.log_ns);
+        let stamps = &self.stamp_ns;
+        // What the stamps have of jumps and late messages is to be seen later.
+        let follows = |at: usize| {
+            let step_ns = |ns: &[i64]| Some(ns.get(at)?.saturating_sub(*ns.get(at - 1)?));
+            let apart_s = |ns: i64| ns as f64 / NS_PER_S - (t_s[at] - t_s[at - 1]);
+            step_ns(stamps).is_none_or(|ns| ns > 0 && apart_s(ns).abs() < CLOCK_JUMP_S)
+        };
+        let Some(groups) = self.coarse.group(&t_s, most, follows) else { return false };
+        groups.average_ns(&mut self.log_ns);
+        if self.stamp_ns.len() == t_s.len() {
+            groups.average_ns(&mut self.stamp_ns);
+        } else {
+            self.stamp_ns.clear();
+        }
+        for (column, period) in self.columns.iter_mut().zip(&self.periods) {
+            groups.average(column, *period);
+        }
+        true
+    }
+
     /// Chooses the clock, refuses one that was set on the way, sorts late messages in and drops repeated stamps.
     pub(crate) fn into_stream(
-        self,
+        mut self,
         topic: &str,
         stamp: Stamp,
         repairs: &mut Vec<Repair>,
     ) -> Result<Stream, Error> {
+        if self.coarse.is_joined() {
+            // What was read last becomes as coarse as what was before, so that the stream has one rhythm.
+            self.join(usize::MAX);
+        }
+        repairs.extend(self.coarse.told(&format!("topic {topic}"), &seconds(&self.log_ns)));
         let has_stamps = self.stamp_ns.len() == self.log_ns.len() && self.stamp_ns.iter().all(|ns| *ns != 0);
         let by_header = stamp == Stamp::Header && has_stamps;
         let (t_ns, clock) =
             if by_header { (self.stamp_ns, "header stamp") } else { (self.log_ns.clone(), "log time") };
         let other = if by_header { "log" } else { "header" };
-        refuse_jumps(topic, &t_ns, &self.log_ns, other)?;
+        refuse_jumps(topic, &t_ns, &self.log_ns, other, &self.coarse)?;
         let mut stream = Stream { t_ns, columns: self.columns, clock };
         let mut repair = |count: usize, what: &str| {
             if count > 0 {
@@ -52,8 +118,15 @@ impl Samples {
     }
 }
 
-fn refuse_jumps(topic: &str, t_ns: &[i64], log_ns: &[i64], other: &'static str) -> Result<(), Error> {
-    let jump = |message: usize, by_ns: i64| {
+fn refuse_jumps(
+    topic: &str,
+    t_ns: &[i64],
+    log_ns: &[i64],
+    other: &'static str,
+    coarse: &Coarse,
+) -> Result<(), Error> {
+    let jump = |at: usize, by_ns: i64| {
+        let message = coarse.first_in_file(at) + 1;
         let by_s = by_ns as f64 / NS_PER_S;
         let topic = topic.to_owned();
         (by_s.abs() > CLOCK_JUMP_S).then_some(Error::ClockJump { topic, message, by_s, other })
@@ -65,7 +138,7 @@ fn refuse_jumps(topic: &str, t_ns: &[i64], log_ns: &[i64], other: &'static str) 
             let offset = |t: i64, log: i64| t.saturating_sub(log);
             let moved = offset(t, log).saturating_sub(offset(before.0, before.1));
             let back = t.saturating_sub(latest_ns).min(0);
-            if let Some(error) = jump(at + 1, moved).or_else(|| jump(at + 1, back)) {
+            if let Some(error) = jump(at, moved).or_else(|| jump(at, back)) {
                 return Err(error);
             }
         }
@@ -124,7 +197,8 @@ mod tests {
     fn samples(t_s: &[f64]) -> Samples {
         let ns: Vec<i64> = t_s.iter().map(|t| (t * NS_PER_S) as i64).collect();
         let columns = vec![(0..t_s.len()).map(|at| at as f64).collect()];
-        Samples { log_ns: (0..ns.len() as i64).map(|i| i * 100_000_000).collect(), stamp_ns: ns, columns }
+        let log_ns = (0..ns.len() as i64).map(|i| i * 100_000_000).collect();
+        Samples { log_ns, stamp_ns: ns, columns, periods: vec![None], ..Samples::default() }
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout,
-    limit::refuse_too_many, map::Place, stream::Samples, walk::Found,
+    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout, map::Place,
+    room::Room, stream::Samples, walk::Found,
 };
 
 /// The topics of a file while it is read.
@@ -17,8 +17,9 @@ pub(crate) struct Topics<'m> {
     pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
     found: Found,
+    room: Room,
     /// Numbers held by all topics.
-    pub(crate) numbers: usize,
+    numbers: usize,
 }
 
 pub(crate) struct Topic {
@@ -42,7 +43,7 @@ pub(crate) struct Schema<'s> {
 }
 
 impl<'m> Topics<'m> {
-    pub(crate) fn new(map: &'m Map) -> Self {
+    pub(crate) fn new(map: &'m Map, room: Room) -> Self {
         Topics {
             map,
             connections: BTreeMap::new(),
@@ -51,6 +52,7 @@ impl<'m> Topics<'m> {
             ignored: Vec::new(),
             repairs: Vec::new(),
             found: Found::default(),
+            room,
             numbers: 0,
         }
     }
@@ -115,7 +117,7 @@ impl<'m> Topics<'m> {
             layout,
             sources: fitting.iter().map(|(index, paths)| (*index, paths.len())).collect(),
             values: vec![f64::NAN; paths.len()],
-            samples: Samples { columns: vec![Vec::new(); fitting.len()], ..Samples::default() },
+            samples: Samples::new(fitting.iter().filter_map(|(index, _)| self.map.sources.get(*index))),
             bad: 0,
             first_bad: None,
         });
@@ -145,23 +147,18 @@ impl<'m> Topics<'m> {
     }
 
     /// Reads a message, if its topic is wanted.
-    pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) {
-        let Some(Some(index)) = self.connections.get(&id) else { return };
-        let Some(topic) = self.topics.get_mut(*index) else { return };
+    pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) -> Result<(), Error> {
+        let Some(Some(index)) = self.connections.get(&id) else { return Ok(()) };
+        let Some(topic) = self.topics.get_mut(*index) else { return Ok(()) };
         let stamp_ns = match topic.layout.read(bytes, &mut self.found, &mut topic.values) {
             Ok(stamp_ns) => stamp_ns,
             Err(reason) => {
                 topic.bad += 1;
-                let message = topic.samples.log_ns.len() + topic.bad;
+                let message = topic.samples.messages() + topic.bad;
                 topic.first_bad.get_or_insert_with(|| format!("message {message}: {reason}"));
-                return;
+                return Ok(());
             }
         };
-        // Stamps count like values. What comes beyond the limit is counted, not kept, and then refused as a whole.
-        self.numbers = self.numbers.saturating_add(topic.samples.columns.len() + 2);
-        if refuse_too_many(self.numbers, 1).is_err() {
-            return;
-        }
         topic.samples.log_ns.push(log_ns);
         if let Some(stamp_ns) = stamp_ns {
             topic.samples.stamp_ns.push(stamp_ns);
@@ -172,5 +169,24 @@ impl<'m> Topics<'m> {
             let value = source.combine.of(values.by_ref().take(*count).copied());
             column.push(source.conversion.apply(value));
         }
+        self.numbers += topic.samples.width();
+        if self.numbers < self.room.numbers() { Ok(()) } else { self.make_room() }
+    }
+
+    /// Makes one of neighbouring messages, of the topic with the most first, until half of the room is free.
+    fn make_room(&mut self) -> Result<(), Error> {
+        let numbers =
+            |topics: &[Topic]| -> usize { topics.iter().map(|topic| topic.samples.numbers()).sum() };
+        while numbers(&self.topics) > self.room.numbers() / 2 {
+            let Some(topic) = self.topics.iter_mut().max_by_key(|topic| topic.samples.log_ns.len()) else {
+                break;
+            };
+            let most = topic.samples.log_ns.len();
+            if !topic.samples.halve() {
+                return Err(Error::TooLarge { most });
+            }
+        }
+        self.numbers = numbers(&self.topics);
+        Ok(())
     }
 }

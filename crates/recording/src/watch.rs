@@ -12,7 +12,7 @@ use std::{
 use ::parquet::{errors::Result as ParquetResult, file::reader::ChunkReader, file::reader::Length};
 use bytes::Bytes;
 
-/// Is told how many more bytes were read; stops the reading by breaking.
+/// Is told how many more bytes were read, and stops the reading by breaking. Fits and diagnoses ask it as well, telling of no bytes.
 pub type Watch = Arc<dyn Fn(u64) -> ControlFlow<()> + Send + Sync>;
 
 /// A source whose reading is watched.

@@ -1,10 +1,14 @@
 //! Long work that a request starts and others follow.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
+use recording::Watch;
 use serde::Serialize;
 use serde_json::Value;
 use tokio::sync::watch;
@@ -89,6 +93,14 @@ impl Job {
     /// Whether its work is no longer wanted. Work looks at this often and ends soon after.
     pub(crate) fn is_called_off(&self) -> bool {
         self.called_off.load(Ordering::Relaxed)
+    }
+
+    /// A watch that breaks when the work is no longer wanted.
+    pub(crate) fn watch(self: &Arc<Self>) -> Watch {
+        let job = Arc::clone(self);
+        Arc::new(
+            move |_| if job.is_called_off() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) },
+        )
     }
 
     /// Says what the job is busy with.

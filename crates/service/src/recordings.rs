@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use recording::{Format, Map, Reading, Watch, read_file};
+use recording::{Format, Map, Reading, Room, Watch, read_file};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use tempfile::{NamedTempFile, TempDir};
@@ -80,12 +80,18 @@ impl RecordingStore {
         parsed(&self.note_path(id)).ok_or_else(|| unknown(id))
     }
 
-    /// Reads a recording, by its own map or another, followed by a watch.
-    pub(crate) fn read(&self, note: &Note, map: Option<&Map>, watch: &Watch) -> Result<Reading, Problem> {
+    /// Reads a recording, by its own map or another, followed by a watch, into the room that there is.
+    pub(crate) fn read(
+        &self,
+        note: &Note,
+        map: Option<&Map>,
+        watch: &Watch,
+        room: Room,
+    ) -> Result<Reading, Problem> {
         let file = File::open(self.data_path(&note.id)).map_err(|_| unknown(&note.id))?;
         let own = note.map.as_ref().map(map_from).transpose()?;
         let map = map.or(own.as_ref());
-        read_file(file, note.format, &note.name, map, watch)
+        read_file(file, note.format, &note.name, map, watch, room)
             .map_err(|error| Problem::invalid_recording(&error))
     }
 

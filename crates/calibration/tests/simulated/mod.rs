@@ -13,6 +13,9 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use recording::{Channel, Labels, PowerForm, Recording, Run};
 
+pub(crate) mod coverage;
+pub(crate) mod worlds;
+
 pub(crate) const RUNS: usize = 12;
 pub(crate) const ROWS: usize = 400;
 
@@ -122,42 +125,4 @@ pub(crate) fn over_two_grounds(mut recording: Recording, names: [&str; 2]) -> Re
     recording.runs.iter().skip(1).step_by(2).for_each(|run| index[run.rows.clone()].fill(1));
     recording.surface = Some(Labels { names: names.map(String::from).to_vec(), index });
     recording
-}
-
-/// How often determined parameters lay in their intervals.
-#[derive(Debug, Default)]
-pub(crate) struct Coverage {
-    trials: usize,
-    /// Inside, determined.
-    hits: BTreeMap<String, (usize, usize)>,
-}
-
-impl Coverage {
-    /// Adds one trial: what it determined, and whether the truth lay inside.
-    pub(crate) fn add(&mut self, determined: impl IntoIterator<Item = (String, bool)>) {
-        self.trials += 1;
-        for (name, inside) in determined {
-            let entry = self.hits.entry(name).or_default();
-            *entry = (entry.0 + usize::from(inside), entry.1 + 1);
-        }
-    }
-
-    /// What most trials determined lay inside in 90 to 99 % of them all, and these names are among it.
-    pub(crate) fn assert_as_promised(&self, names: &[&str]) {
-        println!("{self:#?}");
-        let always: Vec<_> = self.hits.iter().filter(|(_, (_, trials))| *trials > self.trials / 2).collect();
-        for name in names {
-            assert!(
-                always.iter().any(|(known, _)| known == name),
-                "{name} is determined by such drives: {self:?}"
-            );
-        }
-        let (inside, trials) = always.iter().fold((0, 0), |sum, (_, (i, t))| (sum.0 + i, sum.1 + t));
-        let share = inside as f64 / trials as f64;
-        assert!((0.90..=0.99).contains(&share), "inside in {inside} of {trials}");
-        for (name, (inside, trials)) in always {
-            // An interval that truly holds in 90 % of cases is inside in fewer than 83 of 100 once in a hundred times.
-            assert!(*inside as f64 >= 0.83 * *trials as f64, "{name}: inside in {inside} of {trials}");
-        }
-    }
 }

@@ -11,7 +11,7 @@ use std::{
 use axum::extract::State;
 use calibration::{Method, Options, lift};
 use model::Robot;
-use recording::{Map, Recording, Watch};
+use recording::{Map, Recording, Room, Watch};
 use serde::Deserialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -115,7 +115,7 @@ impl Work {
     fn run(self, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
         let recording = read(engine, job, &self.notes, self.map.as_ref(), "/recordings")?;
         job.tell("fitting", None);
-        let found = self.method.calibrate(&self.robot, &recording, &self.options);
+        let found = self.method.calibrate_watched(&self.robot, &recording, &self.options, &job.watch());
         let found = found.map_err(|error| Problem::no_calibration(&error))?;
         serde_json::to_value(&found).map_err(|error| {
             Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))
@@ -139,11 +139,13 @@ pub(super) fn read(
     map: Option<&Map>,
     field: &str,
 ) -> Result<Recording, Problem> {
+    let all_bytes = notes.iter().map(|note| note.bytes).sum();
     let mut parts = Vec::with_capacity(notes.len());
     for (i, note) in notes.iter().enumerate() {
         let step = format!("reading recording {} of {}", i + 1, notes.len());
         let watch = watch(job, step, note.bytes);
-        let reading = engine.recordings().read(note, map, &watch);
+        let reading =
+            engine.recordings().read(note, map, &watch, Room::default().share(note.bytes, all_bytes));
         parts.push(reading.map_err(|problem| problem.at(format!("{field}/{i}")))?.recording);
     }
     Ok(Recording::join(parts))

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use diagnosis::diagnose;
+use diagnosis::diagnose_watched;
 use model::Robot;
 use recording::Map;
 use serde::Deserialize;
@@ -103,7 +103,7 @@ impl Work {
             _ => Some(read(engine, job, &self.healthy, map, "/reference")?),
         };
         let tell = |step: &str, share: f64| job.tell(step, Some(share));
-        let found = diagnose(&self.robot, &suspect, healthy.as_ref(), &tell);
+        let found = diagnose_watched(&self.robot, &suspect, healthy.as_ref(), &tell, &job.watch());
         let found = found.map_err(|error| Problem::no_diagnosis(&error))?;
         let unwritable = |error: serde_json::Error| {
             Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))

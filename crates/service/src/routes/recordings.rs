@@ -142,7 +142,8 @@ fn checked(
     let watch: recording::Watch = Arc::new(move |_| {
         if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    let reading = recording::read_file(file, note.format, &note.name, map.as_ref(), &watch)
+    let room = recording::Room::default();
+    let reading = recording::read_file(file, note.format, &note.name, map.as_ref(), &watch, room)
         .map_err(|error| Problem::invalid_recording(&error))?;
     note.report = serde_json::to_value(&reading.report).map_err(|error| {
         Problem::new(ProblemType::Internal, format!("the report cannot be written: {error}"))

@@ -1,0 +1,61 @@
+//! Channels of a size that another unit would explain.
+
+use super::{LEAST_ROWS, absence::present};
+use crate::{
+    Channel, Recording, Run,
+    report::{Suspicion, SuspicionKind as Kind},
+    units::si_unit,
+};
+
+pub(super) fn magnitude(channel: Channel, present: &[f64]) -> Option<String> {
+    let [least, greatest] = channel.plausible_magnitude();
+    let high = high_magnitude(present)?;
+    let unit = si_unit(channel.quantity());
+    (high < least || high > greatest).then(|| {
+        format!(
+            "its 99th percentile is {high:.4} {unit}, outside {least} to {greatest:.4}: is the unit right?"
+        )
+    })
+}
+
+/// The 99th percentile of the magnitude: the extreme would be the first outlier.
+fn high_magnitude(present: &[f64]) -> Option<f64> {
+    /// So many values, taken evenly, place a percentile to a thirtieth of a percent.
+    const SAMPLE: usize = 100_000;
+    let every = present.len().div_ceil(SAMPLE).max(1);
+    let mut magnitudes: Vec<f64> = present.iter().step_by(every).map(|value| value.abs()).collect();
+    let at = magnitudes.len().checked_sub(1)? * 99 / 100;
+    Some(*magnitudes.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// A run whose power is a thousandth or a thousand times that of the others was logged in another unit.
+pub(super) fn units_of_runs(recording: &Recording) -> Vec<Suspicion> {
+    /// Between the largest honest ratio of two drives of a robot (about 20) and that of kW to W.
+    const RATIO: f64 = 150.0;
+    let mut doubts = Vec::new();
+    for (&channel, values) in recording.channels.iter().filter(|(channel, _)| channel.tells_power()) {
+        let high = |run: &Run| {
+            let rows = values.get(run.rows.clone()).unwrap_or_default();
+            let present = present(rows);
+            if present.len() < LEAST_ROWS {
+                None
+            } else {
+                high_magnitude(&present).filter(|high| *high > 0.0)
+            }
+        };
+        let of_runs: Vec<(&Run, f64)> =
+            recording.runs.iter().filter_map(|run| high(run).map(|high| (run, high))).collect();
+        let mut sorted: Vec<f64> = of_runs.iter().map(|(_, high)| *high).collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let Some(&median) = sorted.get(sorted.len() / 2) else { continue };
+        for (run, high) in of_runs {
+            if high / median > RATIO || median / high > RATIO {
+                let statement = format!(
+                    "its 99th percentile is {high:.4} here and {median:.4} in most runs: mixed units?"
+                );
+                doubts.push(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Unit, statement });
+            }
+        }
+    }
+    doubts
+}
