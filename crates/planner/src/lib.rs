@@ -9,11 +9,12 @@
 
 mod along;
 mod astar;
-mod backward;
+
 mod blocked;
 mod connection;
 mod cost;
 mod course;
+mod dijkstra;
 mod displacement;
 mod edge;
 mod ends;

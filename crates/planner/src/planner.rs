@@ -129,7 +129,8 @@ impl Planner {
         let ends = Ends::find(&self.lattice, query)?;
         let table = self.table(objective);
         let goals = ends.goals_with_potential(&self.lattice, objective);
-        let exact = ExactField::new(table, &goals, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
+        let exact = ExactField::to_goals(table, &goals, f64::INFINITY, &query.patience)
+            .ok_or(Error::Timeout { expanded: 0 })?;
         self.fields.keep_exact(FieldKey::new(objective, &ends.goals), exact);
         Ok(())
     }
