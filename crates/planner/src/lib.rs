@@ -67,7 +67,7 @@ pub use footprint::{Clearance, Footprint};
 pub use heading::{HEADINGS, Heading};
 pub use labels::Workspace;
 pub use lattice::{Lattice, Settings, State};
-pub use objective::Objective;
+pub use objective::{Objective, Weights};
 pub use patience::Patience;
 pub use plan::{compare, plan};
 pub use planner::Planner;

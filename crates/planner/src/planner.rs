@@ -146,33 +146,42 @@ impl Planner {
             Some(found) => found,
             None => self.search(ends, query, objective)?,
         };
-        let duration = began.elapsed();
+        let route = Route::drive(&self.lattice, objective, found.start, &found.motions);
+        let refined = query.refine.then(|| refine(&self.lattice, objective, &route, &query.patience).route);
+        let search = SearchReport {
+            expanded: found.expanded,
+            duration: began.elapsed(),
+            bound: found.bound,
+            excess: found.excess,
+            timed_out: found.late,
+        };
+        Ok(self.answer(ends, query, (route, refined), search))
+    }
+
+    /// A path as the answer to a question.
+    pub(crate) fn answer(
+        &self,
+        ends: &Ends,
+        query: &Query,
+        (route, refined): (Route, Option<Route>),
+        search: SearchReport,
+    ) -> Plan {
         let lattice = &self.lattice;
-        let route = Route::drive(lattice, objective, found.start, &found.motions);
-        let settings = &query.settings;
         let energy_interval_j = energy_interval_j(
             &route,
             &lattice.robot,
-            settings.power_model,
+            lattice.settings.power_model,
             &surface_names(lattice),
-            settings.motor_temperature_c,
+            lattice.settings.motor_temperature_c,
         );
-        let goal_snap = goal_snap(&route, ends, query);
-        let refined = query.refine.then(|| refine(lattice, objective, &route, &query.patience).route);
-        Ok(Plan {
-            route,
-            refined,
+        Plan {
             energy_interval_j,
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
-            goal_snap,
-            search: SearchReport {
-                expanded: found.expanded,
-                duration,
-                bound: found.bound,
-                excess: found.excess,
-                timed_out: found.late,
-            },
-        })
+            goal_snap: goal_snap(&route, ends, query),
+            route,
+            refined,
+            search,
+        }
     }
 
     /// The way to a goal that is held.

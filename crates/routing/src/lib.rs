@@ -3,12 +3,18 @@
 //!
 //! No I/O, no async. Answers do not depend on the number of threads.
 
+mod charge;
 mod error;
 mod joints;
 mod matrix;
+mod outline;
+mod reach;
 mod waypoint;
 
-pub use error::Error;
+pub use charge::available_j;
+pub use error::{Contradiction, Error};
 pub use joints::{Joint, Joints, joints};
 pub use matrix::{Gap, Matrix, Question, matrix};
+pub use outline::{Polygon, outline};
+pub use reach::{Kind, Reach, reach};
 pub use waypoint::Waypoint;
