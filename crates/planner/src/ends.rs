@@ -11,11 +11,13 @@ use crate::{
 
 /// Both ends on the lattice.
 #[derive(Clone, Debug)]
-pub(crate) struct Ends {
+pub struct Ends {
     pub(crate) start: Snapped,
     pub(crate) goal: Snapped,
-    pub(crate) starts: Vec<State>,
-    pub(crate) goals: Vec<State>,
+    /// Poses that the robot may start in, all in one cell.
+    pub starts: Vec<State>,
+    /// Poses that it may end in.
+    pub goals: Vec<State>,
 }
 
 impl Ends {

@@ -60,6 +60,7 @@ mod window;
 
 pub use astar::{Found, Outcome, Search, search};
 pub use edge::Edge;
+pub use ends::Ends;
 pub use error::{Blocked, Error, Place};
 pub use exact::ExactField;
 pub use field::{FieldEnds, GoalField};

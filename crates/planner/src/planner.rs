@@ -17,7 +17,7 @@ use crate::{
     field::GoalField,
     fields::{FieldCache, FieldKey},
     labels::Workspace,
-    lattice::{Lattice, Settings},
+    lattice::{Lattice, Settings, State},
     objective::Objective,
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
@@ -146,11 +146,12 @@ impl Planner {
             Some(found) => found,
             None => self.search(ends, query, objective)?,
         };
+        let duration = began.elapsed();
         let route = Route::drive(&self.lattice, objective, found.start, &found.motions);
         let refined = query.refine.then(|| refine(&self.lattice, objective, &route, &query.patience).route);
         let search = SearchReport {
             expanded: found.expanded,
-            duration: began.elapsed(),
+            duration,
             bound: found.bound,
             excess: found.excess,
             timed_out: found.late,
@@ -158,8 +159,31 @@ impl Planner {
         Ok(self.answer(ends, query, (route, refined), search))
     }
 
+    /// Both ends of a question on the lattice.
+    ///
+    /// # Errors
+    /// Ends off the map or where the robot cannot stand, or numbers out of range.
+    pub fn ends(&self, query: &Query) -> Result<Ends, Error> {
+        Ends::find(&self.lattice, query)
+    }
+
+    /// The answer that drives chosen motions, each with the variant to drive it in, from a pose between the ends of a
+    /// question. It is not refined.
+    pub fn plan_along(
+        &self,
+        (ends, query): (&Ends, &Query),
+        start: State,
+        ways: &[(usize, usize)],
+        search: SearchReport,
+    ) -> Plan {
+        let mut variants = ways.iter().map(|(_, variant)| *variant);
+        let motions = ways.iter().map(|(motion, _)| *motion);
+        let route = Route::drive_by(&self.lattice, start, motions, |_, _| variants.next());
+        self.answer(ends, query, (route, None), search)
+    }
+
     /// A path as the answer to a question.
-    pub(crate) fn answer(
+    fn answer(
         &self,
         ends: &Ends,
         query: &Query,
