@@ -1,13 +1,13 @@
 //! What can be reached from a place, or can reach it, or both, and at what energy.
 
-use planner::{ExactField, Heading, Lattice, Objective, Patience, Planner, State};
+use planner::{ExactField, Heading, Lattice, Objective, Patience, Place, Planner, State};
 use rayon::prelude::*;
 use terrain::Grid;
 
 use crate::{
     error::Error,
     outline::{Polygon, outline},
-    waypoint::{Waypoint, states_of},
+    waypoint::Waypoint,
 };
 
 /// Which way the energy is spent.
@@ -54,8 +54,8 @@ pub fn reach(
     if most_j.is_nan() || most_j <= 0.0 {
         return Err(Error::NotPositive { field: "energies_j".to_owned(), value: most_j });
     }
-    let places = states_of(planner, "places", std::slice::from_ref(place), snap_radius_m)?;
-    let seeds: Vec<(State, f64)> = places.into_iter().flatten().map(|state| (state, 0.0)).collect();
+    let states = place.states(planner, Place::Start, snap_radius_m)?;
+    let seeds: Vec<(State, f64)> = states.into_iter().map(|state| (state, 0.0)).collect();
     let lattice = planner.lattice();
     let home_j = seeds.first().map_or(0.0, |(state, _)| lattice.potential_j(state.cell));
     let table = planner.table(Objective::Energy);

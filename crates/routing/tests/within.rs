@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use std::collections::BTreeMap;
+
 use planner::{Lattice, Objective, Planner, Query, State};
 use rand::RngExt;
 use routing::{Error, Limits, alternatives, plan_within};
@@ -14,29 +16,34 @@ type Amounts = [f64; 3];
 
 /// Every combination of the chosen amounts, from a state of `starts` to one of `goals`, that no other beats.
 ///
-/// Bellman and Ford's way with sets instead of numbers; energies without lifting, so that no motion takes less than nothing.
+/// Sets of amounts at every state are corrected until none changes, with nothing that prunes but the sets themselves.
+/// Energies count without lifting, so that no motion takes less than nothing.
 fn front(planner: &Planner, starts: &[State], goals: &[State], active: &[usize]) -> Vec<Amounts> {
     let lattice = planner.lattice();
     let no_worse = |a: &Amounts, b: &Amounts| active.iter().all(|i| a[*i] <= b[*i] + 1e-12);
     let mut sets: Vec<Vec<Amounts>> = vec![Vec::new(); lattice.states()];
-    let mut changed: Vec<usize> = starts.iter().map(|start| lattice.index(*start)).collect();
-    for start in &changed {
-        sets[*start].push([0.0; 3]);
+    let moves: Vec<Vec<(State, Amounts)>> =
+        (0..lattice.states()).map(|i| motions(planner, lattice.state(i))).collect();
+    // The order does not matter for what comes out, only for how soon: positive numbers sort as their bits.
+    let mut open: BTreeMap<(u64, u64), (usize, Amounts)> = BTreeMap::new();
+    let mut count = 0;
+    for start in starts {
+        count += 1;
+        sets[lattice.index(*start)].push([0.0; 3]);
+        open.insert((0, count), (lattice.index(*start), [0.0; 3]));
     }
-    while let Some(from) = changed.pop() {
-        for (end, takes) in motions(planner, lattice.state(from)) {
-            let mut grown = false;
-            for before in sets[from].clone() {
-                let sum: Amounts = std::array::from_fn(|i| before[i] + takes[i]);
-                let set = &mut sets[lattice.index(end)];
-                if !set.iter().any(|other| no_worse(other, &sum)) {
-                    set.retain(|other| !no_worse(&sum, other));
-                    set.push(sum);
-                    grown = true;
-                }
-            }
-            if grown && !changed.contains(&lattice.index(end)) {
-                changed.insert(0, lattice.index(end));
+    while let Some((_, (from, before))) = open.pop_first() {
+        if !sets[from].contains(&before) {
+            continue;
+        }
+        for (end, takes) in &moves[from] {
+            let sum: Amounts = std::array::from_fn(|i| before[i] + takes[i]);
+            let set = &mut sets[lattice.index(*end)];
+            if !set.iter().any(|other| no_worse(other, &sum)) {
+                set.retain(|other| !no_worse(&sum, other));
+                set.push(sum);
+                count += 1;
+                open.insert((sum[active[0]].to_bits(), count), (lattice.index(*end), sum));
             }
         }
     }
@@ -75,7 +82,7 @@ fn motions(planner: &Planner, state: State) -> Vec<(State, Amounts)> {
 /// Random ground, a question over it, and the poses that its ends stand for.
 fn case(random: &mut rand_pcg::Pcg64Mcg, number: usize) -> (Planner, Query, Vec<State>, Vec<State>) {
     loop {
-        let terrain = ground::small_terrain(random, 6);
+        let terrain = ground::small_terrain(random, 5);
         let robot = ground::some_robot(random, [0.0, 0.5, 1.0][number % 3]);
         let mut query = ground::some_query(random, &terrain, &robot);
         query.snap_radius_m = Some(0.0);
