@@ -111,7 +111,9 @@ fn the_best_path_within_a_limit_is_that_of_an_exhaustive_search() {
         let (planner, query, starts, goals) = case(&mut random, number);
         let (objective, other) = [(0, 2), (0, 1), (2, 0), (1, 0)][number % 4];
         let named = [Objective::Energy, Objective::Distance, Objective::Time][objective];
+        let began = std::time::Instant::now();
         let front = front(&planner, &starts, &goals, &[objective, other]);
+        eprintln!("DBG {number} front {} in {:?}", front.len(), began.elapsed());
         for pair in front.windows(2) {
             // Between what the better path takes of the other amount and what the next one does.
             let most = pair[1][other] + random.random_range(0.0..0.9) * (pair[0][other] - pair[1][other]);
@@ -121,6 +123,7 @@ fn the_best_path_within_a_limit_is_that_of_an_exhaustive_search() {
                 _ => Limits { max_time_s: Some(most), ..Limits::default() },
             };
             let plan = plan_within(&planner, &query, named, &limits).unwrap();
+            eprintln!("DBG plan {:?} {}", began.elapsed(), plan.search.expanded);
             assert!(limits.hold(&plan.route.total), "{limits:?}: {:?}", plan.route.total);
             let found = amounts(&plan)[objective];
             assert!(near(found, pair[1][objective]), "case {number}: {found}, not {}", pair[1][objective]);
@@ -199,7 +202,10 @@ fn a_trade_off_that_is_complete_is_the_whole_front_and_none_is_beaten_in_any() {
         assert!(!found.timed_out);
         for plan in &found.plans {
             let a = amounts(plan);
-            assert!(truth.iter().any(|b| near(a[0], b[0]) && near(a[other], b[other])), "{a:?} is beaten");
+            assert!(
+                truth.iter().any(|b| near(a[0], b[0]) && near(a[other], b[other])),
+                "{a:?} is beaten: {truth:?}"
+            );
         }
         if found.complete {
             complete += 1;
