@@ -38,6 +38,9 @@ pub(crate) struct Way {
 /// By how much the planner's tables may be above what a motion takes, as a share: their rounding, and single precision.
 pub(crate) const TABLE_ROUNDING: f64 = CostTable::LARGEST_ROUNDING + 1e-4;
 
+/// Share of a path's length that its time may weigh, to choose between equals.
+const TIE_SHARE: f64 = 1e-6;
+
 impl<'q> Bounded<'q> {
     pub(crate) fn new(
         planner: &'q Planner,
@@ -91,7 +94,12 @@ impl<'q> Bounded<'q> {
     }
 
     /// The path of which a weighted sum of amounts is least, to the table's rounding.
-    pub(crate) fn least(&self, sum: Amounts) -> Result<Way, Error> {
+    pub(crate) fn least(&self, mut sum: Amounts) -> Result<Way, Error> {
+        if sum[place(Objective::Energy)] == 0.0 && sum[place(Objective::Time)] == 0.0 {
+            // Turns on the spot have no length, and a motion that costs nothing leads a walk round in circles.
+            let speed_mps = self.planner.lattice().settings.speed_mps;
+            sum[place(Objective::Time)] = TIE_SHARE * speed_mps * sum[place(Objective::Distance)];
+        }
         let (table, goals) = (self.table(sum), self.goals_in(&sum));
         let late = Error::Planner(planner::Error::Timeout { expanded: 0 });
         let patience = &self.query.patience;

@@ -87,7 +87,7 @@ pub(crate) fn best_within(
         if report.late {
             return Err(planner::Error::Timeout { expanded: report.expanded }.into());
         }
-        return Err(contradiction(&bounded, true));
+        return Err(contradiction(&bounded));
     };
     let report = SearchReport {
         expanded: report.expanded,
@@ -129,13 +129,13 @@ fn multiplier(bounded: &Bounded<'_>, best: Way) -> Result<Hint, Error> {
     let objective = bounded.objective;
     let beyond = |amount: f64, at: usize| amount * (1.0 - TABLE_ROUNDING) > bounded.most[at];
     if beyond(best.takes[objective], objective) {
-        return Err(contradiction(bounded, false));
+        return Err(contradiction(bounded));
     }
     let mut ways = Vec::new();
     for at in bounded.limited() {
         let way = bounded.least_of(at)?;
         if beyond(way.takes[at], at) {
-            return Err(contradiction(bounded, false));
+            return Err(contradiction(bounded));
         }
         ways.push((at, way));
     }
@@ -160,14 +160,15 @@ fn multiplier(bounded: &Bounded<'_>, best: Way) -> Result<Hint, Error> {
 }
 
 /// The least of each amount, as an error.
-fn contradiction(bounded: &Bounded<'_>, each_alone: bool) -> Error {
-    let least = |at: usize| -> Result<f64, Error> { Ok(bounded.whole(at, bounded.least_of(at)?.takes[at])) };
+fn contradiction(bounded: &Bounded<'_>) -> Error {
     let all = || -> Result<Contradiction, Error> {
+        let ways = [bounded.least_of(0)?, bounded.least_of(1)?, bounded.least_of(2)?];
+        let least = |at: usize| bounded.whole(at, ways[at].takes[at]);
         Ok(Contradiction {
-            least_energy_j: least(0)?,
-            least_distance_m: least(1)?,
-            least_duration_s: least(2)?,
-            each_alone,
+            least_energy_j: least(0),
+            least_distance_m: least(1),
+            least_duration_s: least(2),
+            each_alone: (0..3).all(|at| ways[at].takes[at] <= bounded.most[at]),
         })
     };
     match all() {

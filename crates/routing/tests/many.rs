@@ -173,7 +173,11 @@ fn sets_are_the_whole_field_cut_off_cell_by_cell_and_grow_with_the_energy() {
                     reach(&planner, &places[0], kind, most_j, Some(0.0), &Patience::default()).unwrap();
                 for (index, (held_j, whole_j)) in found.energy_j.iter().zip(&whole).enumerate() {
                     if *whole_j <= most_j {
-                        assert_eq!(held_j, whole_j, "cell {index} within {most_j} J");
+                        // Their sums are in another order.
+                        assert!(
+                            (held_j - whole_j).abs() <= 1e-9,
+                            "cell {index}: {held_j} J, not {whole_j} J"
+                        );
                     } else {
                         assert!(
                             held_j.is_nan(),
