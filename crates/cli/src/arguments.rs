@@ -54,21 +54,89 @@ impl FromStr for Place {
 }
 
 impl Place {
+    /// The place as a pose of a map.
+    pub(crate) fn pose_on(&self, grid: &Grid) -> StartPose {
+        let [x_m, y_m] = self.on(grid);
+        StartPose { x_m, y_m, heading_rad: self.heading_deg.map(f64::to_radians) }
+    }
+
     /// The place in metres of a map.
     fn on(&self, grid: &Grid) -> [f64; 2] {
         if self.fraction { grid.at_fraction_m(self.x, self.y) } else { [self.x, self.y] }
     }
 }
 
-/// Map, robot, both ends and how to drive: what `plan` and `compare` share.
+/// Map, robot and how to drive: what all commands over a map share.
 #[derive(Args)]
-pub(crate) struct Question {
+pub(crate) struct Driving {
     /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
     #[arg(long)]
     map: PathBuf,
     /// Name of a built-in robot, or a robot file
     #[arg(long, default_value = "husky-a200")]
     robot: String,
+    /// Forward speed [m/s]; default half the wheels' top speed
+    #[arg(long)]
+    pub(crate) speed_mps: Option<f64>,
+    /// How far a place may be moved to free ground [m]; default one cell
+    #[arg(long)]
+    pub(crate) snap_radius_m: Option<f64>,
+    /// Form of the physics: force-balance or dogru-marques
+    #[arg(long, default_value = "force-balance", value_parser = power_model)]
+    pub(crate) power_model: PowerModel,
+    /// Let the robot back up
+    #[arg(long)]
+    pub(crate) reverse: bool,
+    /// Time for the answer [s] [default: 600]
+    #[arg(long)]
+    pub(crate) timeout_s: Option<f64>,
+    /// Print the answer as the JSON document that the HTTP API returns
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Driving {
+    /// Reads the map and the robot.
+    pub(crate) fn read(&self) -> anyhow::Result<(Terrain, RobotChoice)> {
+        Ok((read_map(&self.map)?, read_robot(&self.robot)?))
+    }
+}
+
+/// Hard limits on a path.
+#[derive(Args)]
+pub(crate) struct PathLimits {
+    /// The path may take no longer [s]
+    #[arg(long)]
+    max_time_s: Option<f64>,
+    /// The path may have drawn no more on arrival [J]
+    #[arg(long, allow_hyphen_values = true)]
+    max_energy_j: Option<f64>,
+    /// The path may be no longer [m]
+    #[arg(long)]
+    max_distance_m: Option<f64>,
+    /// Steepest climb, descent or sideways tilt on the way [rad]
+    #[arg(long)]
+    max_slope_rad: Option<f64>,
+}
+
+impl PathLimits {
+    /// The request within these limits.
+    pub(crate) fn on(&self, request: PlanRequest) -> PlanRequest {
+        PlanRequest {
+            max_time_s: self.max_time_s,
+            max_energy_j: self.max_energy_j,
+            max_distance_m: self.max_distance_m,
+            max_slope_rad: self.max_slope_rad,
+            ..request
+        }
+    }
+}
+
+/// Both ends of a path over a map, and how to drive: what `plan` and `compare` share.
+#[derive(Args)]
+pub(crate) struct Question {
+    #[command(flatten)]
+    pub(crate) driving: Driving,
     /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
@@ -78,30 +146,12 @@ pub(crate) struct Question {
     /// Any pose this close to the goal will do [m]
     #[arg(long, default_value_t = 0.0)]
     tolerance_m: f64,
-    /// Forward speed [m/s]; default half the wheels' top speed
-    #[arg(long)]
-    speed_mps: Option<f64>,
-    /// How far a start or goal may be moved to free ground [m]; default one cell
-    #[arg(long)]
-    snap_radius_m: Option<f64>,
-    /// Form of the physics: force-balance or dogru-marques
-    #[arg(long, default_value = "force-balance", value_parser = power_model)]
-    power_model: PowerModel,
-    /// Let the robot back up
-    #[arg(long)]
-    reverse: bool,
     /// The path may cost so many times the least: looser bounds are answered sooner
     #[arg(long, default_value_t = 1.0)]
     bound: f64,
     /// Leave the path on the lattice
     #[arg(long)]
     no_refinement: bool,
-    /// Time for each search [s]; the best path so far is the answer when it is over [default: 600]
-    #[arg(long)]
-    timeout_s: Option<f64>,
-    /// Print the answer as the JSON document that the HTTP API returns
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 fn power_model(text: &str) -> Result<PowerModel, String> {
@@ -115,29 +165,33 @@ fn power_model(text: &str) -> Result<PowerModel, String> {
 impl Question {
     /// Reads the files and puts the question as the service takes it.
     pub(crate) fn read(&self, objective: ObjectiveName) -> anyhow::Result<(Terrain, PlanRequest)> {
-        let terrain = read_map(&self.map)?;
-        let [sx, sy] = self.start.on(&terrain.grid);
-        let [gx, gy] = self.goal.on(&terrain.grid);
+        let driving = &self.driving;
+        let (terrain, robot) = driving.read()?;
+        let goal = self.goal.pose_on(&terrain.grid);
         let request = PlanRequest {
             map: None,
             map_id: None,
-            robot: read_robot(&self.robot)?,
-            start: StartPose { x_m: sx, y_m: sy, heading_rad: self.start.heading_deg.map(f64::to_radians) },
+            robot,
+            start: self.start.pose_on(&terrain.grid),
             goal: GoalPose {
-                x_m: gx,
-                y_m: gy,
-                heading_rad: self.goal.heading_deg.map(f64::to_radians),
+                x_m: goal.x_m,
+                y_m: goal.y_m,
+                heading_rad: goal.heading_rad,
                 tolerance_m: self.tolerance_m,
             },
             objective,
-            speed_mps: self.speed_mps,
-            power_model: self.power_model,
-            reverse: self.reverse,
-            snap_radius_m: self.snap_radius_m,
+            speed_mps: driving.speed_mps,
+            power_model: driving.power_model,
+            reverse: driving.reverse,
+            snap_radius_m: driving.snap_radius_m,
             bound: self.bound,
-            timeout_s: self.timeout_s,
+            timeout_s: driving.timeout_s,
             hold_goal: false,
             refine: !self.no_refinement,
+            max_time_s: None,
+            max_energy_j: None,
+            max_distance_m: None,
+            max_slope_rad: None,
         };
         Ok((terrain, request))
     }

@@ -28,13 +28,13 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// 2 for wrong input, 3 for no path, 1 for anything else.
+/// 2 for wrong input, 3 for no path or none within limits, 1 for anything else.
 pub(crate) fn exit_code(error: &anyhow::Error) -> ExitCode {
     let code = if error.downcast_ref::<BadInput>().is_some() {
         2
     } else if let Some(Refused(problem)) = error.downcast_ref::<Refused>() {
         match problem.kind {
-            ProblemType::NoPath => 3,
+            ProblemType::NoPath | ProblemType::LimitsContradict => 3,
             ProblemType::Timeout | ProblemType::Internal => 1,
             _ => 2,
         }

@@ -5,6 +5,7 @@ mod commands;
 mod failure;
 mod picture;
 mod progress;
+mod reach_picture;
 mod recorded;
 mod table;
 
@@ -26,6 +27,12 @@ enum Command {
     Plan(commands::plan::Arguments),
     /// Compare the energy-minimal, shortest and fastest paths over a map
     Compare(commands::compare::Arguments),
+    /// Find paths that trade energy for time or length
+    Alternatives(commands::alternatives::Arguments),
+    /// Print energy, time and length between many places
+    Matrix(commands::matrix::Arguments),
+    /// Find the ground within energies or charges of a place
+    Reachable(commands::reachable::Arguments),
     /// Compare the power that recorded drives drew with what the robot's model says
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
@@ -49,6 +56,9 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Alternatives(arguments) => commands::alternatives::run(&arguments),
+        Command::Matrix(arguments) => commands::matrix::run(&arguments),
+        Command::Reachable(arguments) => commands::reachable::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),

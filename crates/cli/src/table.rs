@@ -47,23 +47,7 @@ pub(crate) fn compare(answer: &CompareAnswer) -> String {
         cells("shortest", &answer.distance),
         cells("fastest", &answer.time),
     ];
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: [usize; 7] = std::array::from_fn(width);
-    let mut text = String::new();
-    for row in &rows {
-        let line: Vec<String> = row
-            .iter()
-            .zip(widths)
-            .enumerate()
-            .map(
-                |(i, (cell, width))| {
-                    if i == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-                },
-            )
-            .collect();
-        text.push_str(line.join("  ").trim_end());
-        text.push('\n');
-    }
+    let mut text = aligned(&rows);
     let (least, shortest) = (&answer.energy, &answer.distance);
     let saved = energy(shortest.energy_j - least.energy_j);
     let further_m = least.distance_m - shortest.distance_m;
@@ -72,6 +56,22 @@ pub(crate) fn compare(answer: &CompareAnswer) -> String {
         text.push_str(&format!(", {:.1} % of the shortest path's energy,", 100.0 * answer.saving_fraction));
     }
     text.push_str(&format!(" by driving {further_m:.1} m further."));
+    text
+}
+
+/// Rows under each other, the first column to the left, the others to the right.
+pub(crate) fn aligned<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; COLUMNS] = std::array::from_fn(width);
+    let mut text = String::new();
+    for row in rows {
+        let cell = |(i, (cell, width)): (usize, (&String, usize))| {
+            if i == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        };
+        let line: Vec<String> = row.iter().zip(widths).enumerate().map(cell).collect();
+        text.push_str(line.join("  ").trim_end());
+        text.push('\n');
+    }
     text
 }
 
@@ -88,12 +88,12 @@ fn cells(name: &str, answer: &PlanAnswer) -> [String; 7] {
     ]
 }
 
-fn energy(energy_j: f64) -> String {
+pub(crate) fn energy(energy_j: f64) -> String {
     format!("{:.2} kJ", energy_j / 1e3)
 }
 
 /// Minutes and seconds.
-fn time(seconds: f64) -> String {
+pub(crate) fn time(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     format!("{}:{:02} min", whole / 60, whole % 60)
 }

@@ -18,14 +18,16 @@ pub enum Objective {
 const TIE_SHARE: f64 = 1e-5;
 
 /// An objective as weights of what a motion takes.
+///
+/// None is negative, and at least one is above nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Weights {
-    /// Of energy beyond lifting.
-    pub(crate) per_j: f64,
-    /// Of length.
-    pub(crate) per_m: f64,
-    /// Of time.
-    pub(crate) per_s: f64,
+pub struct Weights {
+    /// Of energy beyond lifting [1/J].
+    pub per_j: f64,
+    /// Of length [1/m].
+    pub per_m: f64,
+    /// Of time [1/s].
+    pub per_s: f64,
 }
 
 impl Objective {
@@ -42,7 +44,7 @@ impl Objective {
 
 impl Weights {
     /// Cost of a motion that was driven, between places whose height potentials differ by `lifted_j`.
-    pub(crate) fn cost(&self, edge: &Edge, lifted_j: f64) -> f64 {
+    pub fn cost(&self, edge: &Edge, lifted_j: f64) -> f64 {
         let friction_j = edge.energy_j - lifted_j;
         debug_assert!(
             friction_j >= -1e-6 * (1.0 + lifted_j.abs()),

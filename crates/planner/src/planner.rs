@@ -7,7 +7,7 @@ use std::{
 
 use model::Robot;
 use rayon::prelude::*;
-use terrain::{CellRange, Terrain};
+use terrain::{Cell, CellRange, Terrain};
 
 use crate::{
     astar::{Found, Outcome, Search, search},
@@ -17,7 +17,7 @@ use crate::{
     field::GoalField,
     fields::{FieldCache, FieldKey},
     labels::Workspace,
-    lattice::{Lattice, Settings},
+    lattice::{Lattice, Settings, State},
     objective::Objective,
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
@@ -147,32 +147,65 @@ impl Planner {
             None => self.search(ends, query, objective)?,
         };
         let duration = began.elapsed();
+        let route = Route::drive(&self.lattice, objective, found.start, &found.motions);
+        let refined = query.refine.then(|| refine(&self.lattice, objective, &route, &query.patience).route);
+        let search = SearchReport {
+            expanded: found.expanded,
+            duration,
+            bound: found.bound,
+            excess: found.excess,
+            timed_out: found.late,
+        };
+        Ok(self.answer(ends, query, (route, refined), search))
+    }
+
+    /// Both ends of a question on the lattice.
+    ///
+    /// # Errors
+    /// Ends off the map or where the robot cannot stand, or numbers out of range.
+    pub fn ends(&self, query: &Query) -> Result<Ends, Error> {
+        Ends::find(&self.lattice, query)
+    }
+
+    /// The answer that drives chosen motions, each with the variant to drive it in, from a pose between the ends of a
+    /// question. It is not refined.
+    pub fn plan_along(
+        &self,
+        (ends, query): (&Ends, &Query),
+        start: State,
+        ways: &[(usize, usize)],
+        search: SearchReport,
+    ) -> Plan {
+        let mut variants = ways.iter().map(|(_, variant)| *variant);
+        let motions = ways.iter().map(|(motion, _)| *motion);
+        let route = Route::drive_by(&self.lattice, start, motions, |_, _| variants.next());
+        self.answer(ends, query, (route, None), search)
+    }
+
+    /// A path as the answer to a question.
+    fn answer(
+        &self,
+        ends: &Ends,
+        query: &Query,
+        (route, refined): (Route, Option<Route>),
+        search: SearchReport,
+    ) -> Plan {
         let lattice = &self.lattice;
-        let route = Route::drive(lattice, objective, found.start, &found.motions);
-        let settings = &query.settings;
         let energy_interval_j = energy_interval_j(
             &route,
             &lattice.robot,
-            settings.power_model,
+            lattice.settings.power_model,
             &surface_names(lattice),
-            settings.motor_temperature_c,
+            lattice.settings.motor_temperature_c,
         );
-        let goal_snap = goal_snap(&route, ends, query);
-        let refined = query.refine.then(|| refine(lattice, objective, &route, &query.patience).route);
-        Ok(Plan {
-            route,
-            refined,
+        Plan {
             energy_interval_j,
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
-            goal_snap,
-            search: SearchReport {
-                expanded: found.expanded,
-                duration,
-                bound: found.bound,
-                excess: found.excess,
-                timed_out: found.late,
-            },
-        })
+            goal_snap: goal_snap(&route, ends, query),
+            route,
+            refined,
+            search,
+        }
     }
 
     /// The way to a goal that is held.
@@ -204,37 +237,36 @@ impl Planner {
             bound: query.bound,
             patience: &query.patience,
         };
-        let mut workspace = self.take_workspace();
-        let outcome = search(table, &field, &question, &mut workspace);
-        self.give_workspace(workspace);
-        match outcome {
+        match self.with_workspace(|workspace| search(table, &field, &question, workspace)) {
             Outcome::Found(found) => Ok(found),
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
-            Outcome::Unreachable => Err(nearest_connected(&self.lattice, &field, ends)),
+            Outcome::Unreachable => {
+                Err(nearest_connected(&self.lattice, &field, ends.start.cell, ends.goal.cell))
+            }
         }
     }
 
-    fn take_workspace(&self) -> Workspace {
+    /// Lends memory to search in, which is kept for the next search.
+    pub(crate) fn with_workspace<T>(&self, search: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        kept.unwrap_or_else(|| Workspace::of(&self.lattice))
-    }
-
-    fn give_workspace(&self, workspace: Workspace) {
+        let mut workspace = kept.unwrap_or_else(|| Workspace::of(&self.lattice));
+        let outcome = search(&mut workspace);
         self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).push(workspace);
+        outcome
     }
 }
 
 /// Where the ground that leads to the goal comes nearest to the start.
-fn nearest_connected(lattice: &Lattice, field: &GoalField, ends: &Ends) -> Error {
+pub(crate) fn nearest_connected(lattice: &Lattice, field: &GoalField, start: Cell, goal: Cell) -> Error {
     let grid = &lattice.terrain.grid;
-    let [sx, sy] = grid.center_m(ends.start.cell);
+    let [sx, sy] = grid.center_m(start);
     let nearest = (0..grid.cells())
         .map(|i| grid.cell(i))
         .filter(|&cell| field.leads_from(cell))
         .map(|cell| grid.center_m(cell))
         .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let [gx, gy] = grid.center_m(ends.goal.cell);
+    let [gx, gy] = grid.center_m(goal);
     let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
     if gap_m == 0.0 {
         return Error::NoRoomToTurn { x_m, y_m };

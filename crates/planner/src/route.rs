@@ -53,8 +53,21 @@ pub struct Route {
 }
 
 impl Route {
-    /// Drives a chain of motions from a state.
+    /// Drives a chain of motions from a state, each in the way that costs least.
     pub(crate) fn drive(lattice: &Lattice, objective: Objective, start: State, motions: &[usize]) -> Self {
+        let weights = lattice.weights(objective);
+        Self::drive_by(lattice, start, motions.iter().copied(), |state, motion| {
+            cheapest(lattice, &weights, state, motion).map(|(variant, _)| variant)
+        })
+    }
+
+    /// Drives a chain of motions from a state, each in the way that `variant` names.
+    pub(crate) fn drive_by(
+        lattice: &Lattice,
+        start: State,
+        motions: impl Iterator<Item = usize>,
+        mut variant: impl FnMut(State, usize) -> Option<usize>,
+    ) -> Self {
         let mut route = Route {
             total: Edge::default(),
             poses: vec![first_pose(lattice, start)],
@@ -62,9 +75,8 @@ impl Route {
             edges: Vec::new(),
         };
         let mut state = start;
-        let weights = lattice.weights(objective);
-        for &motion in motions {
-            let Some((variant, _)) = cheapest(lattice, &weights, state, motion) else { break };
+        for motion in motions {
+            let Some(variant) = variant(state, motion) else { break };
             let Some(end) = lattice.successor(state, motion) else { break };
             let mut edge = Edge::default();
             let origin_m = lattice.terrain.grid.center_m(state.cell);

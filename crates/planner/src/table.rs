@@ -29,7 +29,7 @@ use crate::{
 /// are first asked for.
 pub struct CostTable {
     lattice: Arc<Lattice>,
-    objective: Objective,
+    weights: Weights,
     kernel: TileKernel,
     units: f64,
     /// Codes of all motions of each tile's states, by quad of cells, heading, motion and cell.
@@ -53,12 +53,16 @@ impl CostTable {
 
     /// A table that evaluates a tile when it is first asked for one of its costs.
     pub fn lazy(lattice: &Arc<Lattice>, objective: Objective) -> Self {
-        let weights = lattice.weights(objective);
+        Self::weighted(lattice, lattice.weights(objective))
+    }
+
+    /// The same for a sum of energy beyond lifting, length and time, whose unit is that of the weights' products.
+    pub fn weighted(lattice: &Arc<Lattice>, weights: Weights) -> Self {
         let units = units_per_cost(lattice, &weights);
         let cell_size_m = lattice.terrain.grid.cell_size_m;
         CostTable {
             lattice: Arc::clone(lattice),
-            objective,
+            weights,
             kernel: TileKernel::new(lattice, weights, units),
             units,
             codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
@@ -85,7 +89,7 @@ impl CostTable {
     ///
     /// The lattice must be that of the same robot and settings over a map of the same size.
     pub(crate) fn patched(&self, lattice: &Arc<Lattice>, changed: &CellRange) -> Self {
-        let table = Self::lazy(lattice, self.objective);
+        let table = Self::weighted(lattice, self.weights);
         let names = |lattice: &Lattice| lattice.terrain.surfaces().map(|s| s.names.clone());
         if names(lattice) != names(&self.lattice) {
             // The surfaces' numbers have changed, so every tile has.
@@ -117,8 +121,8 @@ impl CostTable {
     }
 
     /// What the costs are of.
-    pub fn objective(&self) -> Objective {
-        self.objective
+    pub fn weights(&self) -> &Weights {
+        &self.weights
     }
 
     /// Number of tiles whose costs are held.

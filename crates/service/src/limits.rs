@@ -11,6 +11,8 @@ pub struct Limits {
     pub plan_time: Duration,
     /// Most states (cells × 16 headings) of one plan. Default 32 million: 1400 × 1400 cells.
     pub plan_states: usize,
+    /// Most entries of a matrix: sources times targets. Default 2500: 50 × 50.
+    pub matrix_entries: usize,
     /// Most cells over all stored maps. Default 200 million.
     pub stored_cells: usize,
     /// Most bytes that planners keep between requests: costs of motions and fields of goals. Default 2 GiB.
@@ -40,6 +42,7 @@ impl Default for Limits {
             body_bytes: 64 << 20,
             plan_time: Duration::from_secs(60),
             plan_states: 32_000_000,
+            matrix_entries: 2500,
             stored_cells: 200_000_000,
             kept_bytes: 2 << 30,
             parallel_plans: cores,

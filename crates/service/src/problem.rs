@@ -49,6 +49,12 @@ pub enum ProblemType {
     GoalBlocked,
     /// No way leads from the start to the goal.
     NoPath,
+    /// A pose of a list lies off the map.
+    WaypointOutsideMap,
+    /// The robot cannot stand at a pose of a list.
+    WaypointBlocked,
+    /// No path keeps all the limits asked for.
+    LimitsContradict,
     /// The search stopped at its deadline.
     Timeout,
     /// The body or the map exceeds a limit.
@@ -106,7 +112,10 @@ impl ProblemType {
             | T::GoalOutsideMap
             | T::StartBlocked
             | T::GoalBlocked
-            | T::NoPath => StatusCode::UNPROCESSABLE_ENTITY,
+            | T::NoPath
+            | T::WaypointOutsideMap
+            | T::WaypointBlocked
+            | T::LimitsContradict => StatusCode::UNPROCESSABLE_ENTITY,
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
@@ -136,6 +145,9 @@ impl ProblemType {
             T::StartBlocked => "The robot cannot stand at the start",
             T::GoalBlocked => "The robot cannot stand at the goal",
             T::NoPath => "There is no path",
+            T::WaypointOutsideMap => "A pose lies outside the map",
+            T::WaypointBlocked => "The robot cannot stand at a pose",
+            T::LimitsContradict => "No path keeps the limits",
             T::Timeout => "The search ran out of time",
             T::TooLarge => "Too large",
             T::StoreFull => "The store is full",
@@ -239,22 +251,46 @@ impl Problem {
         }
     }
 
+    /// Why a question of many paths, or of limits, has no answer.
+    pub fn no_routing(error: &routing::Error) -> Self {
+        use routing::Error as E;
+        match error {
+            E::Planner(error) => Problem::no_plan(error),
+            E::Contradiction(_) => Problem::new(ProblemType::LimitsContradict, error.to_string()),
+            E::NotPositive { field, .. } => {
+                Problem::new(ProblemType::InvalidRequest, error.to_string()).at(pointer(field))
+            }
+            E::Charge { .. } | E::ChargeWithinReserve { .. } => {
+                Problem::new(ProblemType::InvalidRequest, error.to_string()).at("/charges")
+            }
+            _ => Problem::new(ProblemType::Internal, error.to_string()),
+        }
+    }
+
     /// Why the planner has no path.
     pub fn no_plan(error: &planner::Error) -> Self {
         use planner::Error as E;
         let place = |place: &Place| match place {
-            Place::Start => "/start",
-            Place::Goal => "/goal",
+            Place::Start => "/start".to_owned(),
+            Place::Goal => "/goal".to_owned(),
+            Place::Listed { list, index } => format!("/{list}/{index}"),
         };
         let (kind, at) = match error {
-            E::OutsideMap { place: Place::Start, .. } => {
-                (ProblemType::StartOutsideMap, Some("/start".into()))
+            E::OutsideMap { place: end, .. } => {
+                let kind = match end {
+                    Place::Start => ProblemType::StartOutsideMap,
+                    Place::Goal => ProblemType::GoalOutsideMap,
+                    Place::Listed { .. } => ProblemType::WaypointOutsideMap,
+                };
+                (kind, Some(place(end)))
             }
-            E::OutsideMap { place: Place::Goal, .. } => (ProblemType::GoalOutsideMap, Some("/goal".into())),
             E::PlaceBlocked { place: end, .. } => {
-                let kind =
-                    if *end == Place::Start { ProblemType::StartBlocked } else { ProblemType::GoalBlocked };
-                (kind, Some(place(end).to_owned()))
+                let kind = match end {
+                    Place::Start => ProblemType::StartBlocked,
+                    Place::Goal => ProblemType::GoalBlocked,
+                    Place::Listed { .. } => ProblemType::WaypointBlocked,
+                };
+                (kind, Some(place(end)))
             }
             E::NoPath { .. } | E::NoRoomToTurn { .. } => (ProblemType::NoPath, None),
             E::Timeout { .. } => (ProblemType::Timeout, None),

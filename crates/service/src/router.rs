@@ -23,7 +23,10 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 use crate::{
     Engine,
     problem::{Problem, ProblemType},
-    routes::{calibrate, compare, diagnose, health, jobs, maps, plan, recordings, robots},
+    routes::{
+        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, plan, reachable, recordings,
+        robots, status,
+    },
 };
 
 #[derive(OpenApi)]
@@ -47,6 +50,9 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
     OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(plan::handler))
         .routes(routes!(compare::handler))
+        .routes(routes!(alternatives::handler))
+        .routes(routes!(matrix::handler))
+        .routes(routes!(reachable::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(robots::list))
@@ -58,6 +64,7 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(jobs::read, jobs::remove))
         .routes(routes!(jobs::events))
         .routes(routes!(health::healthz))
+        .routes(routes!(status::handler))
         .split_for_parts()
 }
 

@@ -1,11 +1,15 @@
 //! One file for each path: request, handler and answer together.
 
+pub mod alternatives;
 pub mod calibrate;
 pub mod compare;
 pub mod diagnose;
 pub mod health;
 pub mod jobs;
 pub mod maps;
+pub mod matrix;
 pub mod plan;
+pub mod reachable;
 pub mod recordings;
 pub mod robots;
+pub mod status;

@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let planner = request.planner(&terrain).map_err(Refused)?;
     let found =
         request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
-    if arguments.question.json {
+    if arguments.question.driving.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {
         println!("{}", table::compare(&found));

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use service::routes::plan::{ObjectiveName, answer};
 
 use crate::{
-    arguments::{Question, patience},
+    arguments::{PathLimits, Question, patience},
     failure::Refused,
     table,
 };
@@ -16,6 +16,8 @@ pub(crate) struct Arguments {
     /// What the path is to have least of
     #[arg(long, value_enum, default_value = "energy")]
     objective: Objective,
+    #[command(flatten)]
+    limits: PathLimits,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -32,10 +34,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Objective::Time => ObjectiveName::Time,
     };
     let (terrain, request) = arguments.question.read(objective)?;
+    let request = arguments.limits.on(request);
     let planner = request.planner(&terrain).map_err(Refused)?;
     let found =
         request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
-    if arguments.question.json {
+    if arguments.question.driving.json {
         println!("{}", serde_json::to_string(&found)?);
     } else {
         println!("{}", table::plan(&found));

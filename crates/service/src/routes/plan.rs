@@ -13,6 +13,7 @@ use axum::{
 };
 use model::{PowerModel, Robot};
 use planner::{Goal, Objective, Patience, Plan, Planner, Pose, Query, Settings, Snap, Start};
+use routing::Limits;
 use serde::{Deserialize, Serialize};
 use terrain::{MapFile, Terrain};
 use utoipa::ToSchema;
@@ -73,6 +74,17 @@ pub struct PlanRequest {
     pub hold_goal: bool,
     /// How far a start or goal may be moved to ground where the robot can stand. Default: one cell [m].
     pub snap_radius_m: Option<f64>,
+    /// The path may take no longer. Default: no limit [s].
+    #[schema(exclusive_minimum = 0.0)]
+    pub max_time_s: Option<f64>,
+    /// The path may have drawn no more on arrival; negative asks for a gain. Default: no limit [J].
+    pub max_energy_j: Option<f64>,
+    /// The path may be no longer. Default: no limit [m].
+    #[schema(exclusive_minimum = 0.0)]
+    pub max_distance_m: Option<f64>,
+    /// Steepest climb, descent or sideways tilt on the way. Default: the robot's limits [rad].
+    #[schema(exclusive_minimum = 0.0)]
+    pub max_slope_rad: Option<f64>,
 }
 
 /// Where the robot stands.
@@ -230,7 +242,7 @@ fn one() -> f64 {
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 422, description = "Start or goal unusable, or no path", body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "Start or goal unusable, no path, or limits that no path keeps", body = Problem, content_type = "application/problem+json"),
         (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
     )
 )]
@@ -250,7 +262,7 @@ pub(crate) async fn handler(
 }
 
 /// How much an `Accept` header wants a media type, 0 to 1 (RFC 9110, section 12.5.1); the most specific range counts.
-fn preference(accept: &str, media_type: &str) -> f64 {
+pub(crate) fn preference(accept: &str, media_type: &str) -> f64 {
     let group = media_type.split('/').next().unwrap_or_default();
     let mut found = (0, 0.0);
     for range in accept.split(',') {
@@ -270,11 +282,14 @@ fn preference(accept: &str, media_type: &str) -> f64 {
     found.1
 }
 
+/// Longest search for the path that a slope limit forbids [s].
+const STEEP_TIME: Duration = Duration::from_secs(5);
+
 /// Finds the request's map and answers on a thread for computations.
 pub(crate) async fn with_planner<T: Send + 'static>(
     engine: &Engine,
     request: &mut PlanRequest,
-    answer: fn(&Planner, &PlanRequest, &Patience) -> Result<T, Problem>,
+    answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
     let stored = choose_map(engine, request)?;
     let (inline, request) = (request.map.take(), request.clone());
@@ -342,31 +357,124 @@ fn no_map() -> Problem {
 /// An unusable end, no path, or time that ran out before there was one.
 pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> Result<PlanAnswer, Problem> {
     let query = request.query(planner, patience);
-    let objective = match request.objective {
-        ObjectiveName::Energy => Objective::Energy,
-        ObjectiveName::Distance => Objective::Distance,
-        ObjectiveName::Time => Objective::Time,
-    };
+    let objective = request.objective.into();
+    let limits = request.limits()?;
     if request.hold_goal {
         planner.hold_goal(&query, objective).map_err(|e| Problem::no_plan(&e))?;
     }
-    let found = planner.plan(&query, objective).map_err(|e| Problem::no_plan(&e))?;
+    let found = routing::plan_within(planner, &query, objective, &limits)
+        .map_err(|e| Problem::no_routing(&e))
+        .map_err(|problem| request.too_steep(planner, problem))?;
     Ok(PlanAnswer::from(&found))
 }
 
+impl From<ObjectiveName> for Objective {
+    fn from(name: ObjectiveName) -> Self {
+        match name {
+            ObjectiveName::Energy => Objective::Energy,
+            ObjectiveName::Distance => Objective::Distance,
+            ObjectiveName::Time => Objective::Time,
+        }
+    }
+}
+
+impl GoalPose {
+    /// Where a start is, under any heading.
+    pub(crate) fn at(start: StartPose) -> Self {
+        GoalPose { x_m: start.x_m, y_m: start.y_m, heading_rad: None, tolerance_m: 0.0 }
+    }
+}
+
 impl PlanRequest {
+    /// A request with nothing but defaults, not to be refined.
+    pub(crate) fn plain(robot: RobotChoice, start: StartPose, goal: GoalPose) -> Self {
+        PlanRequest {
+            map: None,
+            map_id: None,
+            robot,
+            start,
+            goal,
+            objective: ObjectiveName::Energy,
+            speed_mps: None,
+            power_model: PowerModel::default(),
+            reverse: false,
+            bound: 1.0,
+            refine: false,
+            timeout_s: None,
+            hold_goal: false,
+            snap_radius_m: None,
+            max_time_s: None,
+            max_energy_j: None,
+            max_distance_m: None,
+            max_slope_rad: None,
+        }
+    }
+
+    /// The limits on the path's totals.
+    ///
+    /// # Errors
+    /// A time or length that is not above 0, or an energy that is no number.
+    pub(crate) fn limits(&self) -> Result<Limits, Problem> {
+        let refuse = |field: &str, value: f64| {
+            let detail = format!("{field} is {value}, but must be above 0: leave it out for no limit");
+            Problem::new(ProblemType::InvalidRequest, detail).at(format!("/{field}"))
+        };
+        for (field, value) in [("max_time_s", self.max_time_s), ("max_distance_m", self.max_distance_m)] {
+            if let Some(value) = value.filter(|value| value.is_nan() || *value <= 0.0) {
+                return Err(refuse(field, value));
+            }
+        }
+        Ok(Limits {
+            max_energy_j: self.max_energy_j,
+            max_time_s: self.max_time_s,
+            max_distance_m: self.max_distance_m,
+        })
+    }
+
+    /// The robot, held to slopes no steeper than the request's limit.
+    fn limited_robot(&self) -> Result<Robot, Problem> {
+        let mut robot = self.robot.robot()?;
+        if let Some(max_slope_rad) = self.max_slope_rad {
+            if max_slope_rad.is_nan() || max_slope_rad <= 0.0 {
+                let detail = format!("max_slope_rad is {max_slope_rad}, but must be above 0");
+                return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/max_slope_rad"));
+            }
+            let limits = &mut robot.limits;
+            limits.max_pitch_rad = limits.max_pitch_rad.min(max_slope_rad);
+            limits.max_roll_rad = limits.max_roll_rad.min(max_slope_rad);
+        }
+        Ok(robot)
+    }
+
+    /// Tells a path that only the slope limit forbids from one that there is not, with the slope that would do.
+    fn too_steep(&self, planner: &Planner, problem: Problem) -> Problem {
+        let Some(max_slope_rad) = self.max_slope_rad.filter(|_| problem.kind == ProblemType::NoPath) else {
+            return problem;
+        };
+        let free = PlanRequest { max_slope_rad: None, refine: false, ..self.clone() };
+        let Ok(free_planner) = free.planner(&planner.lattice().terrain) else { return problem };
+        let query = free.query(&free_planner, &Patience::until(Instant::now() + STEEP_TIME));
+        let Ok(path) = free_planner.plan(&query, Objective::Energy) else { return problem };
+        let tilts_rad = path.route.poses.iter().flat_map(|pose| [pose.pitch_rad.abs(), pose.roll_rad.abs()]);
+        let steepest_rad = tilts_rad.fold(0.0, f64::max);
+        let detail = format!(
+            "no path keeps within a slope of {max_slope_rad:.3} rad; the best path without that limit comes to {steepest_rad:.3} rad: raise max_slope_rad"
+        );
+        Problem::new(ProblemType::LimitsContradict, detail).at("/max_slope_rad")
+    }
+
     /// A planner over a terrain for the request's robot.
     ///
     /// # Errors
     /// An unusable robot, or one that does not suit the ground.
     pub fn planner(&self, terrain: &Terrain) -> Result<Planner, Problem> {
-        let robot = self.robot.robot()?;
+        let robot = self.limited_robot()?;
         Planner::new(terrain, &robot, self.settings(&robot)).map_err(|e| Problem::no_plan(&e))
     }
 
     /// The service's planner over a stored map.
     fn planner_of(&self, engine: &Engine, map_id: &str, terrain: &Terrain) -> Result<Arc<Planner>, Problem> {
-        let robot = self.robot.robot()?;
+        let robot = self.limited_robot()?;
         let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot));
         planner.map_err(|e| Problem::no_plan(&e))
     }

@@ -1,17 +1,19 @@
 //! GeoTIFF elevation: one band of integers or floats, north up, in projected metres.
 //!
-//! The `tiff` crate decodes the image; the tags that place it on the ground (OGC GeoTIFF 1.1) are read here.
+//! The `tiff` crate decodes the image; the tags that place it on the ground (OGC GeoTIFF 1.1) are read here, and written for
+//! rasters of whatever else there is by cell.
 
 use std::io::Cursor;
 
 use tiff::{
     ColorType,
     decoder::{Decoder, DecodingResult},
+    encoder::{Compression, DeflateLevel, TiffEncoder, colortype::Gray32Float},
     tags::Tag,
 };
 
 use super::ascii::south_up;
-use crate::{Error, Terrain};
+use crate::{Error, Grid, Terrain};
 
 type TiffDecoder<'a> = Decoder<Cursor<&'a [u8]>>;
 
@@ -43,6 +45,32 @@ pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
         }
     }
     Terrain::new(grid, &south_up(&grid, &from_north))
+}
+
+/// Writes a raster of single-precision numbers, by cell and row-major from the south, in the frame that [`read`] takes: north
+/// up, projected metres, NaN where there is nothing.
+///
+/// # Errors
+/// More cells than a TIFF can hold.
+pub fn write(grid: &Grid, values: &[f32]) -> Result<Vec<u8>, Error> {
+    let north_m = grid.far_corner_m()[1];
+    let too_many = |_| {
+        let (rows, columns) = (grid.rows as u64, grid.columns as u64);
+        Error::TooManyCells { rows, columns, limit: Terrain::MAX_CELLS }
+    };
+    let columns = u32::try_from(grid.columns).map_err(too_many)?;
+    let rows = u32::try_from(grid.rows).map_err(too_many)?;
+    let mut file = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut file)?.with_compression(Compression::Deflate(DeflateLevel::Fast));
+    let mut image = encoder.new_image::<Gray32Float>(columns, rows)?;
+    let tags = image.encoder();
+    tags.write_tag(Tag::ModelPixelScaleTag, &[grid.cell_size_m, grid.cell_size_m, 0.0][..])?;
+    tags.write_tag(Tag::ModelTiepointTag, &[0.0, 0.0, 0.0, grid.origin_m[0], north_m, 0.0][..])?;
+    tags.write_tag(Tag::GeoKeyDirectoryTag, &GeoKeys::PROJECTED_METRES[..])?;
+    tags.write_tag(Tag::GdalNodata, "nan")?;
+    let from_north: Vec<f32> = values.chunks(grid.columns).rev().flatten().copied().collect();
+    image.write_data(&from_north)?;
+    Ok(file.into_inner())
 }
 
 /// Where the raster lies: north-west corner and cell size.
@@ -103,9 +131,19 @@ struct GeoKeys {
 impl GeoKeys {
     const MODEL_TYPE: u16 = 1024;
     const RASTER_TYPE: u16 = 1025;
+    const PROJECTION: u16 = 3072;
     const LINEAR_UNITS: u16 = 3076;
     const LINEAR_UNIT_SIZE: u16 = 3077;
     const VERTICAL_UNITS: u16 = 4099;
+    /// A directory that says: projected, a pixel is an area, some frame of the user's, in metres.
+    #[rustfmt::skip]
+    const PROJECTED_METRES: [u16; 20] = [
+        1, 1, 0, 4,
+        Self::MODEL_TYPE, 0, 1, 1,
+        Self::RASTER_TYPE, 0, 1, 1,
+        Self::PROJECTION, 0, 1, 32767,
+        Self::LINEAR_UNITS, 0, 1, 9001,
+    ];
 
     fn read(decoder: &mut TiffDecoder<'_>) -> Result<Self, Error> {
         let directory = match decoder.find_tag(Tag::GeoKeyDirectoryTag)? {
@@ -247,5 +285,24 @@ fn as_f64(samples: DecodingResult) -> Vec<f64> {
         DecodingResult::U64(v) => v.into_iter().map(|z| z as f64).collect(),
         DecodingResult::I64(v) => v.into_iter().map(|z| z as f64).collect(),
         DecodingResult::F16(v) => v.into_iter().map(|z| f64::from(z.to_f32())).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Cell;
+
+    #[test]
+    fn a_raster_that_was_written_lies_where_it_did_and_holds_what_it_held() {
+        let grid = Grid { rows: 3, columns: 5, cell_size_m: 0.5, origin_m: [500_000.0, 4_649_776.5] };
+        let values: Vec<f32> = (0..15).map(|i| if i == 7 { f32::NAN } else { i as f32 * 1.5 }).collect();
+        let terrain = read(&write(&grid, &values).unwrap(), 15).unwrap();
+        assert_eq!(terrain.grid, grid);
+        for (index, value) in values.iter().enumerate() {
+            let held = terrain.elevation_m(grid.cell(index));
+            assert_eq!(held, (!value.is_nan()).then_some(f64::from(*value)));
+        }
+        assert_eq!(terrain.elevation_m(Cell { row: 1, column: 2 }), None);
     }
 }

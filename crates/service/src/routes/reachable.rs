@@ -1,0 +1,273 @@
+//! `POST /v1/reachable`: the ground within energies of a place, as contours or as a raster.
+
+use axum::{
+    Json,
+    extract::State,
+    http::{HeaderMap, header},
+    response::{IntoResponse, Response},
+};
+use model::PowerModel;
+use planner::{Patience, Planner};
+use routing::{Kind, Polygon, Reach, Waypoint, available_j, reach};
+use serde::{Deserialize, Serialize};
+use terrain::{MapFile, io::geotiff};
+use utoipa::ToSchema;
+
+use super::{
+    plan::{GoalPose, PlanRequest, StartPose, preference, with_planner},
+    robots::RobotChoice,
+};
+use crate::{
+    Engine,
+    body::{JsonBody, object, optional_object},
+    problem::{Problem, ProblemType},
+};
+
+/// What to find the reach of.
+#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReachableRequest {
+    /// The map itself; give this or `map_id`.
+    #[serde(default, deserialize_with = "optional_object")]
+    pub map: Option<MapFile>,
+    /// Id of a stored map; give this or `map`.
+    pub map_id: Option<String>,
+    /// Name of a built-in robot, or a robot; charges need its battery.
+    pub robot: RobotChoice,
+    /// The place that ways start from or lead to. With a heading, the robot departs and arrives with it.
+    #[serde(deserialize_with = "object")]
+    pub start: StartPose,
+    /// From the place, to it, or there and back. Default: `outward`.
+    #[serde(default)]
+    pub kind: KindName,
+    /// Energies to draw contours at; give these or `charges` [J].
+    #[schema(min_items = 1, max_items = 32)]
+    pub energies_j: Option<Vec<f64>>,
+    /// States of charge to draw contours for, down to the battery's reserve, 0 to 1; give these or `energies_j`.
+    #[schema(min_items = 1, max_items = 32)]
+    pub charges: Option<Vec<f64>>,
+    /// Forward speed; lowered where the outer wheel would be too fast. Default: half the wheels' top speed [m/s].
+    pub speed_mps: Option<f64>,
+    /// Form of the physics. Default: `force-balance`.
+    #[serde(default)]
+    pub power_model: PowerModel,
+    /// Whether the robot may back up. Default: false.
+    #[serde(default)]
+    pub reverse: bool,
+    /// How far the place may be moved to ground where the robot can stand. Default: one cell [m].
+    pub snap_radius_m: Option<f64>,
+    /// Time for the answer. Default: the service's limit [s].
+    #[schema(exclusive_minimum = 0.0)]
+    pub timeout_s: Option<f64>,
+}
+
+/// Which way the energy is spent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum KindName {
+    /// From the place to each cell.
+    #[default]
+    Outward,
+    /// From each cell to the place.
+    Homeward,
+    /// From the place to each cell and back, on from the pose in which it was reached.
+    OutAndBack,
+}
+
+/// The ground within each energy, as a GeoJSON feature collection in the map's metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ReachableAnswer {
+    /// Always `FeatureCollection`.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// A contour for each energy, in the order of the request.
+    pub features: Vec<ContourFeature>,
+}
+
+/// A contour.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContourFeature {
+    /// Always `Feature`.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The ground inside.
+    pub geometry: ContourGeometry,
+    /// What it is the contour of.
+    pub properties: ContourProperties,
+}
+
+/// Polygons along the edges of cells: exteriors counter-clockwise, holes clockwise.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContourGeometry {
+    /// Always `MultiPolygon`.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// Polygons, their rings, the exterior first, and their points, x and y [m].
+    pub coordinates: Vec<Vec<Vec<[f64; 2]>>>,
+}
+
+/// What a contour is of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ContourProperties {
+    /// Which way the energy is spent.
+    pub kind: KindName,
+    /// Cells inside take at most so much, drawn from the battery on arrival [J].
+    pub energy_j: f64,
+    /// The state of charge that this energy stands for, where charges were asked for.
+    pub charge: Option<f64>,
+    /// Area inside [m²].
+    pub area_m2: f64,
+}
+
+/// Find what can be reached with some energies, from where a place can be reached, or how far the robot can go and still come
+/// back. A cell is inside when driving there in the best of all headings takes at most the energy on arrival; on the way to
+/// lower ground more may have been drawn for a while.
+#[utoipa::path(
+    post, path = "/v1/reachable", tag = "plan",
+    request_body = ReachableRequest,
+    responses(
+        (status = 200, description = "The contours as GeoJSON; the least energy of every cell as a GeoTIFF when `Accept` asks for image/tiff", body = ReachableAnswer, content_type = "application/geo+json"),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 422, description = "The place unusable", body = Problem, content_type = "application/problem+json"),
+        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn handler(
+    State(engine): State<Engine>,
+    headers: HeaderMap,
+    JsonBody(mut request): JsonBody<ReachableRequest>,
+) -> Result<Response, Problem> {
+    let accept = headers.get(header::ACCEPT).and_then(|v| v.to_str().ok()).unwrap_or("*/*");
+    let vector = preference(accept, "application/geo+json").max(preference(accept, "application/json"));
+    let as_raster = preference(accept, "image/tiff") > vector;
+    let mut plan = request.plan();
+    with_planner(&engine, &mut plan, move |planner, _, patience| {
+        let found = Found::of(planner, &request, patience)?;
+        if as_raster {
+            return Ok(([(header::CONTENT_TYPE, "image/tiff")], found.raster()?).into_response());
+        }
+        Ok(([(header::CONTENT_TYPE, "application/geo+json")], Json(found.contours())).into_response())
+    })
+    .await
+}
+
+impl ReachableRequest {
+    /// What of it concerns the planner; takes the map out.
+    pub fn plan(&mut self) -> PlanRequest {
+        PlanRequest {
+            map: self.map.take(),
+            map_id: self.map_id.clone(),
+            speed_mps: self.speed_mps,
+            power_model: self.power_model,
+            reverse: self.reverse,
+            timeout_s: self.timeout_s,
+            snap_radius_m: self.snap_radius_m,
+            ..PlanRequest::plain(self.robot.clone(), self.start, GoalPose::at(self.start))
+        }
+    }
+
+    /// Energies asked for, each with the charge that it stands for.
+    fn energies_j(&self, planner: &Planner) -> Result<Vec<(f64, Option<f64>)>, Problem> {
+        let invalid = |detail: String, at: &str| Problem::new(ProblemType::InvalidRequest, detail).at(at);
+        let list = match (&self.energies_j, &self.charges) {
+            (Some(energies_j), None) => energies_j.iter().map(|energy_j| (*energy_j, None)).collect(),
+            (None, Some(charges)) => {
+                let battery = planner.lattice().robot.battery.as_ref().ok_or_else(|| {
+                    let detail = "the robot has no battery: give it one, or energies_j instead of charges";
+                    Problem::new(ProblemType::InvalidRobot, detail).at("/robot/battery")
+                })?;
+                let energy = |(i, charge): (usize, &f64)| {
+                    let energy_j = available_j(battery, *charge)
+                        .map_err(|error| invalid(error.to_string(), &format!("/charges/{i}")))?;
+                    Ok((energy_j, Some(*charge)))
+                };
+                charges.iter().enumerate().map(energy).collect::<Result<Vec<_>, Problem>>()?
+            }
+            (Some(_), Some(_)) => {
+                return Err(invalid("give energies_j or charges, not both".into(), "/charges"));
+            }
+            (None, None) => return Err(invalid("give energies_j or charges".into(), "/energies_j")),
+        };
+        let name = if self.charges.is_some() { "charges" } else { "energies_j" };
+        if list.is_empty() || list.len() > MOST_CONTOURS {
+            let detail = format!("{name} has {} entries, but 1 to {MOST_CONTOURS} are drawn", list.len());
+            return Err(invalid(detail, &format!("/{name}")));
+        }
+        for (i, (energy_j, _)) in list.iter().enumerate() {
+            if !(*energy_j > 0.0 && energy_j.is_finite()) {
+                let detail = format!("{name}[{i}] is {energy_j}, but must be above 0");
+                return Err(invalid(detail, &format!("/{name}/{i}")));
+            }
+        }
+        Ok(list)
+    }
+}
+
+/// Contours of one request.
+const MOST_CONTOURS: usize = 32;
+
+/// What was found, before it is put in a form.
+pub struct Found {
+    /// Least energy of every cell.
+    pub reach: Reach,
+    kind: KindName,
+    energies_j: Vec<(f64, Option<f64>)>,
+}
+
+impl Found {
+    /// Answers a request; its own map is not looked at.
+    ///
+    /// # Errors
+    /// Energies or charges that cannot be, an unusable place, or time that ran out.
+    pub fn of(planner: &Planner, request: &ReachableRequest, patience: &Patience) -> Result<Self, Problem> {
+        let energies_j = request.energies_j(planner)?;
+        let most_j = energies_j.iter().map(|(energy_j, _)| *energy_j).fold(0.0, f64::max);
+        let kind = match request.kind {
+            KindName::Outward => Kind::Outward,
+            KindName::Homeward => Kind::Homeward,
+            KindName::OutAndBack => Kind::OutAndBack,
+        };
+        let place = Waypoint::from(&request.start);
+        let reach = reach(planner, &place, kind, most_j, request.snap_radius_m, patience)
+            .map_err(|error| Problem::no_routing(&error))?;
+        Ok(Found { reach, kind: request.kind, energies_j })
+    }
+
+    /// The contours as GeoJSON.
+    pub fn contours(&self) -> ReachableAnswer {
+        let feature = |&(energy_j, charge): &(f64, Option<f64>)| ContourFeature {
+            kind: "Feature".to_owned(),
+            geometry: ContourGeometry {
+                kind: "MultiPolygon".to_owned(),
+                coordinates: self.reach.within(energy_j).into_iter().map(rings).collect(),
+            },
+            properties: ContourProperties {
+                kind: self.kind,
+                energy_j,
+                charge,
+                area_m2: self.reach.area_m2(energy_j),
+            },
+        };
+        ReachableAnswer {
+            kind: "FeatureCollection".to_owned(),
+            features: self.energies_j.iter().map(feature).collect(),
+        }
+    }
+
+    /// The least energy of every cell as a GeoTIFF [J].
+    ///
+    /// # Errors
+    /// A raster that cannot be written.
+    pub fn raster(&self) -> Result<Vec<u8>, Problem> {
+        let energy_j: Vec<f32> = self.reach.energy_j.iter().map(|energy_j| *energy_j as f32).collect();
+        geotiff::write(&self.reach.grid, &energy_j)
+            .map_err(|error| Problem::new(ProblemType::Internal, format!("the raster: {error}")))
+    }
+}
+
+fn rings(polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
+    std::iter::once(polygon.exterior).chain(polygon.holes).collect()
+}
