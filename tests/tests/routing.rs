@@ -66,10 +66,24 @@ fn limits_hold_and_those_that_no_path_keeps_are_told_with_the_least() {
     assert!(with("max_time_s", most_s).json()["duration_s"].as_f64().unwrap() <= most_s);
     let problem = with("max_time_s", 1.0).problem(422, "limits-contradict");
     assert!(problem["detail"].as_str().unwrap().contains("least time"), "{problem}");
-    let problem = with("max_slope_rad", 0.01).problem(422, "limits-contradict");
-    assert_eq!(problem["errors"][0]["pointer"], "/max_slope_rad");
     let problem = with("max_time_s", -1.0).problem(400, "invalid-request");
     assert_eq!(problem["errors"][0]["pointer"], "/max_time_s");
+}
+
+#[test]
+fn a_ridge_steeper_than_the_slope_limit_is_told_from_no_path() {
+    let server = Server::start();
+    let row: Vec<f64> = (0..24).map(|c| if c == 11 || c == 12 { 0.3 } else { 0.0 }).collect();
+    let map = json!({ "cell_size_m": 1.0, "rows": 16, "columns": 24, "elevation_m": vec![row; 16] });
+    let over = |most_rad: f64| {
+        let body = json!({
+            "map": map, "robot": "husky-a200", "start": start(), "goal": goal(), "max_slope_rad": most_rad
+        });
+        server.post_json("/v1/plan", &body)
+    };
+    assert_eq!(over(0.5).status, 200);
+    let problem = over(0.1).problem(422, "limits-contradict");
+    assert_eq!(problem["errors"][0]["pointer"], "/max_slope_rad");
 }
 
 #[test]
