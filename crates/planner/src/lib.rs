@@ -68,7 +68,7 @@ pub use lattice::{Lattice, Settings, State};
 pub use objective::Objective;
 pub use patience::Patience;
 pub use plan::{compare, plan};
-pub use planner::Planner;
+pub use planner::{Planner, surface_names};
 pub use primitive::{Kind, Motion, Piece, motions};
 pub use query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start};
 pub use refine::{Refined, refine};

@@ -1,0 +1,2 @@
+//! Whether the battery lasts.
+pub mod pack;
