@@ -229,6 +229,22 @@ impl Robot {
         Sides { left: speed_mps - half, right: speed_mps + half }
     }
 
+    /// Multiplies μ_R and μ_S of every surface, the constants of the printed form with them.
+    ///
+    /// Turning against each other the sides mostly skid, so the printed form's inner friction goes with μ_S.
+    pub fn scale_friction(&mut self, mu_roll: f64, mu_skid: f64) {
+        for surface in self.surfaces.values_mut() {
+            surface.mu_roll *= mu_roll;
+            surface.mu_skid *= mu_skid;
+            let Some(paper) = &mut surface.dogru_marques else { continue };
+            paper.inner_friction = paper.inner_friction.map(|friction| friction * mu_skid);
+            for row in &mut paper.by_speed {
+                row.mu_roll *= mu_roll;
+                row.mu_skid *= mu_skid;
+            }
+        }
+    }
+
     /// Checks every field's range; reading a file does this already, code that builds a robot may call it.
     ///
     /// # Errors

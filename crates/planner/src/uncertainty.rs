@@ -1,6 +1,6 @@
 //! How far a path's energy may be off, given what is known of the robot.
 
-use model::{PowerModel, Robot, robot::Surface};
+use model::{PowerModel, Robot};
 
 use crate::route::Route;
 
@@ -24,8 +24,8 @@ pub(crate) fn energy_interval_j(
     let energy_j = |changed: &Robot| route.energy_with_j(changed, model, surfaces, motor_temperature_c);
     let u = &robot.uncertainty;
     let parameters: [Parameter; 5] = [
-        (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| scale_rolling(s, factor))),
-        (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| scale_skid(s, factor))),
+        (u.mu_roll, |r, factor| r.scale_friction(factor, 1.0)),
+        (u.mu_skid, |r, factor| r.scale_friction(1.0, factor)),
         (u.k1, |r, factor| {
             r.motors.left.k1_w_per_n2 *= factor;
             r.motors.right.k1_w_per_n2 *= factor;
@@ -48,21 +48,4 @@ pub(crate) fn energy_interval_j(
         .sum();
     let half_j = NORMAL_95 * variance_j2.sqrt();
     [route.total.energy_j - half_j, route.total.energy_j + half_j]
-}
-
-fn scale_rolling(surface: &mut Surface, factor: f64) {
-    surface.mu_roll *= factor;
-    for row in surface.dogru_marques.iter_mut().flat_map(|paper| &mut paper.by_speed) {
-        row.mu_roll *= factor;
-    }
-}
-
-/// Turning against each other the sides mostly skid, so the printed form's inner friction goes with μ_S.
-fn scale_skid(surface: &mut Surface, factor: f64) {
-    surface.mu_skid *= factor;
-    let Some(paper) = &mut surface.dogru_marques else { return };
-    paper.inner_friction = paper.inner_friction.map(|friction| friction * factor);
-    for row in &mut paper.by_speed {
-        row.mu_skid *= factor;
-    }
 }
