@@ -80,7 +80,8 @@ pub(crate) fn measure(scene: &Scene, built: &Built, exact: bool) -> Result<Parts
         all_cores_ratio: 1.0,
     };
     if exact {
-        let (field, time) = timed(|| ExactField::new(&built.table, &built.goals, &Patience::default()));
+        let (field, time) =
+            timed(|| ExactField::to_goals(&built.table, &built.goals, f64::INFINITY, &Patience::default()));
         let field = field.ok_or_else(|| scene.no_path())?;
         let walk = (0..REPEATS).map(|_| timed(|| field.walk(&built.table, &scene.starts)).1).min();
         parts.exact_field_ns_per_state = Some(nanoseconds_each(time, scene.states()));

@@ -130,7 +130,7 @@ pub fn range(planner: &Planner, question: &Question) -> Result<Range, Error> {
     let outcomes = draws(&journey, &drawn, &conditions, question.samples);
     let steps: Vec<_> = plans.iter().map(|plan| &plan.route.steps[..]).collect();
     let best_speed = best_speed(robot, &steps, &surfaces, &journey, &chance, &conditions)?;
-    let turning = last_turning_point(planner, &home, &plans[0].route, &chance, &conditions)?;
+    let turning = last_turning_point(planner, &plans[0].route, &chance, &conditions, &question.query.patience)?;
     let chances: Vec<Chance> =
         (0..question.replanned as u64).map(|number| drawn.chance(journey.length_m(), number)).collect();
     let replanned = replanned(planner, &queries, &chances, &journey, &conditions)?;

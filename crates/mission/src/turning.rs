@@ -1,6 +1,8 @@
 //! The last point of a way from which turning back still works.
 
-use planner::{Heading, Lattice, Objective, Planner, Query, Route, State};
+use planner::{
+    ExactField, Found, Heading, Lattice, Objective, Patience, Place, Planner, Route, State,
+};
 use rayon::prelude::*;
 
 use crate::{
@@ -38,14 +40,14 @@ const BATCH: usize = 16;
 /// where not even standing at the start does. Everything is as the files say, motors as warm as they are by then.
 pub(crate) fn last_turning_point(
     planner: &Planner,
-    home: &Query,
     route: &Route,
     chance: &Chance,
     conditions: &Conditions,
+    patience: &Patience,
 ) -> Result<Option<TurningPoint>, Error> {
     let lattice = planner.lattice();
     let surfaces = planner::surface_names(lattice);
-    let ways = planner.ways_to_goal(home, Objective::Energy)?;
+    let ways = Homeward::new(planner, route, patience)?;
     let back = |pose: usize| -> Result<Option<TurningPoint>, Error> {
         let Some(way) = state_at(lattice, route, pose).and_then(|state| ways.from(state)) else {
             return Ok(None);
@@ -80,6 +82,32 @@ pub(crate) fn last_turning_point(
         }
     }
     Ok(None)
+}
+
+/// The best way to the start of a route from every pose, whatever the heading there.
+struct Homeward<'p> {
+    planner: &'p Planner,
+    field: ExactField,
+}
+
+impl<'p> Homeward<'p> {
+    fn new(planner: &'p Planner, route: &Route, patience: &Patience) -> Result<Self, Error> {
+        let [x_m, y_m] = route.poses.first().map_or([f64::NAN; 2], |pose| [pose.x_m, pose.y_m]);
+        let states = planner.states_at(Place::Start, [x_m, y_m], None, None)?;
+        // All in one cell, so that no height tells them apart.
+        let goals: Vec<(State, f64)> = states.into_iter().map(|state| (state, 0.0)).collect();
+        let table = planner.table(Objective::Energy);
+        let field = ExactField::to_goals(table, &goals, f64::INFINITY, patience);
+        let field = field.ok_or(planner::Error::Timeout { expanded: 0 })?;
+        Ok(Homeward { planner, field })
+    }
+
+    /// The way from a pose; `None` where none leads home.
+    fn from(&self, state: State) -> Option<Route> {
+        let (start, motions) = self.field.walk(self.planner.table(Objective::Energy), &[state])?;
+        let found = Found { start, motions, expanded: 0, excess: 0.0, bound: Some(1.0), late: false };
+        Some(self.planner.drive(Objective::Energy, &found))
+    }
 }
 
 /// Numbers of the poses of a route that lie on the lattice: its start and the end of every motion.

@@ -56,28 +56,38 @@ impl Ends {
         Ok(Ends { start, goal, starts, goals })
     }
 
-    /// The lowest goal's height potential [J].
-    fn lowest_goal_j(&self, lattice: &Lattice) -> f64 {
-        self.goals.iter().map(|s| lattice.potential_j(s.cell)).fold(f64::INFINITY, f64::min)
-    }
-
     /// Goals with what is to be added there: for energy, the height that the potential has left out.
     pub(crate) fn goals_with_potential(&self, lattice: &Lattice, objective: Objective) -> Vec<(State, f64)> {
-        let lowest_j = self.lowest_goal_j(lattice);
-        let after = |state: State| match objective {
-            Objective::Energy => lattice.potential_j(state.cell) - lowest_j,
-            Objective::Distance | Objective::Time => 0.0,
-        };
-        self.goals.iter().map(|&state| (state, after(state))).collect()
+        goals_with_potential(lattice, &self.goals, objective).0
     }
 
     /// What every path costs besides the costs of the table: for energy, the lowest goal's height above the start.
     pub(crate) fn besides(&self, lattice: &Lattice, objective: Objective) -> f64 {
         match objective {
-            Objective::Energy => self.lowest_goal_j(lattice) - lattice.potential_j(self.start.cell),
+            Objective::Energy => lowest_j(lattice, &self.goals) - lattice.potential_j(self.start.cell),
             Objective::Distance | Objective::Time => 0.0,
         }
     }
+}
+
+/// Goals with what is to be added there, for energy the height that the potential has left out, and the height potential of
+/// the lowest of them [J].
+pub(crate) fn goals_with_potential(
+    lattice: &Lattice,
+    goals: &[State],
+    objective: Objective,
+) -> (Vec<(State, f64)>, f64) {
+    let lowest_j = lowest_j(lattice, goals);
+    let after = |state: State| match objective {
+        Objective::Energy => lattice.potential_j(state.cell) - lowest_j,
+        Objective::Distance | Objective::Time => 0.0,
+    };
+    (goals.iter().map(|&state| (state, after(state))).collect(), lowest_j)
+}
+
+/// The lowest goal's height potential [J].
+fn lowest_j(lattice: &Lattice, goals: &[State]) -> f64 {
+    goals.iter().map(|s| lattice.potential_j(s.cell)).fold(f64::INFINITY, f64::min)
 }
 
 /// The snapped goal and, within the tolerance, every other pose of an accepted heading where the robot can stand.

@@ -4,21 +4,29 @@ use std::fmt;
 
 use terrain::Cell;
 
-/// Which end of a path.
+/// Which place of a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Where the robot stands.
     Start,
     /// Where it is to go.
     Goal,
+    /// One of several in a list of the question.
+    Listed {
+        /// Name of the list, as `sources`.
+        list: &'static str,
+        /// Position in it, from 0.
+        index: usize,
+    },
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Place::Start => "start",
-            Place::Goal => "goal",
-        })
+        match self {
+            Place::Start => f.write_str("start"),
+            Place::Goal => f.write_str("goal"),
+            Place::Listed { list, index } => write!(f, "pose {list}[{index}]"),
+        }
     }
 }
 
@@ -84,13 +92,13 @@ impl fmt::Display for Blocked {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A start or goal off the map.
+    /// A place off the map.
     #[error(
         "the {place} ({x_m:.2}, {y_m:.2}) lies outside the map, which spans x {} to {} m and y {} to {} m",
         west_south_m[0], east_north_m[0], west_south_m[1], east_north_m[1]
     )]
     OutsideMap {
-        /// Start or goal.
+        /// Which place.
         place: Place,
         /// Its x [m].
         x_m: f64,
@@ -101,12 +109,12 @@ pub enum Error {
         /// North-east corner of the map [m].
         east_north_m: [f64; 2],
     },
-    /// A start or goal where the robot cannot stand.
+    /// A place where the robot cannot stand.
     #[error(
         "the robot cannot stand at the {place} ({x_m:.2}, {y_m:.2}) nor within {snap_radius_m} m of it: {reason}"
     )]
     PlaceBlocked {
-        /// Start or goal.
+        /// Which place.
         place: Place,
         /// Its x [m].
         x_m: f64,

@@ -9,11 +9,12 @@
 
 mod along;
 mod astar;
-mod backward;
+
 mod blocked;
 mod connection;
 mod cost;
 mod course;
+mod dijkstra;
 mod displacement;
 mod edge;
 mod ends;
@@ -50,11 +51,11 @@ mod stencil;
 mod step;
 mod sweep;
 mod table;
+mod target;
 mod tile;
 mod tile_builder;
 mod uncertainty;
 mod walk_back;
-mod ways;
 mod window;
 
 pub use astar::{Found, Outcome, Search, search};
@@ -76,4 +77,4 @@ pub use refine::{Refined, refine};
 pub use route::{Pose, Route};
 pub use step::Step;
 pub use table::CostTable;
-pub use ways::Ways;
+pub use target::Target;

@@ -3,8 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::{
-    backward::Backward, field::UNREACHED, heading::HEADINGS, lattice::State, layout::Layout,
-    patience::Patience, table::CostTable,
+    dijkstra::{Dijkstra, Direction},
+    field::UNREACHED,
+    heading::HEADINGS,
+    lattice::State,
+    layout::Layout,
+    patience::Patience,
+    table::CostTable,
 };
 
 /// Least costs of the poses that cost least, and what they cost to reach from the poses about those.
@@ -32,9 +37,9 @@ impl Near {
 
     /// Works back from goals, given with what follows there in the objective's unit; `None` when patience ends first.
     pub(crate) fn new(table: &CostTable, goals: &[(State, f64)], patience: &Patience) -> Option<Self> {
-        let mut search = Backward::new(table, goals, patience);
+        let mut search = Dijkstra::new(table, Direction::ToGoals, goals, patience);
         let mut settled = Vec::new();
-        search.settle(POSES, |state| settled.push(state))?;
+        search.settle_first(POSES, |state| settled.push(state))?;
         let mut costs = BTreeMap::new();
         for state in settled {
             let cell = costs.entry(Layout::cell(state) as u32).or_insert([UNREACHED; HEADINGS]);

@@ -7,7 +7,7 @@ use std::{
 
 use model::Robot;
 use rayon::prelude::*;
-use terrain::{CellRange, Terrain};
+use terrain::{Cell, CellRange, Terrain};
 
 use crate::{
     astar::{Found, Outcome, Search, search},
@@ -129,7 +129,8 @@ impl Planner {
         let ends = Ends::find(&self.lattice, query)?;
         let table = self.table(objective);
         let goals = ends.goals_with_potential(&self.lattice, objective);
-        let exact = ExactField::new(table, &goals, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
+        let exact = ExactField::to_goals(table, &goals, f64::INFINITY, &query.patience)
+            .ok_or(Error::Timeout { expanded: 0 })?;
         self.fields.keep_exact(FieldKey::new(objective, &ends.goals), exact);
         Ok(())
     }
@@ -203,37 +204,36 @@ impl Planner {
             bound: query.bound,
             patience: &query.patience,
         };
-        let mut workspace = self.take_workspace();
-        let outcome = search(table, &field, &question, &mut workspace);
-        self.give_workspace(workspace);
-        match outcome {
+        match self.with_workspace(|workspace| search(table, &field, &question, workspace)) {
             Outcome::Found(found) => Ok(found),
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
-            Outcome::Unreachable => Err(nearest_connected(&self.lattice, &field, ends)),
+            Outcome::Unreachable => {
+                Err(nearest_connected(&self.lattice, &field, ends.start.cell, ends.goal.cell))
+            }
         }
     }
 
-    fn take_workspace(&self) -> Workspace {
+    /// Lends memory to search in, which is kept for the next search.
+    pub(crate) fn with_workspace<T>(&self, search: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        kept.unwrap_or_else(|| Workspace::of(&self.lattice))
-    }
-
-    fn give_workspace(&self, workspace: Workspace) {
+        let mut workspace = kept.unwrap_or_else(|| Workspace::of(&self.lattice));
+        let outcome = search(&mut workspace);
         self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).push(workspace);
+        outcome
     }
 }
 
 /// Where the ground that leads to the goal comes nearest to the start.
-fn nearest_connected(lattice: &Lattice, field: &GoalField, ends: &Ends) -> Error {
+pub(crate) fn nearest_connected(lattice: &Lattice, field: &GoalField, start: Cell, goal: Cell) -> Error {
     let grid = &lattice.terrain.grid;
-    let [sx, sy] = grid.center_m(ends.start.cell);
+    let [sx, sy] = grid.center_m(start);
     let nearest = (0..grid.cells())
         .map(|i| grid.cell(i))
         .filter(|&cell| field.leads_from(cell))
         .map(|cell| grid.center_m(cell))
         .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let [gx, gy] = grid.center_m(ends.goal.cell);
+    let [gx, gy] = grid.center_m(goal);
     let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
     if gap_m == 0.0 {
         return Error::NoRoomToTurn { x_m, y_m };
