@@ -31,6 +31,11 @@ pub enum Error {
         /// Charge that must stay.
         reserve: f64,
     },
+    /// No place at all that the charge reaches.
+    #[error(
+        "no other place can be reached from the start: look for obstacles, unknown ground or slopes about it"
+    )]
+    NowhereToGo,
     /// What the planner says.
     #[error(transparent)]
     Plan(#[from] planner::Error),

@@ -6,6 +6,7 @@
 //!
 //! Deterministic for any number of threads. No I/O, no async. SI units; charge is a fraction of the capacity, 1 full.
 
+mod carries;
 mod chance;
 mod error;
 mod journey;
@@ -17,6 +18,7 @@ mod replanned;
 mod run;
 mod turning;
 
+pub use carries::Carries;
 pub use chance::{Chance, Doubt, Drawn, MODEL_SIGMA};
 pub use error::Error;
 pub use journey::{Journey, Stop};

@@ -68,7 +68,7 @@ impl Likely {
 }
 
 /// Draws that are worth a task of their own: some 100 µs over a path of a few hundred poses.
-const LEAST_DRAWS: usize = 4;
+pub(crate) const LEAST_DRAWS: usize = 4;
 
 /// Drives a journey `samples` times, each time as a robot, battery and ground that may be; on all cores, in the order of draws.
 pub fn draws(journey: &Journey, drawn: &Drawn<'_>, conditions: &Conditions, samples: usize) -> Vec<Outcome> {

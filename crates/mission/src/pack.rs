@@ -84,6 +84,11 @@ impl Pack {
         }
     }
 
+    /// What a full pack gives at the rated current and the nominal voltage [J].
+    pub fn full_j(&self) -> f64 {
+        self.capacity_as * self.nominal_v
+    }
+
     /// Voltage without load at a charge [V].
     pub fn open_voltage_v(&self, charge: f64) -> f64 {
         self.empty_v + self.span_v * charge.clamp(0.0, 1.0)

@@ -5,6 +5,7 @@ use planner::{Goal, Objective, Plan, Planner, Pose, Query, Start};
 
 use crate::{
     Error,
+    carries::{Carries, farthest, level_m},
     chance::{Chance, Doubt, Drawn},
     error::within,
     journey::Journey,
@@ -24,8 +25,10 @@ const MOST_REPLANNED: usize = 100;
 /// A question about range.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// From where to where and how; its settings must be the planner's.
+    /// From where to where and how; its settings must be the planner's. Its goal is not looked at where `farthest` is set.
     pub query: Query,
+    /// Whether the goal is the farthest place that the charge reaches.
+    pub farthest: bool,
     /// Whether the way back to the start is part of it.
     pub back: bool,
     /// Charge when it sets out, 1 full.
@@ -68,6 +71,8 @@ pub struct Range {
     pub best_speed: BestSpeed,
     /// Draws planned anew.
     pub replanned: Option<Replanned>,
+    /// How far the charge carries, where no goal was named.
+    pub carries: Option<Carries>,
     /// Charge that must stay.
     pub reserve: f64,
 }
@@ -99,8 +104,7 @@ pub(crate) fn check_doubt(doubt: &Doubt, samples: usize) -> Result<(), Error> {
 /// # Errors
 /// What cannot be asked, and what the planner says of start and goal. A battery that does not suffice is an answer.
 pub fn range(planner: &Planner, question: &Question) -> Result<Range, Error> {
-    let lattice = planner.lattice();
-    let robot = &lattice.robot;
+    let robot = &planner.lattice().robot;
     let (battery, conditions) = set_out(robot, question.charge, question.ambient_c)?;
     check_doubt(&question.doubt, question.samples)?;
     within(
@@ -109,47 +113,111 @@ pub fn range(planner: &Planner, question: &Question) -> Result<Range, Error> {
         [0.0, MOST_REPLANNED as f64],
         "each is a plan of its own",
     )?;
-    let out = planner.plan(&question.query, Objective::Energy)?;
-    let home = homeward(&question.query, &out);
-    let mut queries = vec![question.query.clone()];
-    let mut plans = vec![out];
-    if question.back {
-        plans.push(planner.plan(&home, Objective::Energy)?);
-        queries.push(home.clone());
-    }
-    let surfaces = planner::surface_names(lattice);
-    let mut journey = Journey::new(lattice.settings.power_model);
-    for plan in &plans {
-        journey.drive(robot, &plan.route.steps, &surfaces)?;
-    }
-    let chance = Chance::nominal(robot, Pack::new(battery, 1.0), question.charge);
-    let mut passages = Vec::new();
-    let nominal = journey.run(&chance, &conditions, |passage| passages.push(*passage));
     let drawn =
         Drawn { robot, battery, charge: question.charge, doubt: &question.doubt, seed: question.seed };
-    let outcomes = draws(&journey, &drawn, &conditions, question.samples);
-    let steps: Vec<_> = plans.iter().map(|plan| &plan.route.steps[..]).collect();
-    let best_speed = best_speed(robot, &steps, &surfaces, &journey, &chance, &conditions)?;
-    let turning = last_turning_point(planner, &plans[0].route, &chance, &conditions, &question.query.patience)?;
-    let chances: Vec<Chance> =
-        (0..question.replanned as u64).map(|number| drawn.chance(journey.length_m(), number)).collect();
-    let replanned = replanned(planner, &queries, &chances, &journey, &conditions)?;
-    let planned_j = plans.iter().map(|plan| plan.route.total.energy_j).sum();
-    let mut left = passages.into_iter();
-    let legs = plans
-        .into_iter()
-        .map(|plan| Leg { passages: left.by_ref().take(plan.route.steps.len()).collect(), plan })
-        .collect();
-    Ok(Range {
-        likely: Likely::of(&outcomes),
-        planned_j,
-        nominal,
-        legs,
-        turning,
-        best_speed,
-        replanned,
-        reserve: conditions.reserve,
-    })
+    let chance = Chance::nominal(robot, Pack::new(battery, 1.0), question.charge);
+    if !question.farthest {
+        let way = Way::plan(planner, &question.query, question.back)?;
+        return way.judge(planner, question, &drawn, &chance, &conditions, None);
+    }
+    let level_m = level_m(planner, question, &drawn, &conditions)?;
+    let (way, whole_map) = farthest_way(planner, question, &chance, &conditions)?;
+    way.judge(planner, question, &drawn, &chance, &conditions, Some(Carries { level_m, whole_map }))
+}
+
+/// The way to the farthest place that is reached as the files say, and whether there is none farther.
+///
+/// Least energies of the lattice tell which places an energy reaches; what the battery gives for them depends on how fast and
+/// how warm the robot gets there, so that the energy is brought down until the way holds.
+fn farthest_way(
+    planner: &Planner,
+    question: &Question,
+    chance: &Chance,
+    conditions: &Conditions,
+) -> Result<(Way, bool), Error> {
+    /// Ways that are looked at before the nearest found so far has to do.
+    const TRIES: usize = 8;
+    /// By how much the energy is lowered beyond what the last way lacked.
+    const MARGIN: f64 = 0.99;
+    let battery_j = (question.charge - conditions.reserve) * chance.pack.full_j();
+    let (mut budget_j, mut last) = (battery_j, None);
+    for _ in 0..TRIES {
+        let Some((goal, whole_map)) = farthest(planner, &question.query, question.back, budget_j)? else {
+            break;
+        };
+        let way = Way::plan(planner, &Query { goal, ..question.query.clone() }, question.back)?;
+        let outcome = way.journey.run(chance, conditions, |_| {});
+        let succeeds = outcome.succeeds();
+        budget_j = MARGIN * budget_j * (1.0 - outcome.missing_j / outcome.energy_j.max(1e-9)).max(0.1);
+        last = Some((way, whole_map));
+        if succeeds {
+            break;
+        }
+    }
+    last.ok_or(Error::NowhereToGo)
+}
+
+/// A way there, and back where that was asked for, ready to be driven.
+struct Way {
+    queries: Vec<Query>,
+    plans: Vec<Plan>,
+    journey: Journey,
+    surfaces: Vec<String>,
+}
+
+impl Way {
+    fn plan(planner: &Planner, query: &Query, back: bool) -> Result<Self, Error> {
+        let lattice = planner.lattice();
+        let (mut queries, mut plans) = (vec![query.clone()], vec![planner.plan(query, Objective::Energy)?]);
+        if back {
+            let home = homeward(query, &plans[0]);
+            plans.push(planner.plan(&home, Objective::Energy)?);
+            queries.push(home);
+        }
+        let surfaces = planner::surface_names(lattice);
+        let mut journey = Journey::new(lattice.settings.power_model);
+        for plan in &plans {
+            journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?;
+        }
+        Ok(Way { queries, plans, journey, surfaces })
+    }
+
+    /// Everything about it that a question asks for.
+    fn judge(
+        self,
+        planner: &Planner,
+        question: &Question,
+        drawn: &Drawn<'_>,
+        chance: &Chance,
+        conditions: &Conditions,
+        carries: Option<Carries>,
+    ) -> Result<Range, Error> {
+        let Way { queries, plans, journey, surfaces } = self;
+        let mut passages = Vec::new();
+        let nominal = journey.run(chance, conditions, |passage| passages.push(*passage));
+        let outcomes = draws(&journey, drawn, conditions, question.samples);
+        let steps: Vec<_> = plans.iter().map(|plan| &plan.route.steps[..]).collect();
+        let best_speed = best_speed(drawn.robot, &steps, &surfaces, &journey, chance, conditions)?;
+        let patience = &question.query.patience;
+        let turning = last_turning_point(planner, &plans[0].route, chance, conditions, patience)?;
+        let chances: Vec<Chance> =
+            (0..question.replanned as u64).map(|number| drawn.chance(journey.length_m(), number)).collect();
+        let replanned = replanned(planner, &queries, &chances, &journey, conditions)?;
+        let planned_j = plans.iter().map(|plan| plan.route.total.energy_j).sum();
+        let mut left = passages.into_iter();
+        let leg = |plan: Plan| Leg { passages: left.by_ref().take(plan.route.steps.len()).collect(), plan };
+        Ok(Range {
+            likely: Likely::of(&outcomes),
+            planned_j,
+            nominal,
+            legs: plans.into_iter().map(leg).collect(),
+            turning,
+            best_speed,
+            replanned,
+            carries,
+            reserve: conditions.reserve,
+        })
+    }
 }
 
 /// The question of the way back from where a plan ends to where it begins, in any heading.
@@ -161,7 +229,6 @@ fn homeward(query: &Query, out: &Plan) -> Query {
     Query {
         start: Start { x_m, y_m, heading_rad },
         goal: Goal { x_m: home_x_m, y_m: home_y_m, heading_rad: None, tolerance_m: 0.0 },
-        refine: false,
         ..query.clone()
     }
 }

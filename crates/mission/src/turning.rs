@@ -1,8 +1,6 @@
 //! The last point of a way from which turning back still works.
 
-use planner::{
-    ExactField, Found, Heading, Lattice, Objective, Patience, Place, Planner, Route, State,
-};
+use planner::{ExactField, Found, Heading, Lattice, Objective, Patience, Place, Planner, Route, State};
 use rayon::prelude::*;
 
 use crate::{
