@@ -11,6 +11,7 @@ mod chance;
 mod error;
 mod journey;
 mod likely;
+mod mission;
 mod pace;
 mod pack;
 mod range;
@@ -23,6 +24,10 @@ pub use chance::{Chance, Doubt, Drawn, MODEL_SIGMA};
 pub use error::Error;
 pub use journey::{Journey, Stop};
 pub use likely::{Likely, Spread, draws};
+pub use mission::{
+    Call, MOST_CHARGERS, MOST_EXACT, MOST_WAYPOINTS, Mission, MissionError, MissionQuestion, Role, Site,
+    mission,
+};
 pub use pace::BestSpeed;
 pub use pack::{Delivery, Pack};
 pub use range::{Leg, MOST_SAMPLES, Question, Range, range};

@@ -39,7 +39,7 @@ fn level_ground_takes_what_eq_2_says_and_the_charge_falls_by_it() {
     let found = range(&planner, &question).unwrap();
     // 51.5 W for 40 s.
     assert_relative_eq!(found.planned_j, 40.0 * level_w(0.5), epsilon = 1e-6);
-    assert_relative_eq!(found.planned_j, 2060.3, epsilon = 0.2);
+    assert_relative_eq!(found.planned_j, 2060.1, epsilon = 0.05);
     // Motors warm by less than a kelvin meanwhile.
     assert!(found.nominal.energy_j >= found.planned_j && found.nominal.energy_j < 1.001 * found.planned_j);
     let capacity_j = 480.0 * 3600.0;
@@ -157,7 +157,7 @@ fn the_last_turning_point_is_the_last_pose_from_which_a_plan_home_leaves_the_res
         latest.distance_m - turning.distance_m < 3.0 && latest.distance_m >= turning.distance_m,
         "{latest:?} {turning:?}"
     );
-    assert!(turning.charge_at_home >= 0.2 && turning.charge_at_home < 0.3, "{turning:?}");
+    assert!(turning.charge_at_home >= 0.2 && turning.charge_at_home < 0.35, "{turning:?}");
 }
 
 #[test]

@@ -49,6 +49,8 @@ pub enum ProblemType {
     GoalBlocked,
     /// No way leads from the start to the goal.
     NoPath,
+    /// A deadline that no plan can keep.
+    DeadlineTooShort,
     /// The search stopped at its deadline.
     Timeout,
     /// The body or the map exceeds a limit.
@@ -106,7 +108,8 @@ impl ProblemType {
             | T::GoalOutsideMap
             | T::StartBlocked
             | T::GoalBlocked
-            | T::NoPath => StatusCode::UNPROCESSABLE_ENTITY,
+            | T::NoPath
+            | T::DeadlineTooShort => StatusCode::UNPROCESSABLE_ENTITY,
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
@@ -136,6 +139,7 @@ impl ProblemType {
             T::StartBlocked => "The robot cannot stand at the start",
             T::GoalBlocked => "The robot cannot stand at the goal",
             T::NoPath => "There is no path",
+            T::DeadlineTooShort => "The deadline is too short",
             T::Timeout => "The search ran out of time",
             T::TooLarge => "Too large",
             T::StoreFull => "The store is full",
@@ -237,6 +241,41 @@ impl Problem {
             }
             _ => Problem::new(ProblemType::InsufficientRecording, error.to_string()).at("/recordings"),
         }
+    }
+
+    /// Why a question about range cannot be answered.
+    pub fn no_range(error: &mission::Error) -> Self {
+        use mission::Error as E;
+        let (kind, at) = match error {
+            E::Plan(error) => return Problem::no_plan(error),
+            E::Robot(error) => return Problem::invalid_robot(error, "/robot"),
+            E::NoBattery => (ProblemType::InvalidRobot, "/robot/battery".to_owned()),
+            E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, pointer(field)),
+            E::ReserveAboveCharge { .. } => (ProblemType::InvalidRequest, "/charge".to_owned()),
+            E::NowhereToGo => (ProblemType::NoPath, "/start".to_owned()),
+            _ => return Problem::new(ProblemType::Internal, error.to_string()),
+        };
+        Problem::new(kind, error.to_string()).at(at)
+    }
+
+    /// Why a mission cannot be planned.
+    pub fn no_mission(error: &mission::MissionError) -> Self {
+        use mission::MissionError as E;
+        let (kind, at) = match error {
+            E::Question(error) => return Problem::no_range(error),
+            E::Routing(routing::Error::Planner(error)) => return Problem::no_plan(error),
+            E::Count { list, count, most, .. } => {
+                let kind = if count > most { ProblemType::TooLarge } else { ProblemType::InvalidRequest };
+                (kind, format!("/{list}"))
+            }
+            E::Unreachable { waypoint, .. } | E::NoWayHome { waypoint, .. } => {
+                (ProblemType::NoPath, format!("/waypoints/{waypoint}"))
+            }
+            E::NoChain => (ProblemType::NoPath, "/waypoints".to_owned()),
+            E::DeadlineTooShort { .. } => (ProblemType::DeadlineTooShort, "/deadline_s".to_owned()),
+            _ => return Problem::new(ProblemType::Internal, error.to_string()),
+        };
+        Problem::new(kind, error.to_string()).at(at)
     }
 
     /// Why the planner has no path.

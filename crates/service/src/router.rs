@@ -23,7 +23,7 @@ use utoipa_axum::{router::OpenApiRouter, routes};
 use crate::{
     Engine,
     problem::{Problem, ProblemType},
-    routes::{calibrate, compare, diagnose, health, jobs, maps, plan, recordings, robots},
+    routes::{calibrate, compare, diagnose, health, jobs, maps, mission, plan, range, recordings, robots},
 };
 
 #[derive(OpenApi)]
@@ -34,6 +34,7 @@ use crate::{
     ),
     tags(
         (name = "plan", description = "Paths and their energy"),
+        (name = "battery", description = "Whether a charge lasts, and for which stops"),
         (name = "maps", description = "Terrain at hand"),
         (name = "robots", description = "Robots at hand"),
         (name = "recordings", description = "Drive logs at hand"),
@@ -47,6 +48,8 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
     OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(plan::handler))
         .routes(routes!(compare::handler))
+        .routes(routes!(range::handler))
+        .routes(routes!(mission::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(robots::list))

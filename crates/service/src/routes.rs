@@ -6,6 +6,8 @@ pub mod diagnose;
 pub mod health;
 pub mod jobs;
 pub mod maps;
+pub mod mission;
 pub mod plan;
+pub mod range;
 pub mod recordings;
 pub mod robots;

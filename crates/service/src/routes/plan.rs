@@ -274,7 +274,7 @@ fn preference(accept: &str, media_type: &str) -> f64 {
 pub(crate) async fn with_planner<T: Send + 'static>(
     engine: &Engine,
     request: &mut PlanRequest,
-    answer: fn(&Planner, &PlanRequest, &Patience) -> Result<T, Problem>,
+    answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
     let stored = choose_map(engine, request)?;
     let (inline, request) = (request.map.take(), request.clone());
