@@ -26,6 +26,10 @@ enum Command {
     Plan(commands::plan::Arguments),
     /// Compare the energy-minimal, shortest and fastest paths over a map
     Compare(commands::compare::Arguments),
+    /// Tell whether the battery lasts to a goal and back
+    Range(commands::range::Arguments),
+    /// Plan many stops on a charge, in the best order
+    Mission(commands::mission::Arguments),
     /// Compare the power that recorded drives drew with what the robot's model says
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
@@ -49,6 +53,8 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Range(arguments) => commands::range::run(&arguments),
+        Command::Mission(arguments) => commands::mission::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),

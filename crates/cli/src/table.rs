@@ -88,12 +88,12 @@ fn cells(name: &str, answer: &PlanAnswer) -> [String; 7] {
     ]
 }
 
-fn energy(energy_j: f64) -> String {
+pub(crate) fn energy(energy_j: f64) -> String {
     format!("{:.2} kJ", energy_j / 1e3)
 }
 
 /// Minutes and seconds.
-fn time(seconds: f64) -> String {
+pub(crate) fn time(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     format!("{}:{:02} min", whole / 60, whole % 60)
 }

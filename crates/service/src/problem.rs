@@ -282,18 +282,19 @@ impl Problem {
     pub fn no_plan(error: &planner::Error) -> Self {
         use planner::Error as E;
         let place = |place: &Place| match place {
-            Place::Start => "/start",
-            Place::Goal => "/goal",
+            Place::Start => "/start".to_owned(),
+            Place::Goal => "/goal".to_owned(),
+            Place::Listed { list, index } => format!("/{list}/{index}"),
         };
         let (kind, at) = match error {
             E::OutsideMap { place: Place::Start, .. } => {
                 (ProblemType::StartOutsideMap, Some("/start".into()))
             }
-            E::OutsideMap { place: Place::Goal, .. } => (ProblemType::GoalOutsideMap, Some("/goal".into())),
+            E::OutsideMap { place: end, .. } => (ProblemType::GoalOutsideMap, Some(place(end))),
             E::PlaceBlocked { place: end, .. } => {
                 let kind =
                     if *end == Place::Start { ProblemType::StartBlocked } else { ProblemType::GoalBlocked };
-                (kind, Some(place(end).to_owned()))
+                (kind, Some(place(end)))
             }
             E::NoPath { .. } | E::NoRoomToTurn { .. } => (ProblemType::NoPath, None),
             E::Timeout { .. } => (ProblemType::Timeout, None),
