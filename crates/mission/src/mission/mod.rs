@@ -7,6 +7,8 @@ mod labels;
 mod local_search;
 mod order;
 
+use std::time::Duration;
+
 use model::PowerModel;
 use planner::{Patience, Place, Planner, Route, State};
 use routing::Waypoint;
@@ -93,6 +95,8 @@ pub struct Mission {
     pub ways_j: f64,
     /// No order of the waypoints has ways that take less, as long as no charger is driven to [J].
     pub bound_j: f64,
+    /// Time for the order itself, energies between stops at hand.
+    pub order_time: Duration,
     /// Charge that must stay.
     pub reserve: f64,
 }
@@ -371,6 +375,7 @@ impl Driven {
             weakest_leg: weakest,
             ways_j: self.routes.iter().map(|route| route.total.energy_j).sum(),
             bound_j: order.bound_j,
+            order_time: order.time,
             calls,
             routes: self.routes,
             nominal: self.outcome,

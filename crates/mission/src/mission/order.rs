@@ -1,5 +1,7 @@
 //! Which order to drive first: the one of least energy.
 
+use std::time::{Duration, Instant};
+
 use planner::{Objective, Planner, State};
 use routing::{Waypoint, joints};
 
@@ -15,6 +17,8 @@ pub(crate) struct Order {
     pub(crate) nodes: Vec<usize>,
     /// Least energy of the ways of any order [J].
     pub(crate) bound_j: f64,
+    /// Time for finding it, costs at hand.
+    pub(crate) time: Duration,
 }
 
 /// States, over all poses that fields would be worked out for, up to which an order is searched over poses: some ten seconds on
@@ -32,14 +36,16 @@ pub(crate) fn best_order(
     let cost = network.dense(|way| way.energy_j);
     if question.in_order {
         let bound_j = (1..count).map(|node| cost[node - 1][node]).sum();
-        return Ok(Order { nodes: (0..count).collect(), bound_j });
+        return Ok(Order { nodes: (0..count).collect(), bound_j, time: Duration::ZERO });
     }
     let visits = network.waypoints;
     if visits > MOST_EXACT {
+        let began = Instant::now();
         let (_, mut nodes) = good_order(&cost, visits).ok_or(MissionError::NoChain)?;
         nodes.insert(0, 0);
         nodes.extend(network.home());
-        return Ok(Order { nodes, bound_j: lower_bound(&cost, visits).unwrap_or(f64::NEG_INFINITY) });
+        let bound_j = lower_bound(&cost, visits).unwrap_or(f64::NEG_INFINITY);
+        return Ok(Order { nodes, bound_j, time: began.elapsed() });
     }
     let poses: usize = states[..count].iter().map(Vec::len).sum();
     if poses * planner.lattice().states() <= MOST_FIELD_STATES {
@@ -47,8 +53,9 @@ pub(crate) fn best_order(
     }
     let places: Vec<Vec<usize>> = (0..count).map(|node| vec![node]).collect();
     let poses = Poses { places: &places, ends: question.back, cost: &cost };
+    let began = Instant::now();
     let (bound_j, nodes) = cheapest_order(&poses).ok_or(MissionError::NoChain)?;
-    Ok(Order { nodes, bound_j })
+    Ok(Order { nodes, bound_j, time: began.elapsed() })
 }
 
 /// Over poses, so that the order is that of least energy with headings that join.
@@ -77,9 +84,11 @@ fn over_poses(
     let cost: Vec<Vec<f64>> =
         found.cost.iter().map(|row| row.iter().map(|cost| cost.unwrap_or(f64::INFINITY)).collect()).collect();
     let poses = Poses { places: &places, ends: question.back, cost: &cost };
+    let began = Instant::now();
     let (bound_j, order) = cheapest_order(&poses).ok_or(MissionError::NoChain)?;
+    let time = began.elapsed();
     let node = |pose: &usize| places.iter().position(|place| place.contains(pose)).unwrap_or(0);
-    Ok(Order { nodes: order.iter().map(node).collect(), bound_j })
+    Ok(Order { nodes: order.iter().map(node).collect(), bound_j, time })
 }
 
 /// Time of the fastest order of the ways at hand, or a bound of it where there are many [s].
