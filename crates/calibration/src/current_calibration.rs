@@ -233,6 +233,7 @@ fn fitted_robot(robot: &Robot, found: &CurrentCalibration, parameters: &[FittedP
             mu_skid: skid.value,
             slip_angle_scale_rad: scale.value,
             dogru_marques: None,
+            mechanisms: Vec::new(),
         };
         fitted.surfaces.insert(surface.surface.clone(), new);
     }

@@ -175,6 +175,7 @@ fn fit(robot: &Robot, drives: &Drives, steady: &[Steady]) -> Result<(Robot, Vec<
             // The paper's skid is Coulomb's.
             slip_angle_scale_rad: 0.0,
             dogru_marques: Some(PaperSurface { inner_friction, by_speed }),
+            mechanisms: Vec::new(),
         };
         fitted.surfaces.insert(name.clone(), surface);
     }

@@ -6,7 +6,7 @@ use model::Robot;
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording};
 
-use crate::{Error, average::Average, copies::copies, row, row::Row, stuck};
+use crate::{Error, average::Average, copies::copies, losses, row, row::Row, stuck};
 
 /// Rows of one run on one surface without a gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +62,7 @@ impl Drives {
         }
         drives.each_stretch(row::accelerations);
         stuck::flag(&mut drives, robot);
+        drives.remember_losses(robot);
         drives.average();
         if drives.averages.is_empty() {
             return Err(Error::NothingToFit {
@@ -69,6 +70,14 @@ impl Drives {
             });
         }
         Ok(drives)
+    }
+
+    /// Fills in what the robot's own `motor_heating` asks for.
+    fn remember_losses(&mut self, robot: &Robot) {
+        let memory_s = robot.mechanisms.iter().find_map(|known| known.mechanism().memory_s(known.values()));
+        let Some(memory_s) = memory_s else { return };
+        let averaged = losses::averaged(self, robot, memory_s);
+        self.rows.iter_mut().zip(averaged).for_each(|(row, loss_w)| row.loss_w = loss_w);
     }
 
     /// Cuts one run where it pauses or the surface changes.

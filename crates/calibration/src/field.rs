@@ -41,7 +41,8 @@ pub(crate) fn with_new_ground(robot: &Robot, drives: &Drives) -> Robot {
     let mut robot = robot.clone();
     for name in &drives.surfaces {
         let [[mu_roll, _], [mu_skid, _], [slip_angle_scale_rad, _]] = NEW_GROUND;
-        let new = Surface { mu_roll, mu_skid, slip_angle_scale_rad, dogru_marques: None };
+        let new =
+            Surface { mu_roll, mu_skid, slip_angle_scale_rad, dogru_marques: None, mechanisms: Vec::new() };
         robot.surfaces.entry(name.clone()).or_insert(new);
     }
     robot

@@ -18,6 +18,7 @@ pub mod fit;
 pub mod folds;
 pub mod lag;
 pub mod lift;
+pub mod losses;
 mod method;
 mod noise;
 pub mod power;

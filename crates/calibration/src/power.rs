@@ -2,7 +2,11 @@
 
 use std::cell::RefCell;
 
-use model::{Attitude, Friction, FrictionShape, Manoeuvre, Motion, Power, Robot, Sides};
+use model::{
+    Attitude, Friction, FrictionShape, Grade, Manoeuvre, Motion, Power, Robot, Sides,
+    mechanism::{Adjustment, Moment},
+    robot::Surface,
+};
 use rayon::prelude::*;
 use recording::PowerForm;
 
@@ -12,8 +16,8 @@ use crate::{Drives, Error, average::Average, row::Row};
 pub struct PowerModel<'a> {
     drives: &'a Drives,
     surface: Vec<u32>,
-    /// Shares of the weight across and along the heading, by row.
-    grade: Vec<[f64; 2]>,
+    /// How the ground carries the weight, by row.
+    grade: Vec<Grade<f64>>,
     /// Friction shapes of the last slip-angle scales asked for.
     shapes: RefCell<Vec<Shapes>>,
 }
@@ -47,25 +51,25 @@ impl<'a> PowerModel<'a> {
         robot: &Robot,
         wanted: impl Fn(&Row, &Power) -> [f64; N] + Sync,
     ) -> Result<Vec<[f64; N]>, Error> {
-        let friction = self.prepare(robot)?;
+        let ground = self.prepare(robot)?;
         let kept = self.shapes.borrow();
         let shapes: &[FrictionShape] = kept.first().map_or(&[], |shapes| &shapes.by_row);
         let (drives, grade) = (self.drives, &self.grade);
         let mean = |average: &Average| {
-            let friction = &friction[average.surface];
+            let ground = &ground[average.surface];
             drives.mean(average, |i| {
                 let row = &drives.rows[i];
-                wanted(row, &power(robot, friction, row, &shapes[i], grade[i]))
+                wanted(row, &power(robot, ground, row, &shapes[i], grade[i]))
             })
         };
         Ok(drives.averages.par_iter().with_min_len(LEAST_AVERAGES).map(mean).collect())
     }
 
     /// Friction on each surface; the shapes of its slip-angle scales come to the front of those kept.
-    fn prepare(&self, robot: &Robot) -> Result<Vec<Friction>, Error> {
+    fn prepare<'r>(&self, robot: &'r Robot) -> Result<Vec<Ground<'r>>, Error> {
         let ground = ground(self.drives, robot)?;
-        self.prepare_shapes(robot, ground.iter().map(|(_, scale_rad)| *scale_rad).collect());
-        Ok(ground.into_iter().map(|(friction, _)| friction).collect())
+        self.prepare_shapes(robot, ground.iter().map(|ground| ground.surface.slip_angle_scale_rad).collect());
+        Ok(ground)
     }
 
     /// Brings the shapes of these scales to the front of those kept. Only surfaces whose scale is another are worked out anew.
@@ -106,11 +110,7 @@ pub fn by_row<T: Send>(
 ) -> Result<Vec<T>, Error> {
     let ground = ground(drives, robot)?;
     let surface = surface_of_rows(drives);
-    let value = |(i, row): (usize, &Row)| {
-        let (friction, scale_rad) = &ground[surface[i] as usize];
-        let shape = FrictionShape::new(robot, *scale_rad, &motion(robot, row));
-        wanted(i, &power(robot, friction, row, &shape, grade(row)))
-    };
+    let value = |(i, row): (usize, &Row)| wanted(i, &ground[surface[i] as usize].power(robot, row));
     Ok(drives.rows.par_iter().enumerate().map(value).collect())
 }
 
@@ -123,11 +123,32 @@ fn surface_of_rows(drives: &Drives) -> Vec<u32> {
     surface
 }
 
-/// Friction and slip-angle scale [rad] of the robot on each surface of the drives.
-fn ground(drives: &Drives, robot: &Robot) -> Result<Vec<(Friction, f64)>, Error> {
+/// Ground as a robot feels it.
+pub(crate) struct Ground<'r> {
+    surface: &'r Surface,
+    friction: Friction,
+    /// Mechanisms of the robot or of this ground act.
+    adjusted: bool,
+}
+
+impl<'r> Ground<'r> {
+    pub(crate) fn new(robot: &Robot, surface: &'r Surface) -> Self {
+        let adjusted = !(robot.mechanisms.is_empty() && surface.mechanisms.is_empty());
+        Ground { surface, friction: Friction::new(robot, surface), adjusted }
+    }
+
+    /// Power of one row.
+    pub(crate) fn power(&self, robot: &Robot, row: &Row) -> Power {
+        let shape = FrictionShape::new(robot, self.surface.slip_angle_scale_rad, &motion(robot, row));
+        power(robot, self, row, &shape, grade(row))
+    }
+}
+
+/// Each surface of the drives.
+fn ground<'r>(drives: &Drives, robot: &'r Robot) -> Result<Vec<Ground<'r>>, Error> {
     let of = |(i, name): (usize, &String)| {
         let surface = robot.surface(name).map_err(|_| unknown_surface(drives, robot, i))?;
-        Ok((Friction::new(robot, surface), surface.slip_angle_scale_rad))
+        Ok(Ground::new(robot, surface))
     };
     drives.surfaces.iter().enumerate().map(of).collect()
 }
@@ -143,17 +164,26 @@ fn unknown_surface(drives: &Drives, robot: &Robot, surface: usize) -> Error {
     }
 }
 
-/// Shares of the weight across and along the heading.
-fn grade(row: &Row) -> [f64; 2] {
-    let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
-    [attitude.weight_normal(), attitude.weight_along()]
+fn grade(row: &Row) -> Grade<f64> {
+    Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad }.grade()
 }
 
 /// The power of one row, by the model's one function.
 #[inline]
-fn power(robot: &Robot, friction: &Friction, row: &Row, shape: &FrictionShape, grade: [f64; 2]) -> Power {
-    let manoeuvre = Manoeuvre::of_shape(robot, friction, motion(robot, row), shape, row.motor_c);
-    manoeuvre.power_on_grade(grade[0], grade[1], row.acceleration(robot.slip_track_m))
+fn power(robot: &Robot, ground: &Ground<'_>, row: &Row, shape: &FrictionShape, grade: Grade<f64>) -> Power {
+    let motion = motion(robot, row);
+    let acceleration = row.acceleration(robot);
+    let adjustment = if ground.adjusted {
+        let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
+        let (rim_mps2, loss_w) = (row.rim_mps2, row.loss_w);
+        let moment =
+            Moment { motion: motion.heading(row.heading_rad), acceleration, rim_mps2, attitude, loss_w };
+        robot.adjustment(ground.surface, &moment)
+    } else {
+        Adjustment::default()
+    };
+    let manoeuvre = Manoeuvre::adjusted(robot, &ground.friction, motion, shape, row.motor_c, &adjustment);
+    manoeuvre.power_on_grade(grade, acceleration)
 }
 
 /// Encoders dither about zero while a robot stands; rolling resistance would follow them.

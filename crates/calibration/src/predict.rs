@@ -1,6 +1,6 @@
 //! Predicted against recorded power, run by run.
 
-use model::{Power, Robot, Sides};
+use model::{Power, PowerKernel, Robot, Sides};
 use rayon::prelude::*;
 use recording::{PowerForm, Recording};
 use serde::Serialize;
@@ -148,19 +148,7 @@ fn currents(robot: &Robot, drives: &Drives, amperes: Sides<f64>) -> Result<Vec<[
 
 /// Eq. 2 on both sides at known forces, through the kernel that computes all power.
 fn side_power(robot: &Robot, row: &Row, force_n: Sides<f64>) -> Power {
-    let motors = robot.motor_sides().zip(row.motor_c).map(|(m, c)| m.at_temperature(&robot.motors, c));
-    let kernel = model::PowerKernel {
-        friction_n: force_n,
-        lifting_n: Sides::both(0.0),
-        rim_speed_mps: row.rim_mps,
-        k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
-        driving: motors.map(|m| m.k2),
-        driven: motors.map(|m| robot.motors.regeneration / m.k2),
-        lift_w: 0.0,
-        floor: [0.0; 2],
-        slack_w: 0.0,
-        standing_w: 0.0,
-    };
+    let kernel = PowerKernel::of_motors(robot, row.rim_mps, row.motor_c);
     let side_w = kernel.side_w(force_n);
     Power { force_n, mechanical_w: force_n.zip(row.rim_mps).map(|(f, u)| f * u), side_w, bus_w: side_w.sum() }
 }

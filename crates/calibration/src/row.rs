@@ -24,6 +24,10 @@ pub struct Row {
     pub pitch_rad: f64,
     /// Roll, 0 where the recording has no such channel \[rad\].
     pub roll_rad: f64,
+    /// Heading; NaN where none was recorded \[rad\].
+    pub heading_rad: f64,
+    /// Copper loss of each motor, averaged backwards over the memory of the robot's own `motor_heating`, if it has one \[W\].
+    pub loss_w: Sides<f64>,
     /// Motor temperatures \[°C\]; the robot's reference where the recording has none.
     pub motor_c: Sides<f64>,
     /// Enters averages: everything needed is there and the wheels hold the ground.
@@ -44,10 +48,11 @@ impl Row {
     }
 
     /// dv/dt and dω/dt of a robot whose wheels move so.
-    pub fn acceleration(&self, slip_track_m: f64) -> Acceleration {
+    pub fn acceleration(&self, robot: &Robot) -> Acceleration {
+        let moved = 1.0 - robot.wheel_slip();
         Acceleration {
-            forward_mps2: self.rim_mps2.sum() / 2.0,
-            yaw_radps2: (self.rim_mps2.right - self.rim_mps2.left) / slip_track_m,
+            forward_mps2: moved * self.rim_mps2.sum() / 2.0,
+            yaw_radps2: moved * (self.rim_mps2.right - self.rim_mps2.left) / robot.slip_track_m,
         }
     }
 
@@ -63,6 +68,7 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
     let at = |values: Option<&[f64]>, row: usize, absent: f64| values.map_or(absent, |v| v[row]);
     let (left, right) = (channel(Channel::LeftSpeed), channel(Channel::RightSpeed));
     let (yaw, pitch, roll) = (channel(Channel::YawRate), channel(Channel::Pitch), channel(Channel::Roll));
+    let heading = channel(Channel::Heading);
     let reference_c = robot.motors.reference_temperature_c;
     let warm = [Channel::LeftMotorTemperature, Channel::RightMotorTemperature]
         .map(|side| channel(side).map(|values_c| nearest(values_c, recording)));
@@ -78,6 +84,7 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
             t_s: recording.t_s[i],
             rim_mps,
             yaw_rate_radps: at(yaw, i, f64::NAN),
+            heading_rad: at(heading, i, f64::NAN),
             pitch_rad: or(pitch_rad, 0.0),
             roll_rad: or(roll_rad, 0.0),
             motor_c: motor_c.map(|c| or(c, reference_c)),

@@ -1,6 +1,6 @@
-//! The robot with what was found: its own numbers as fitted, and those mechanisms that its file has fields for.
+//! The robot with what was found: its own numbers as fitted, and mechanisms in its fields or in its list of them.
 
-use model::{Robot, mechanism::Kind};
+use model::{KnownMechanism, Robot, mechanism::Kind, robot::Surface};
 
 use crate::series::Applied;
 
@@ -14,9 +14,10 @@ pub(crate) fn corrected(fitted: &Robot, applied: &[Applied], surfaces: &[String]
             notes.push(format!(
                 "`{name}` is a fault of the recording, not of the robot: mend it there, the robot's file stays as it is"
             ));
-        } else if !apply(&mut robot, one, surfaces) {
-            notes.push(format!("a robot's file cannot hold `{name}` yet: the corrected robot is without it"));
-        } else if one.from_s > 0.0 {
+            continue;
+        }
+        apply(&mut robot, one, surfaces);
+        if one.from_s > 0.0 {
             let from_s = one.from_s;
             notes.push(format!("the corrected robot is as from {from_s:.0} s on, with `{name}`"));
         }
@@ -31,27 +32,43 @@ pub(crate) fn corrected(fitted: &Robot, applied: &[Applied], surfaces: &[String]
     (robot, notes)
 }
 
-/// Puts a mechanism into the robot's fields; false where there is none for it.
-fn apply(robot: &mut Robot, one: &Applied, surfaces: &[String]) -> bool {
+/// Puts a mechanism into the robot's fields, or into the list of mechanisms of the robot or of the ground that was driven on.
+fn apply(robot: &mut Robot, one: &Applied, surfaces: &[String]) {
     let values = &one.values;
     match one.mechanism.name() {
         "payload" => robot.mass_kg += values[0],
         "hotel_load" => robot.hotel_power_w += values[0],
         "regeneration" => robot.motors.regeneration += values[0],
-        // Ground that changes on the way is not the robot's.
-        "surface_change" if one.from_s == 0.0 => {
-            for name in surfaces {
-                let Some(surface) = robot.surfaces.get_mut(name) else { continue };
-                surface.mu_roll *= 1.0 + values[0];
-                surface.mu_skid *= 1.0 + values[1];
+        "surface_change" => on_ground(robot, surfaces, |surface| {
+            *surface = surface.scaled(1.0 + values[0], 1.0 + values[1]);
+        }),
+        _ if !KnownMechanism::fits_file(one.mechanism) => {
+            if let Some(changed) = one.mechanism.robot(robot, values) {
+                *robot = changed;
             }
         }
-        _ => match one.mechanism.robot(robot, values) {
-            Some(changed) => *robot = changed,
-            None => return false,
-        },
+        _ => {
+            // What was polished may stand a rounding beyond its bounds, which the file would not be read with.
+            let bounded =
+                one.mechanism.parameters().iter().zip(values).map(|(p, v)| v.clamp(p.bounds[0], p.bounds[1]));
+            let known = KnownMechanism::new(one.mechanism, bounded.collect());
+            // The ground is soft, the robot is not.
+            if KnownMechanism::is_of_ground(one.mechanism) {
+                on_ground(robot, surfaces, |surface| surface.mechanisms.push(known.clone()));
+            } else {
+                robot.mechanisms.push(known);
+            }
+        }
     }
-    true
+}
+
+/// Changes the surfaces that were driven on.
+fn on_ground(robot: &mut Robot, surfaces: &[String], change: impl Fn(&mut Surface)) {
+    for name in surfaces {
+        if let Some(surface) = robot.surfaces.get_mut(name) {
+            change(surface);
+        }
+    }
 }
 
 /// Fits may leave standing loads a little below nothing, and returns a little above all.
@@ -71,20 +88,25 @@ mod tests {
     }
 
     #[test]
-    fn what_the_file_has_a_field_for_is_put_there_and_the_rest_is_said() {
+    fn what_the_file_has_a_field_for_is_put_there_and_the_rest_into_its_list_or_its_grounds() {
         let husky = builtin::husky_a200();
         let all = [
             applied("payload", vec![12.0], 300.0),
             applied("surface_change", vec![0.5, 0.2], 0.0),
             applied("wind", vec![0.5, 3.0, 0.0], 0.0),
+            applied("soft_soil", vec![0.2], 0.0),
             applied("pitch_bias", vec![0.02], 0.0),
         ];
         let (robot, notes) = corrected(&husky, &all, &["marble".into()]);
         assert!((robot.mass_kg - husky.mass_kg - 12.0).abs() < 1e-9);
         let ratio = robot.surfaces["marble"].mu_roll / husky.surfaces["marble"].mu_roll;
         assert!((ratio - 1.5).abs() < 1e-9);
-        assert_eq!(notes.len(), 3, "{notes:?}");
-        assert!(notes[1].contains("`wind`") && notes[2].contains("fault of the recording"), "{notes:?}");
+        assert_eq!(notes.len(), 2, "{notes:?}");
+        assert!(notes[0].contains("from 300 s") && notes[1].contains("fault of the recording"), "{notes:?}");
+        let names = |list: &[KnownMechanism]| list.iter().map(|k| k.mechanism().name()).collect::<Vec<_>>();
+        assert_eq!(names(&robot.mechanisms), ["wind"]);
+        assert_eq!(names(&robot.surfaces["marble"].mechanisms), ["soft_soil"]);
+        assert!(robot.surfaces["sandy_loam"].mechanisms.is_empty());
         assert!(robot.validate().is_ok());
     }
 

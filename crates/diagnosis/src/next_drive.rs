@@ -1,8 +1,7 @@
 //! The drive that would tell explanations apart: the manoeuvre of a small catalogue at which they predict most different power.
 
 use model::{
-    Acceleration, Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
-    mechanism::{Adjustment, Moment},
+    Acceleration, Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides, mechanism::Moment,
     robot::Surface,
 };
 
@@ -139,12 +138,12 @@ fn power_w(
     let attitude = Attitude { pitch_rad: figure.slope * RAMP_RAD, roll_rad: 0.0 };
     let acceleration = Acceleration { forward_mps2: figure.gain_mps2, yaw_radps2: 0.0 };
     let rim_mps2 = Sides::both(figure.gain_mps2);
-    let heading_rad = figure.heading_rad;
-    let mut moment = Moment { motion, acceleration, rim_mps2, attitude, heading_rad, loss_w };
+    let motion = motion.heading(figure.heading_rad);
+    let mut moment = Moment { motion, acceleration, rim_mps2, attitude, loss_w };
     applied.iter().for_each(|one| one.mechanism.measure(&one.values, &mut moment));
-    let adjustment = applied
-        .iter()
-        .fold(Adjustment::default(), |all, one| all.and(one.mechanism.adjust(&robot, &one.values, &moment)));
+    let adjustment = applied.iter().fold(robot.adjustment(ground, &moment), |all, one| {
+        all.and(one.mechanism.adjust(&robot, &one.values, &moment))
+    });
     let shape = FrictionShape::new(&robot, ground.slip_angle_scale_rad, &moment.motion);
     let motor_c = Sides::both(robot.motors.reference_temperature_c);
     let manoeuvre = Manoeuvre::adjusted(
@@ -155,8 +154,7 @@ fn power_w(
         motor_c,
         &adjustment,
     );
-    let (normal, along) = (moment.attitude.weight_normal(), moment.attitude.weight_along());
-    let power = manoeuvre.power_on_grade(normal, along, moment.acceleration);
+    let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
     let true_w = if by_side { [power.side_w.left, power.side_w.right] } else { [power.bus_w, power.bus_w] };
     let seen_w = true_w.map(|w| applied.iter().fold(w, |w, one| one.mechanism.reading_w(&one.values, w)));
     let k1 = manoeuvre.kernel().k1_w_per_n2;

@@ -1,9 +1,9 @@
 //! Recorded drives as the model sees them: one-second averages of what was recorded, and of what would be with mechanisms.
 
-use calibration::{Drives, average, drives::Stretch, row::Row};
+use calibration::{Drives, average, drives::Stretch, losses, row::Row};
 use model::{
     Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
-    mechanism::{Adjustment, Mechanism, Moment},
+    mechanism::{Mechanism, Moment},
 };
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording};
@@ -223,7 +223,7 @@ impl Part {
         }
         let memory_s = applied.iter().find_map(|a| a.mechanism.memory_s(&a.values));
         let loss_w = match memory_s {
-            Some(memory_s) => self.losses(robot, memory_s)?,
+            Some(memory_s) => losses::averaged(&self.drives, robot, memory_s),
             None => Vec::new(),
         };
         let mut seen = vec![[0.0; 2]; self.drives.rows.len()];
@@ -242,7 +242,8 @@ impl Part {
                     let acting: Vec<&Applied> = applied.iter().filter(|a| t_s >= a.from_s).collect();
                     let (robot, surface) =
                         if acting.is_empty() { (robot, &plain) } else { (&changed, &other) };
-                    let moment = self.moment(robot, i, loss_w.get(i).copied().unwrap_or(Sides::both(0.0)));
+                    let moment =
+                        self.moment(robot, i, loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w));
                     seen_w(robot, surface, &self.drives.rows[i], moment, &acting, form)
                 })
                 .collect();
@@ -271,43 +272,12 @@ impl Part {
         let row = &self.drives.rows[i];
         let rims = if row.stands() { Sides::both(0.0) } else { row.rim_mps };
         Moment {
-            motion: Motion::of_wheels(robot, rims),
-            acceleration: row.acceleration(robot.slip_track_m),
+            motion: Motion::of_wheels(robot, rims).heading(self.heading_rad[i]),
+            acceleration: row.acceleration(robot),
             rim_mps2: row.rim_mps2,
             attitude: Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad },
-            heading_rad: self.heading_rad[i],
             loss_w,
         }
-    }
-
-    /// Copper losses of each side, averaged backwards with an exponential memory, by row.
-    fn losses(&self, robot: &Robot, memory_s: f64) -> Result<Vec<Sides<f64>>, Error> {
-        let mut averaged = vec![Sides::both(0.0); self.drives.rows.len()];
-        let mut state = Sides::both(0.0);
-        let (mut run, mut last_s) = (usize::MAX, 0.0);
-        for stretch in &self.drives.stretches {
-            let name = &self.drives.surfaces[stretch.surface];
-            let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
-            let friction = Friction::new(robot, surface);
-            for i in stretch.rows.clone() {
-                let row = &self.drives.rows[i];
-                let step_s = if run == stretch.run { row.t_s - last_s } else { 0.0 };
-                if run != stretch.run {
-                    state = Sides::both(0.0);
-                }
-                (run, last_s) = (stretch.run, row.t_s);
-                let moment = self.moment(robot, i, Sides::both(0.0));
-                let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &moment.motion);
-                let manoeuvre = Manoeuvre::of_shape(robot, &friction, moment.motion, &shape, row.motor_c);
-                let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
-                let k1 = manoeuvre.kernel().k1_w_per_n2;
-                let keep = (-step_s / memory_s).exp();
-                let loss_w = power.force_n.zip(k1).map(|(f, k1)| k1 * f * f);
-                state = state.zip(loss_w).map(|(old, new)| keep * old + (1.0 - keep) * new);
-                averaged[i] = state;
-            }
-        }
-        Ok(averaged)
     }
 }
 
@@ -320,10 +290,10 @@ fn seen_w(
     acting: &[&Applied],
     form: PowerForm,
 ) -> [f64; 2] {
-    let mut adjustment = Adjustment::default();
     for applied in acting {
         applied.mechanism.measure(&applied.values, &mut moment);
     }
+    let mut adjustment = robot.adjustment(surface, &moment);
     for applied in acting {
         adjustment = adjustment.and(applied.mechanism.adjust(robot, &applied.values, &moment));
     }
@@ -336,9 +306,7 @@ fn seen_w(
         row.motor_c,
         &adjustment,
     );
-    let attitude = moment.attitude;
-    let power =
-        manoeuvre.power_on_grade(attitude.weight_normal(), attitude.weight_along(), moment.acceleration);
+    let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
     calibration::power::seen_w(robot, form, row, &power).map(|true_w| {
         acting.iter().fold(true_w, |w, applied| applied.mechanism.reading_w(&applied.values, w))
     })

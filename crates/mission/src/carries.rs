@@ -1,5 +1,6 @@
 //! How far a charge carries where no goal is named.
 
+use model::Grade;
 use planner::{ExactField, Goal, Objective, Place, Planner, Query, Step, body_motion};
 use terrain::Cell;
 
@@ -100,9 +101,7 @@ pub(crate) fn level_m(
         rise_m: 0.0,
         duration_s,
         motion,
-        side_grade: 0.0,
-        normal: 1.0,
-        along: 0.0,
+        grade: Grade::LEVEL,
         surface: 0,
         bus_w: 0.0,
     };

@@ -102,7 +102,7 @@ impl Drawn<'_> {
         let u = &robot.uncertainty;
         let (mu_roll, mu_skid) = (factor(u.mu_roll), factor(u.mu_skid));
         let (k1, k2) = (factor(u.k1), factor(u.k2));
-        changed.scale_friction(mu_roll, mu_skid);
+        changed.surfaces.values_mut().for_each(|surface| *surface = surface.scaled(mu_roll, mu_skid));
         for motor in [&mut changed.motors.left, &mut changed.motors.right] {
             motor.k1_w_per_n2 *= k1;
             motor.k2 = (motor.k2 * k2).max(1.0);

@@ -1,14 +1,14 @@
 //! A way to drive with its stops, prepared to be driven a thousand times by robots that differ a little.
 
-use model::{FrictionShape, Motion, PowerModel, Robot};
+use model::{Grade, Motion, PowerModel, Robot};
 use planner::{Step as PlannedStep, body_motion};
 
 use crate::Error;
 
 /// Drives and stops in order.
 ///
-/// What the steps of all paths have in common is few: motions and surfaces. They are kept once, with everything about them that
-/// mass, friction and motors do not change.
+/// What the steps of all paths have in common is few: motions and surfaces. They are kept once, and power is prepared once for
+/// each.
 #[derive(Clone, Debug)]
 pub struct Journey {
     pub(crate) model: PowerModel,
@@ -26,8 +26,6 @@ pub(crate) struct StepKind {
     pub(crate) motion: Motion,
     /// Index into the journey's surfaces.
     pub(crate) surface: usize,
-    /// How the motion rubs on ground of the surface's slip-angle scale.
-    pub(crate) shape: FrictionShape,
 }
 
 /// One thing after the other.
@@ -42,9 +40,8 @@ pub(crate) enum Part {
 pub(crate) struct Step {
     /// Index into the journey's kinds.
     pub(crate) kind: usize,
-    /// cos γ and sin γ sin β: shares of the weight across and along the heading.
-    pub(crate) normal: f64,
-    pub(crate) along: f64,
+    /// How the ground carries the weight.
+    pub(crate) grade: Grade<f64>,
     pub(crate) duration_s: f64,
     /// Its middle, along the ground since the start [m].
     pub(crate) middle_m: f64,
@@ -100,7 +97,8 @@ impl Journey {
             let reverse = motion.speed_mps < 0.0;
             let radius_m = motion.turning_radius_m();
             let radius_m = radius_m.is_finite().then_some(if reverse { -radius_m } else { radius_m });
-            body_motion(robot, speed_mps, radius_m, motion.yaw_rate_radps, reverse)
+            let paced = body_motion(robot, speed_mps, radius_m, motion.yaw_rate_radps, reverse);
+            Motion { heading_rad: motion.heading_rad, ..paced }
         })
     }
 
@@ -134,8 +132,7 @@ impl Journey {
             };
             self.parts.push(Part::Step(Step {
                 kind,
-                normal: step.normal,
-                along: step.along,
+                grade: step.grade,
                 duration_s: step.duration_s * slower,
                 middle_m: self.length_m + step.length_m / 2.0,
                 moves,
@@ -156,15 +153,16 @@ impl Journey {
     }
 
     fn kind(&mut self, robot: &Robot, motion: Motion, name: &str) -> Result<usize, Error> {
-        let ground = robot.surface(name)?;
+        robot.surface(name)?;
+        // Only mechanisms ask where the robot heads; without them a motion is the same in all headings.
+        let motion = if robot.has_mechanisms() { motion } else { Motion { heading_rad: None, ..motion } };
         let surface = self.surfaces.iter().position(|known| known == name).unwrap_or_else(|| {
             self.surfaces.push(name.to_owned());
             self.surfaces.len() - 1
         });
         let same = |kind: &StepKind| kind.motion == motion && kind.surface == surface;
         Ok(self.kinds.iter().position(same).unwrap_or_else(|| {
-            let shape = FrictionShape::new(robot, ground.slip_angle_scale_rad, &motion);
-            self.kinds.push(StepKind { motion, surface, shape });
+            self.kinds.push(StepKind { motion, surface });
             self.kinds.len() - 1
         }))
     }

@@ -1,7 +1,7 @@
 //! Driving a journey to its end: motors warm, the battery drains and sags, hotel load counts by time.
 
 use model::{
-    Acceleration, Friction, Manoeuvre, Power, PowerModel, Sides,
+    Acceleration, Grade, Manoeuvre, Power, Sides,
     thermal::{MotorHeat, ThermalModel, losses_w},
 };
 
@@ -93,7 +93,6 @@ struct Traveller<'a> {
     chance: &'a Chance,
     conditions: &'a Conditions,
     thermal: ThermalModel,
-    friction: Vec<Option<Friction>>,
     /// Manoeuvres of each kind of step at the temperature that they were prepared for.
     ready: Vec<Option<(Sides<f64>, Manoeuvre)>>,
     out: Outcome,
@@ -105,18 +104,12 @@ struct Traveller<'a> {
 impl Journey {
     /// Drives the journey and shows every part of it to `visit`.
     pub fn run(&self, chance: &Chance, conditions: &Conditions, mut visit: impl FnMut(&Passage)) -> Outcome {
-        let surface = |name: &String| chance.robot.surfaces.get(name);
         let heat = Sides::both(MotorHeat { winding_c: conditions.motor_c, case_c: conditions.motor_c });
         let mut traveller = Traveller {
             journey: self,
             chance,
             conditions,
             thermal: ThermalModel::default(),
-            friction: self
-                .surfaces
-                .iter()
-                .map(|n| surface(n).map(|s| Friction::new(&chance.robot, s)))
-                .collect(),
             ready: vec![None; self.kinds.len()],
             out: Outcome {
                 energy_j: 0.0,
@@ -181,23 +174,16 @@ impl Traveller<'_> {
             Some((at_c, manoeuvre)) if fresh(at_c) => *manoeuvre,
             _ => {
                 let robot = &self.chance.robot;
-                let manoeuvre = match self.journey.model {
-                    PowerModel::ForceBalance => {
-                        let friction = self.friction[kind.surface].as_ref()?;
-                        Manoeuvre::of_shape(robot, friction, kind.motion, &kind.shape, winding_c)
-                    }
-                    model @ PowerModel::DogruMarques => {
-                        let surface = robot.surfaces.get(&self.journey.surfaces[kind.surface])?;
-                        Manoeuvre::new(model, robot, surface, kind.motion, winding_c)
-                    }
-                };
+                let surface = robot.surfaces.get(&self.journey.surfaces[kind.surface])?;
+                let manoeuvre = Manoeuvre::new(self.journey.model, robot, surface, kind.motion, winding_c);
                 self.ready[step.kind] = Some((winding_c, manoeuvre));
                 manoeuvre
             }
         };
         let facing = if kind.motion.speed_mps < 0.0 { -1.0 } else { 1.0 };
         let error = if step.moves { facing * self.chance.grade_error(step.middle_m) } else { 0.0 };
-        Some((manoeuvre, manoeuvre.power_on_grade(step.normal, step.along + error, Acceleration::NONE)))
+        let grade = Grade { along: step.grade.along + error, ..step.grade };
+        Some((manoeuvre, manoeuvre.power_on_grade(grade, Acceleration::NONE)))
     }
 
     /// What a sagging voltage does to the drives: less speed, so that more time passes, or not enough force.

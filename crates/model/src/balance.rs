@@ -1,12 +1,22 @@
 //! The `force-balance` model: side forces from a quasi-static balance, continuous over every turning radius.
 
-use crate::{Robot, Sides, mechanism::Adjustment, motion::Motion, robot::Surface, rolling, skid};
+use crate::{
+    Robot, Sides, lateral::SidewaysPull, mechanism::Adjustment, motion::Motion, robot::Surface, rolling, skid,
+};
 
 /// Side forces of one motion on one surface, per newton of weight; the slope enters later.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SideForces {
-    /// Friction force of each side over the robot's normal load m g cos γ [-].
-    pub(crate) friction_per_load: Sides<f64>,
+    /// Rolling resistance of each side over the robot's normal load m g cos γ, along its way [-].
+    pub(crate) rolling: Sides<f64>,
+    /// What steepness adds to it, per sin γ and share of itself [-].
+    pub(crate) steepening: f64,
+    /// What a load that shifts to the lower side adds to it, per tan φ [-].
+    pub(crate) shifting: Sides<f64>,
+    /// Force over the normal load by which the right side drives against the skid of a turn, and the left side brakes [-].
+    pub(crate) skid: f64,
+    /// What sideways pull leaves of it.
+    pub(crate) pull: SidewaysPull<f64>,
     /// Share of gravity's pull m g sin γ sin β that each side carries [-].
     pub(crate) gravity_share: Sides<f64>,
 }
@@ -20,6 +30,8 @@ pub struct FrictionShape {
     rolling: Sides<f64>,
     /// Moment of skid over μ_S and the normal load, with the sign of the turn [m].
     skid_arm_m: f64,
+    /// That arm over the one of full skid [-].
+    mobilized: f64,
 }
 
 /// What a robot and a surface make of every shape.
@@ -31,8 +43,12 @@ pub struct Friction {
     mu_skid: f64,
     /// b [m].
     track_m: f64,
-    /// c μ_R [-].
-    mu_roll: f64,
+    /// c μ_R of each side [-].
+    mu_roll: Sides<f64>,
+    /// See [`Adjustment::mu_roll_per_steepness`].
+    steepening: f64,
+    /// See [`Adjustment::load_left_per_tilt`].
+    load_left_per_tilt: f64,
 }
 
 impl Friction {
@@ -43,17 +59,22 @@ impl Friction {
             rolling_per_load: rolling::load_share(robot).map(|n| mu_roll * n),
             mu_skid: surface.mu_skid,
             track_m: robot.track_m,
-            mu_roll,
+            mu_roll: Sides::both(mu_roll),
+            steepening: 0.0,
+            load_left_per_tilt: 0.0,
         }
     }
 
     /// The same with what a mechanism changes of it.
     pub(crate) fn adjusted(&self, adjustment: &Adjustment) -> Friction {
         let shifted = Sides { left: adjustment.load_left, right: -adjustment.load_left };
-        let rolling = self.rolling_per_load.zip(shifted).zip(adjustment.mu_roll);
+        let rolling = self.rolling_per_load.zip(shifted).zip(self.mu_roll.zip(adjustment.mu_roll));
         Friction {
-            rolling_per_load: rolling.map(|((r, shifted), c)| c * (r + self.mu_roll * shifted)),
+            rolling_per_load: rolling.map(|((r, shifted), (mu_roll, c))| c * (r + mu_roll * shifted)),
             mu_skid: adjustment.mu_skid * self.mu_skid,
+            mu_roll: self.mu_roll.zip(adjustment.mu_roll).map(|(mu_roll, c)| c * mu_roll),
+            steepening: adjustment.mu_roll_per_steepness,
+            load_left_per_tilt: adjustment.load_left_per_tilt,
             ..*self
         }
     }
@@ -62,26 +83,33 @@ impl Friction {
 impl FrictionShape {
     /// The shape of a motion on ground of a slip-angle scale α_s [rad].
     pub fn new(robot: &Robot, slip_angle_scale_rad: f64, motion: &Motion) -> Self {
+        let skid_arm_m = skid::arm_m(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps);
         FrictionShape {
             rolling: motion.rim_speeds_mps.map(rolling::direction),
-            skid_arm_m: skid::arm_m(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps),
+            skid_arm_m,
+            mobilized: skid_arm_m.abs() / skid::full_arm_m(robot),
         }
     }
 
     /// Balances rolling and skid resistance and gravity.
     ///
     /// ```text
-    /// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)               + m g sinγ sinβ + m dv/dt
-    /// (F_r − F_l) b/2 = M_skid + N c μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
+    /// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)                 + m g sinγ sinβ + m dv/dt
+    /// (F_r − F_l) b/2 = f M_skid + N c μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
     /// ```
     ///
-    /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load.
+    /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load, f what
+    /// sideways pull leaves of the skid ([`SidewaysPull`]).
     #[inline]
     pub(crate) fn side_forces(&self, friction: &Friction) -> SideForces {
-        let rolling = friction.rolling_per_load.zip(self.rolling).map(|(r, s)| r * s);
-        let skid = self.skid_arm_m * friction.mu_skid / friction.track_m;
+        let shifted = Sides { left: friction.load_left_per_tilt, right: -friction.load_left_per_tilt };
+        let shifting = friction.mu_roll.zip(shifted).zip(self.rolling).map(|((mu, n), s)| mu * n * s);
         SideForces {
-            friction_per_load: Sides { left: rolling.left - skid, right: rolling.right + skid },
+            rolling: friction.rolling_per_load.zip(self.rolling).map(|(r, s)| r * s),
+            steepening: friction.steepening,
+            shifting,
+            skid: self.skid_arm_m * friction.mu_skid / friction.track_m,
+            pull: SidewaysPull::new(friction.mu_skid, self.mobilized),
             gravity_share: Sides::both(0.5),
         }
     }

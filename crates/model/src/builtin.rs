@@ -51,6 +51,7 @@ pub fn husky_a200() -> Robot {
         surfaces: BTreeMap::from([("marble".into(), marble()), ("sandy_loam".into(), sandy_loam())]),
         default_surface: "marble".into(),
         uncertainty: Uncertainty::default(),
+        mechanisms: Vec::new(),
     }
 }
 
@@ -62,6 +63,7 @@ fn marble() -> Surface {
         mu_skid: 0.29,
         slip_angle_scale_rad: 0.30,
         dogru_marques: Some(PaperSurface { inner_friction: Some(0.1742), by_speed: Vec::new() }),
+        mechanisms: Vec::new(),
     }
 }
 
@@ -69,7 +71,13 @@ fn marble() -> Surface {
 /// `cargo run --release -p joulepath-calibration --example husky_table`. 95 % intervals: μ_R 0.128 to 0.186, with the no-load
 /// current of the motors in it; μ_S 0.300 to 0.529; the scale, which these drives hardly determine, 0.03 to 0.26 rad.
 fn sandy_loam() -> Surface {
-    Surface { mu_roll: 0.157, mu_skid: 0.415, slip_angle_scale_rad: 0.144, dogru_marques: None }
+    Surface {
+        mu_roll: 0.157,
+        mu_skid: 0.415,
+        slip_angle_scale_rad: 0.144,
+        dogru_marques: None,
+        mechanisms: Vec::new(),
+    }
 }
 
 /// Configuration A: no extra weight; the batteries hold the centre of mass 3 cm behind the middle.

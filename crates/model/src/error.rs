@@ -34,6 +34,14 @@ pub enum Error {
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A mechanism that the robot or its ground cannot have.
+    #[error("{field}: {message}")]
+    Mechanism {
+        /// Where, as `mechanisms[0]`.
+        field: String,
+        /// What is wrong and how to mend it.
+        message: String,
+    },
     /// No built-in robot of this name.
     #[error("there is no built-in robot `{name}`; built in are {}", known.join(", "))]
     UnknownRobot {
@@ -67,7 +75,7 @@ impl Error {
     pub fn field(&self) -> Option<&str> {
         match self {
             Error::Json { path, .. } if path != "." => Some(path),
-            Error::OutOfRange { field, .. } => Some(field),
+            Error::OutOfRange { field, .. } | Error::Mechanism { field, .. } => Some(field),
             Error::UnknownSurface { .. } => Some("default_surface"),
             _ => None,
         }

@@ -12,6 +12,22 @@ pub struct Attitude {
     pub roll_rad: f64,
 }
 
+/// How the ground carries the weight of a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grade<T> {
+    /// cos γ of eq. 5: share of the weight that presses on the ground.
+    pub normal: T,
+    /// sin γ sin β of eq. 4: share of the weight that pulls back along the heading.
+    pub along: T,
+    /// Rise per metre towards the left side, tan(roll): what pulls to the right over what presses on the ground.
+    pub tilt: T,
+}
+
+impl Grade<f64> {
+    /// Level ground.
+    pub const LEVEL: Grade<f64> = Grade { normal: 1.0, along: 0.0, tilt: 0.0 };
+}
+
 impl Attitude {
     /// Level ground.
     pub const LEVEL: Attitude = Attitude { pitch_rad: 0.0, roll_rad: 0.0 };
@@ -24,6 +40,11 @@ impl Attitude {
     /// cos γ of eq. 5: the share of the weight that presses on the ground.
     pub fn weight_normal(self) -> f64 {
         self.pitch_rad.cos() * self.roll_rad.cos()
+    }
+
+    /// How the ground carries the weight.
+    pub fn grade(self) -> Grade<f64> {
+        Grade { normal: self.weight_normal(), along: self.weight_along(), tilt: self.roll_rad.tan() }
     }
 
     /// The attitude on a plane of inclination γ, heading at angle β from the contour line (Fig. 1).

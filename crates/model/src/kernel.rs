@@ -1,17 +1,25 @@
 //! The arithmetic of one steady motion on any slope, in double or single precision.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::Sides;
+use crate::{Robot, Sides, gravity::Grade, lateral::SidewaysPull};
 
 /// A float that the kernel computes with: f64 for answers, f32 where millions of edges are evaluated side by side.
 pub trait Real:
-    Copy + PartialOrd + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// Zero.
     const ZERO: Self;
     /// Rounds a double to this precision.
     fn from_f64(value: f64) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
 }
 
 impl Real for f64 {
@@ -19,6 +27,10 @@ impl Real for f64 {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
     }
 }
 
@@ -28,17 +40,37 @@ impl Real for f32 {
     fn from_f64(value: f64) -> Self {
         value as f32
     }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
 }
+
+/// Slack that takes the floor of the bus out of play [W].
+pub(crate) const NO_FLOOR_W: f64 = 1e30;
 
 /// Everything about a steady motion that power depends on, except the slope.
 ///
-/// Forces are linear in the shares of the weight across and along the heading, so one multiplication and
-/// addition a side gives them for any place.
+/// ```text
+/// F_i = A_i + N (ρ_i (1 + c sin γ) + τ_i tan φ ± f(tan φ) σ) + G_i sin γ sin β,   N = cos γ
+/// ```
+///
+/// + on the right and − on the left; the fields below are the rest, in this order, each for the whole weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerKernel<T> {
-    /// Friction force of each side on level ground [N].
-    pub friction_n: Sides<T>,
-    /// Force of each side that lifts the robot, straight up [N].
+    /// A: force of each side that no slope changes [N].
+    pub added_n: Sides<T>,
+    /// ρ: rolling resistance of each side on level ground, along its way [N].
+    pub rolling_n: Sides<T>,
+    /// c: what steepness adds to rolling resistance [-].
+    pub steepening: T,
+    /// τ: what a load that shifts to the lower side adds to its rolling resistance, per tan φ [N].
+    pub shifting_n: Sides<T>,
+    /// σ: force by which the right side drives against the skid of a turn, and the left side brakes [N].
+    pub skid_n: T,
+    /// f: what sideways pull leaves of it.
+    pub pull: SidewaysPull<T>,
+    /// G: force of each side that lifts the robot, straight up [N].
     pub lifting_n: Sides<T>,
     /// u: rim speeds [m/s].
     pub rim_speed_mps: Sides<T>,
@@ -59,12 +91,32 @@ pub struct PowerKernel<T> {
 }
 
 impl<T: Real> PowerKernel<T> {
-    /// Side forces where the shares of the weight across (cos γ) and along (sin γ sin β) the heading are known [N].
+    /// Side forces on a grade [N].
     #[inline(always)]
-    pub fn forces_n(&self, normal: T, along: T) -> Sides<T> {
+    pub fn forces_n(&self, grade: Grade<T>) -> Sides<T> {
+        let Grade { normal, along, tilt } = grade;
+        // sin γ; rounding may bring cos γ a little above 1.
+        let steep = T::from_f64(1.0) - normal * normal;
+        let steepened = self.steepening * (if steep > T::ZERO { steep } else { T::ZERO }).sqrt();
+        let skid_n = self.skid_n * self.pull.left_of_skid(tilt);
+        let side = |added: T, rolling: T, shifting: T, lifting: T, skid: T| {
+            added + normal * (rolling + rolling * steepened + shifting * tilt + skid) + lifting * along
+        };
         Sides {
-            left: self.friction_n.left * normal + self.lifting_n.left * along,
-            right: self.friction_n.right * normal + self.lifting_n.right * along,
+            left: side(
+                self.added_n.left,
+                self.rolling_n.left,
+                self.shifting_n.left,
+                self.lifting_n.left,
+                -skid_n,
+            ),
+            right: side(
+                self.added_n.right,
+                self.rolling_n.right,
+                self.shifting_n.right,
+                self.lifting_n.right,
+                skid_n,
+            ),
         }
     }
 
@@ -113,11 +165,41 @@ impl<T: Real> PowerKernel<T> {
 }
 
 impl PowerKernel<f64> {
+    /// A robot's motors at rim speeds and temperatures, with no force on them yet and nothing else that draws power.
+    pub fn of_motors(robot: &Robot, rim_speed_mps: Sides<f64>, motor_c: Sides<f64>) -> Self {
+        let motors =
+            robot.motor_sides().zip(motor_c).map(|(motor, c)| motor.at_temperature(&robot.motors, c));
+        let least_k2 = motors.left.k2.min(motors.right.k2);
+        let nothing = Sides::both(0.0);
+        PowerKernel {
+            added_n: nothing,
+            rolling_n: nothing,
+            steepening: 0.0,
+            shifting_n: nothing,
+            skid_n: 0.0,
+            pull: SidewaysPull::NONE,
+            lifting_n: nothing,
+            rim_speed_mps,
+            k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
+            driving: motors.map(|m| m.k2),
+            driven: motors.map(|m| robot.motors.regeneration / m.k2),
+            lift_w: 0.0,
+            floor: [least_k2, robot.motors.regeneration / least_k2],
+            slack_w: NO_FLOOR_W,
+            standing_w: 0.0,
+        }
+    }
+
     /// The same kernel in single precision.
     pub fn single(&self) -> PowerKernel<f32> {
         let both = |sides: Sides<f64>| sides.map(|x| x as f32);
         PowerKernel {
-            friction_n: both(self.friction_n),
+            added_n: both(self.added_n),
+            rolling_n: both(self.rolling_n),
+            steepening: self.steepening as f32,
+            shifting_n: both(self.shifting_n),
+            skid_n: self.skid_n as f32,
+            pull: self.pull.single(),
             lifting_n: both(self.lifting_n),
             rim_speed_mps: both(self.rim_speed_mps),
             k1_w_per_n2: both(self.k1_w_per_n2),
@@ -164,13 +246,13 @@ mod tests {
 
         #[test]
         fn single_precision_gives_the_same_power_to_six_digits(
-            v in 0.1f64..1.0, w in -1.5f64..1.5, grade in -0.4f64..0.4, r in 0.0f64..=1.0,
+            v in 0.1f64..1.0, w in -1.5f64..1.5, along in -0.4f64..0.4, tilt in -0.2f64..0.2, r in 0.0f64..=1.0,
         ) {
             let double = kernel(v, w, r);
             let single = double.single();
-            let bus = double.bus_w(double.side_w(double.forces_n(0.95, grade)), grade);
-            let along = grade as f32;
-            let bus_32 = single.bus_w(single.side_w(single.forces_n(0.95, along)), along);
+            let bus = double.bus_w(double.side_w(double.forces_n(Grade { normal: 0.95, along, tilt })), along);
+            let (along, tilt) = (along as f32, tilt as f32);
+            let bus_32 = single.bus_w(single.side_w(single.forces_n(Grade { normal: 0.95, along, tilt })), along);
             prop_assert!((f64::from(bus_32) - bus).abs() < 1e-5 * (bus.abs() + 100.0), "{bus_32} for {bus}");
         }
     }

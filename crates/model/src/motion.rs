@@ -11,20 +11,31 @@ pub struct Motion {
     pub yaw_rate_radps: f64,
     /// u: rim speeds of both sides [m/s].
     pub rim_speeds_mps: Sides<f64>,
+    /// Heading, counter-clockwise from east, where it is known; only wind asks for it [rad].
+    pub heading_rad: Option<f64>,
 }
 
 impl Motion {
     /// The motion whose wheels turn as the slip track says.
     pub fn of_body(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64) -> Self {
-        Motion { speed_mps, yaw_rate_radps, rim_speeds_mps: robot.rim_speeds_mps(speed_mps, yaw_rate_radps) }
+        let rim_speeds_mps = robot.rim_speeds_mps(speed_mps, yaw_rate_radps);
+        Motion { speed_mps, yaw_rate_radps, rim_speeds_mps, heading_rad: None }
+    }
+
+    /// The same motion with a heading.
+    #[must_use]
+    pub fn heading(self, heading_rad: f64) -> Self {
+        Motion { heading_rad: Some(heading_rad).filter(|rad| rad.is_finite()), ..self }
     }
 
     /// The motion that wheel encoders report, when no gyroscope says otherwise.
     pub fn of_wheels(robot: &Robot, rim_speeds_mps: Sides<f64>) -> Self {
+        let moved = 1.0 - robot.wheel_slip();
         Motion {
-            speed_mps: rim_speeds_mps.sum() / 2.0,
-            yaw_rate_radps: (rim_speeds_mps.right - rim_speeds_mps.left) / robot.slip_track_m,
+            speed_mps: moved * rim_speeds_mps.sum() / 2.0,
+            yaw_rate_radps: moved * (rim_speeds_mps.right - rim_speeds_mps.left) / robot.slip_track_m,
             rim_speeds_mps,
+            heading_rad: None,
         }
     }
 

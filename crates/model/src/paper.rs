@@ -7,6 +7,7 @@
 use crate::{
     Robot, Sides,
     balance::SideForces,
+    lateral::SidewaysPull,
     motion::Motion,
     robot::{SpeedFriction, Surface},
     rolling,
@@ -125,8 +126,14 @@ impl PaperForces {
             _ => Sides::both(0.5),
         };
         let way = motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { u.signum() });
-        let friction_per_load = self.friction.zip(way).map(|(mu, way)| mu * way);
-        SideForces { friction_per_load, gravity_share }
+        SideForces {
+            rolling: self.friction.zip(way).map(|(mu, way)| mu * way),
+            steepening: 0.0,
+            shifting: Sides::both(0.0),
+            skid: 0.0,
+            pull: SidewaysPull::NONE,
+            gravity_share,
+        }
     }
 }
 

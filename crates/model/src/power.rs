@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Robot, Sides,
     balance::{Friction, FrictionShape, SideForces},
-    gravity::{Attitude, STANDARD_GRAVITY_MPS2},
-    kernel::PowerKernel,
-    mechanism::Adjustment,
+    gravity::{Attitude, Grade, STANDARD_GRAVITY_MPS2},
+    kernel::{NO_FLOOR_W, PowerKernel},
+    mechanism::{Adjustment, Moment},
     motion::{Acceleration, Motion},
     paper::PaperForces,
     robot::Surface,
@@ -38,7 +38,7 @@ pub struct Power {
     pub bus_w: f64,
 }
 
-/// One steady motion on one surface at one motor temperature, ready to be asked about any slope.
+/// One motion on one surface at one motor temperature, ready to be asked about any slope.
 #[derive(Clone, Copy, Debug)]
 pub struct Manoeuvre {
     motion: Motion,
@@ -46,12 +46,12 @@ pub struct Manoeuvre {
     mass_kg: f64,
     /// I / b: force difference per yaw acceleration, halved between the sides [N s²].
     turning_n_per_radps2: f64,
-    /// What mechanisms add to each side's force, forward [N].
-    added_n: Sides<f64>,
 }
 
 impl Manoeuvre {
-    /// Prepares the side forces of a motion.
+    /// Prepares the side forces of a steady motion, with the mechanisms that the robot and the surface have.
+    ///
+    /// The printed form takes mechanisms of friction as other coefficients, alike on both sides and on every slope.
     pub fn new(
         model: PowerModel,
         robot: &Robot,
@@ -59,31 +59,33 @@ impl Manoeuvre {
         motion: Motion,
         motor_temperature_c: Sides<f64>,
     ) -> Self {
-        let forces = match model {
+        let adjustment = robot.adjustment(surface, &Moment::steady(motion));
+        match model {
             PowerModel::ForceBalance => {
                 let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
-                shape.side_forces(&Friction::new(robot, surface))
+                let friction = Friction::new(robot, surface);
+                let forces = shape.side_forces(&friction.adjusted(&adjustment));
+                // Steady motion keeps the floor of itself, but not where wind pushes harder than friction holds: going in
+                // circles must not pay there either.
+                let pushed = adjustment.force_n != Sides::both(0.0)
+                    || adjustment.lifting_n != Sides::both(0.0)
+                    || robot.wheel_slip() != 0.0;
+                let floor = if pushed { Floor::Kept } else { Floor::None };
+                Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, floor)
             }
-            PowerModel::DogruMarques => PaperForces::new(robot, surface, &motion).side_forces(&motion),
-        };
-        Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, model == PowerModel::DogruMarques)
+            PowerModel::DogruMarques => {
+                let ground = surface.scaled(adjustment.mu_roll.sum() / 2.0, adjustment.mu_skid);
+                let forces = PaperForces::new(robot, &ground, &motion).side_forces(&motion);
+                Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, Floor::Printed)
+            }
+        }
     }
 
-    /// Prepares the side forces of a motion from its shape, by the force balance.
+    /// Prepares the side forces of a motion from its shape, by the force balance, with what mechanisms add.
     ///
-    /// The shape must be that of this motion on the slip-angle scale of the surface that the friction is that of.
+    /// The shape must be that of this motion on the slip-angle scale of the surface that the friction is that of, and the
+    /// adjustment that of [`Robot::adjustment`], with what else is to act.
     #[inline]
-    pub fn of_shape(
-        robot: &Robot,
-        friction: &Friction,
-        motion: Motion,
-        shape: &FrictionShape,
-        motor_temperature_c: Sides<f64>,
-    ) -> Self {
-        Manoeuvre::of_forces(robot, motion, shape.side_forces(friction), motor_temperature_c, false)
-    }
-
-    /// The same with what a mechanism adds ([`crate::mechanism`]).
     pub fn adjusted(
         robot: &Robot,
         friction: &Friction,
@@ -93,18 +95,7 @@ impl Manoeuvre {
         adjustment: &Adjustment,
     ) -> Self {
         let forces = shape.side_forces(&friction.adjusted(adjustment));
-        let motor_c = motor_temperature_c.zip(adjustment.motor_k).map(|(c, k)| c + k);
-        let mut manoeuvre = Manoeuvre::of_forces(robot, motion, forces, motor_c, false);
-        let kernel = &mut manoeuvre.kernel;
-        let heavier = 1.0 + adjustment.mass_kg / robot.mass_kg;
-        kernel.friction_n = kernel.friction_n.map(|n| heavier * n);
-        kernel.lifting_n = kernel.lifting_n.map(|n| heavier * n);
-        kernel.lift_w *= heavier;
-        kernel.driven = kernel.driven.zip(kernel.driving).map(|(d, k2)| d + adjustment.regeneration / k2);
-        kernel.standing_w += adjustment.standing_w;
-        manoeuvre.mass_kg += adjustment.mass_kg;
-        manoeuvre.added_n = adjustment.force_n;
-        manoeuvre
+        Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, adjustment, Floor::None)
     }
 
     #[inline]
@@ -113,31 +104,34 @@ impl Manoeuvre {
         motion: Motion,
         forces: SideForces,
         motor_temperature_c: Sides<f64>,
-        printed: bool,
+        adjustment: &Adjustment,
+        floor: Floor,
     ) -> Self {
-        let motors = robot
-            .motor_sides()
-            .zip(motor_temperature_c)
-            .map(|(motor, temperature_c)| motor.at_temperature(&robot.motors, temperature_c));
-        let regeneration = robot.motors.regeneration;
-        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
-        let least_k2 = motors.left.k2.min(motors.right.k2);
+        let motor_c = motor_temperature_c.zip(adjustment.motor_k).map(|(c, k)| c + k);
+        let motors = PowerKernel::of_motors(robot, motion.rim_speeds_mps, motor_c);
+        let regeneration = robot.motors.regeneration + adjustment.regeneration;
+        let mass_kg = robot.mass_kg + adjustment.mass_kg;
+        let weight_n = mass_kg * STANDARD_GRAVITY_MPS2;
         let electronics =
             motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { robot.drive_electronics_w });
+        let lifting_n =
+            forces.gravity_share.zip(adjustment.lifting_n).map(|(share, more_n)| weight_n * share + more_n);
         let kernel = PowerKernel {
-            friction_n: forces.friction_per_load.map(|f| weight_n * f),
-            lifting_n: forces.gravity_share.map(|share| weight_n * share),
-            rim_speed_mps: motion.rim_speeds_mps,
-            k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
-            driving: motors.map(|m| m.k2),
-            driven: motors.map(|m| if printed { m.k2 } else { regeneration / m.k2 }),
-            lift_w: weight_n * motion.speed_mps,
-            floor: [least_k2, regeneration / least_k2],
-            slack_w: if printed { 0.0 } else { NO_FLOOR_W },
-            standing_w: robot.hotel_power_w + electronics.sum(),
+            added_n: adjustment.force_n,
+            rolling_n: forces.rolling.map(|f| weight_n * f),
+            steepening: forces.steepening,
+            shifting_n: forces.shifting.map(|f| weight_n * f),
+            skid_n: weight_n * forces.skid,
+            pull: forces.pull,
+            lifting_n,
+            driven: motors.driving.map(|k2| if floor == Floor::Printed { k2 } else { regeneration / k2 }),
+            lift_w: (weight_n + adjustment.lifting_n.sum()) * motion.speed_mps,
+            floor: [motors.floor[0], regeneration / motors.floor[0]],
+            slack_w: if floor == Floor::None { NO_FLOOR_W } else { 0.0 },
+            standing_w: robot.hotel_power_w + electronics.sum() + adjustment.standing_w,
+            ..motors
         };
-        let turning_n_per_radps2 = robot.yaw_inertia_kgm2 / robot.track_m;
-        Manoeuvre { motion, kernel, mass_kg: robot.mass_kg, turning_n_per_radps2, added_n: Sides::both(0.0) }
+        Manoeuvre { motion, kernel, mass_kg, turning_n_per_radps2: robot.yaw_inertia_kgm2 / robot.track_m }
     }
 
     /// The motion this was prepared for.
@@ -157,31 +151,39 @@ impl Manoeuvre {
 
     /// Power on a slope while speeds change.
     pub fn power_accelerating(&self, attitude: Attitude, acceleration: Acceleration) -> Power {
-        self.power_on_grade(attitude.weight_normal(), attitude.weight_along(), acceleration)
+        self.power_on_grade(attitude.grade(), acceleration)
     }
 
-    /// Power where the shares of the weight across (cos γ) and along (sin γ sin β) the heading are known.
+    /// Power where it is known how the ground carries the weight.
     #[inline]
-    pub fn power_on_grade(&self, normal: f64, along: f64, acceleration: Acceleration) -> Power {
-        let steady_n = self.kernel.forces_n(normal, along);
+    pub fn power_on_grade(&self, grade: Grade<f64>, acceleration: Acceleration) -> Power {
+        let steady_n = self.kernel.forces_n(grade);
         let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
         let turning_n = self.turning_n_per_radps2 * acceleration.yaw_radps2;
         let force_n = Sides {
-            left: steady_n.left + forward_n - turning_n + self.added_n.left,
-            right: steady_n.right + forward_n + turning_n + self.added_n.right,
+            left: steady_n.left + forward_n - turning_n,
+            right: steady_n.right + forward_n + turning_n,
         };
         let side_w = self.kernel.side_w(force_n);
         Power {
             force_n,
             mechanical_w: force_n.zip(self.motion.rim_speeds_mps).map(|(f, u)| f * u),
             side_w,
-            bus_w: self.kernel.bus_w(side_w, along),
+            bus_w: self.kernel.bus_w(side_w, grade.along),
         }
     }
 }
 
-/// Slack that takes the floor of the printed form out of play [W].
-const NO_FLOOR_W: f64 = 1e30;
+/// Whether the bus draws at least what lifting needs and returns at most what a descent holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Floor {
+    /// The forces alone say what is drawn; while speeds change, a robot may give more back.
+    None,
+    /// Yes.
+    Kept,
+    /// Yes, with the printed form's losses of back-driven sides.
+    Printed,
+}
 
 /// Electrical power of a robot at one instant.
 ///

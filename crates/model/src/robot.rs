@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use crate::battery::Battery;
-use crate::{Error, Sides, robot_limits};
+use crate::{Error, Sides, known::KnownMechanism, robot_limits};
 
 /// A skid-steered robot with one motor a side.
 ///
@@ -50,6 +50,10 @@ pub struct Robot {
     pub default_surface: String,
     /// Relative one-sigma uncertainty of the parameters.
     pub uncertainty: Uncertainty,
+    /// What the fields above cannot hold, found by a diagnosis, say. Default: none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
+    pub mechanisms: Vec<KnownMechanism>,
 }
 
 /// Where the centre of mass lies relative to the geometric centre.
@@ -137,6 +141,10 @@ pub struct Surface {
     /// What only the paper's printed form needs. Default: derived from the values above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dogru_marques: Option<PaperSurface>,
+    /// What acts on this ground alone and changes its friction. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
+    pub mechanisms: Vec<KnownMechanism>,
 }
 
 /// The paper's own description of a surface: constants per speed and a constant inner friction.
@@ -188,6 +196,26 @@ impl Default for Uncertainty {
     }
 }
 
+impl Surface {
+    /// The same ground with rolling and skid resistance multiplied.
+    ///
+    /// In the printed form's opposite sides mostly skid counts, so its inner friction goes with μ_S.
+    #[must_use]
+    pub fn scaled(&self, roll: f64, skid: f64) -> Surface {
+        let mut scaled = self.clone();
+        scaled.mu_roll *= roll;
+        scaled.mu_skid *= skid;
+        if let Some(paper) = &mut scaled.dogru_marques {
+            paper.inner_friction = paper.inner_friction.map(|friction| friction * skid);
+            for row in &mut paper.by_speed {
+                row.mu_roll *= roll;
+                row.mu_skid *= skid;
+            }
+        }
+        scaled
+    }
+}
+
 impl Robot {
     /// Reads and checks a robot file.
     ///
@@ -225,24 +253,9 @@ impl Robot {
 
     /// Rim speeds of the wheels at a body speed and yaw rate [m/s].
     pub fn rim_speeds_mps(&self, speed_mps: f64, yaw_rate_radps: f64) -> Sides<f64> {
+        let turned = 1.0 / (1.0 - self.wheel_slip());
         let half = yaw_rate_radps * self.half_slip_track_m();
-        Sides { left: speed_mps - half, right: speed_mps + half }
-    }
-
-    /// Multiplies μ_R and μ_S of every surface, the constants of the printed form with them.
-    ///
-    /// Turning against each other the sides mostly skid, so the printed form's inner friction goes with μ_S.
-    pub fn scale_friction(&mut self, mu_roll: f64, mu_skid: f64) {
-        for surface in self.surfaces.values_mut() {
-            surface.mu_roll *= mu_roll;
-            surface.mu_skid *= mu_skid;
-            let Some(paper) = &mut surface.dogru_marques else { continue };
-            paper.inner_friction = paper.inner_friction.map(|friction| friction * mu_skid);
-            for row in &mut paper.by_speed {
-                row.mu_roll *= mu_roll;
-                row.mu_skid *= mu_skid;
-            }
-        }
+        Sides { left: turned * (speed_mps - half), right: turned * (speed_mps + half) }
     }
 
     /// Checks every field's range; reading a file does this already, code that builds a robot may call it.
@@ -285,6 +298,9 @@ pub struct RobotFile {
     pub default_surface: String,
     #[serde(default)]
     pub uncertainty: Uncertainty,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
+    pub mechanisms: Vec<KnownMechanism>,
 }
 
 impl From<Robot> for RobotFile {
@@ -307,6 +323,7 @@ impl From<Robot> for RobotFile {
             surfaces: robot.surfaces,
             default_surface: robot.default_surface,
             uncertainty: robot.uncertainty,
+            mechanisms: robot.mechanisms,
         }
     }
 }
@@ -334,6 +351,7 @@ impl TryFrom<RobotFile> for Robot {
             surfaces: file.surfaces,
             default_surface: file.default_surface,
             uncertainty: file.uncertainty,
+            mechanisms: file.mechanisms,
         };
         robot.validate()?;
         Ok(robot)

@@ -22,6 +22,14 @@ pub(crate) fn arm_m(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, ya
     mobilized_arm_m(robot, speed_mps, yaw_rate_radps, law) * sign(yaw_rate_radps)
 }
 
+/// The arm of full skid, Σ_i |x_i − δx| · n_i [m]; never 0, so that it can divide.
+pub(crate) fn full_arm_m(robot: &Robot) -> f64 {
+    let (half_m, forward_m) = (robot.wheelbase_m / 2.0, robot.center_of_mass.forward_m);
+    let share = forward_m / robot.wheelbase_m;
+    let arm_m = (half_m - forward_m) * (0.5 + share) + (half_m + forward_m) * (0.5 - share);
+    arm_m.max(f64::MIN_POSITIVE)
+}
+
 /// Σ_i |x_i − δx| · n_i · σ(α_i) of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel
 /// feels at a slip angle, 0 to π/2 [m].
 pub fn mobilized_arm_m(

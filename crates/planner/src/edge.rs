@@ -42,7 +42,8 @@ impl Edge {
 
 /// One way to drive a motion, with everything prepared that does not depend on the cell it starts from.
 pub(crate) struct Chain {
-    pieces: Vec<PreparedPiece>,
+    /// Its steps, each with one manoeuvre per surface.
+    steps: Vec<(PreparedStep, Vec<Manoeuvre>)>,
     sweep: Vec<(i32, i32)>,
     /// Largest king's distance of a swept cell: with more clearance nothing can be touched.
     reach: u8,
@@ -50,12 +51,6 @@ pub(crate) struct Chain {
     read_from: (i32, i32),
     read_to: (i32, i32),
     reverse: bool,
-}
-
-struct PreparedPiece {
-    /// One manoeuvre per surface.
-    manoeuvres: Vec<Manoeuvre>,
-    steps: Vec<PreparedStep>,
 }
 
 /// Spacing of the poses whose footprints make up a sweep, in cells.
@@ -67,26 +62,26 @@ impl Chain {
         reverse: bool,
         footprint: &Footprint,
         cell_size_m: f64,
-        manoeuvres: &impl Fn(&Piece, bool) -> Vec<Manoeuvre>,
+        manoeuvres: &impl Fn(&Piece, bool, f64) -> Vec<Manoeuvre>,
     ) -> Self {
-        let prepared: Vec<PreparedPiece> = pieces
-            .iter()
-            .map(|piece| PreparedPiece {
-                manoeuvres: manoeuvres(piece, reverse),
-                steps: prepare_steps(piece, reverse, cell_size_m, STEP_CELLS).collect(),
+        let of_piece = |piece| {
+            let steps = prepare_steps(piece, reverse, cell_size_m, STEP_CELLS);
+            steps.map(move |step| {
+                let ready = manoeuvres(piece, reverse, step.heading_rad());
+                (step, ready)
             })
-            .collect();
+        };
+        let prepared: Vec<_> = pieces.iter().flat_map(of_piece).collect();
         let sweep = sweep(pieces, footprint, cell_size_m);
         let reach = sweep.iter().map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0);
-        let steps = || prepared.iter().flat_map(|p| &p.steps);
         let corners = || {
-            let read = steps().flat_map(|s| [s.end.corner, s.end.far_corner(), s.middle]);
+            let read = prepared.iter().flat_map(|(s, _)| [s.end.corner, s.end.far_corner(), s.middle]);
             read.chain([(0, 0)])
         };
         let read_from = corners().fold((0, 0), |low, corner| (low.0.min(corner.0), low.1.min(corner.1)));
         let read_to = corners().fold((0, 0), |high, corner| (high.0.max(corner.0), high.1.max(corner.1)));
         let reach = u8::try_from(reach).unwrap_or(u8::MAX);
-        Chain { pieces: prepared, sweep, reach, read_from, read_to, reverse }
+        Chain { steps: prepared, sweep, reach, read_from, read_to, reverse }
     }
 
     /// The cells it sweeps, as offsets (columns, rows) from where it starts.
@@ -96,9 +91,7 @@ impl Chain {
 
     /// Its steps, each with the manoeuvres of all surfaces and whether it is driven backwards.
     pub(crate) fn steps_with_manoeuvres(&self) -> impl Iterator<Item = (&PreparedStep, &[Manoeuvre], bool)> {
-        self.pieces
-            .iter()
-            .flat_map(|piece| piece.steps.iter().map(|step| (step, &piece.manoeuvres[..], self.reverse)))
+        self.steps.iter().map(|(step, manoeuvres)| (step, &manoeuvres[..], self.reverse))
     }
 
     /// Totals on level ground of the robot's default surface, whatever its limits.
@@ -132,13 +125,11 @@ impl Chain {
             return None;
         }
         let mut height_m = terrain.relative_m()[index];
-        for piece in &self.pieces {
-            for step in &piece.steps {
-                let manoeuvre_on = |surface: usize| &piece.manoeuvres[surface];
-                let (done, end_m) = step.drive_on(lattice, index, height_m, self.reverse, manoeuvre_on)?;
-                visit(&done);
-                height_m = end_m;
-            }
+        for (step, manoeuvres) in &self.steps {
+            let manoeuvre_on = |surface: usize| &manoeuvres[surface];
+            let (done, end_m) = step.drive_on(lattice, index, height_m, self.reverse, manoeuvre_on)?;
+            visit(&done);
+            height_m = end_m;
         }
         Some(())
     }

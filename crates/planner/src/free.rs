@@ -51,14 +51,19 @@ impl<'l> FreeGround<'l> {
         let start = Sample::at(pieces.first()?.start_m, cell_size_m);
         let mut height_m = self.height_m(&start)?;
         for piece in pieces.iter().filter(|piece| !is_nothing(piece)) {
+            // Without mechanisms no force follows the heading, and a manoeuvre holds for the whole piece.
+            let anew = !lattice.robot.mechanisms.is_empty();
             let mut prepared: Option<(usize, Manoeuvre)> = None;
             for step in prepare_steps(piece, reverse, cell_size_m, STEP_CELLS) {
                 if !self.holds(&step) {
                     return None;
                 }
                 let (done, end_m) = step.drive_on(lattice, 0, height_m, reverse, |surface| {
-                    let same = prepared.take().filter(|(of, _)| *of == surface);
-                    let ready = same.unwrap_or_else(|| (surface, lattice.manoeuvre(piece, reverse, surface)));
+                    let same = prepared.take().filter(|(of, _)| *of == surface && !anew);
+                    let heading_rad = step.heading_rad();
+                    let ready = same.unwrap_or_else(|| {
+                        (surface, lattice.manoeuvre(piece, reverse, heading_rad, surface))
+                    });
                     &prepared.insert(ready).1
                 })?;
                 visit(&done);

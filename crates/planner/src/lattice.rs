@@ -86,8 +86,9 @@ impl Lattice {
         check_cells(robot, cell_size_m)?;
         let motions = motions(robot, cell_size_m, settings.reverse);
         let footprint = Footprint::of(robot);
-        let manoeuvres = |piece: &Piece, reverse: bool| -> Vec<Manoeuvre> {
-            surfaces.iter().map(|surface| manoeuvre(robot, &settings, piece, reverse, surface)).collect()
+        let manoeuvres = |piece: &Piece, reverse: bool, heading_rad: f64| -> Vec<Manoeuvre> {
+            let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
+            surfaces.iter().map(|surface| manoeuvre(robot, &settings, motion, surface)).collect()
         };
         let chains = std::array::from_fn(|h| {
             motions[h]
@@ -156,7 +157,7 @@ impl Lattice {
 
     /// κ m g: the potential per metre of height [J/m].
     pub(crate) fn lift_j_per_m(&self) -> f64 {
-        self.kappa() * self.robot.mass_kg * STANDARD_GRAVITY_MPS2
+        self.kappa() * self.robot.lifted_mass_kg() * STANDARD_GRAVITY_MPS2
     }
 
     /// Whether the robot can stand in a pose, and if not, why.
@@ -204,9 +205,16 @@ impl Lattice {
         &self.chains[heading.index()][motion][variant]
     }
 
-    /// A piece as driven on one surface.
-    pub(crate) fn manoeuvre(&self, piece: &Piece, reverse: bool, surface: usize) -> Manoeuvre {
-        manoeuvre(&self.robot, &self.settings, piece, reverse, &self.surfaces[surface])
+    /// A piece as driven on one surface at a heading [rad].
+    pub(crate) fn manoeuvre(
+        &self,
+        piece: &Piece,
+        reverse: bool,
+        heading_rad: f64,
+        surface: usize,
+    ) -> Manoeuvre {
+        let motion = piece_motion(&self.robot, &self.settings, piece, reverse).heading(heading_rad);
+        manoeuvre(&self.robot, &self.settings, motion, &self.surfaces[surface])
     }
 
     /// Totals of a step east on level ground.
@@ -284,12 +292,10 @@ fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
 fn manoeuvre(
     robot: &Robot,
     settings: &Settings,
-    piece: &Piece,
-    reverse: bool,
+    motion: BodyMotion,
     surface: &model::robot::Surface,
 ) -> Manoeuvre {
     let temperature_c = Sides::both(settings.motor_temperature_c);
-    let motion = piece_motion(robot, settings, piece, reverse);
     Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
 }
 

@@ -17,9 +17,9 @@ const SINGLE_PRECISION: f64 = 1e-4;
 /// E − κ m g Δz ≥ (κ cos ρ Σ F u + P₀) / v
 /// ```
 ///
-/// with F u each side's friction power on level ground, ρ the steepest roll allowed and P₀ the standing power: a longer way
-/// on a slope and the smaller normal force there cancel. The printed form has no such floor on friction; its standing
-/// power alone counts.
+/// with F u each side's friction power on level ground with the least skid that a side slope leaves, ρ the steepest roll
+/// allowed and P₀ the standing power: a longer way on a slope and the smaller normal force there cancel. The printed form has
+/// no such floor on friction, and neither has a robot with mechanisms, whose wind may push; its standing power alone counts.
 pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
     let chains = lattice.chains.iter().zip(&lattice.motions).flat_map(|(chains, motions)| {
         chains.iter().zip(motions).flat_map(|(variants, motion)| variants.iter().map(move |v| (v, motion)))
@@ -43,14 +43,16 @@ fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
 }
 
 fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, manoeuvres: &[Manoeuvre]) -> f64 {
+    let (robot, settings) = (&lattice.robot, &lattice.settings);
+    let holds = settings.power_model == PowerModel::ForceBalance && !robot.has_mechanisms();
+    let floor = if holds { lattice.kappa() * robot.limits.max_roll_rad.cos() } else { 0.0 };
+    let steepest = robot.limits.max_roll_rad.tan();
     let on = |manoeuvre: &Manoeuvre| {
         let (kernel, speed_mps) = (manoeuvre.kernel(), manoeuvre.motion().speed_mps.abs());
-        let friction_w = kernel.friction_n.left * kernel.rim_speed_mps.left
-            + kernel.friction_n.right * kernel.rim_speed_mps.right;
-        let floor = match lattice.settings.power_model {
-            PowerModel::ForceBalance => lattice.kappa() * lattice.robot.limits.max_roll_rad.cos(),
-            PowerModel::DogruMarques => 0.0,
-        };
+        let skid_n = kernel.skid_n * kernel.pull.left_of_skid(steepest);
+        let rims_mps = kernel.rim_speed_mps;
+        let friction_w = (kernel.rolling_n.left - skid_n) * rims_mps.left
+            + (kernel.rolling_n.right + skid_n) * rims_mps.right;
         let least_w = (floor * friction_w).max(0.0) + kernel.standing_w;
         let duration_s = step.horizontal_m / speed_mps;
         weights.per_j * least_w * duration_s + weights.per_m * step.horizontal_m + weights.per_s * duration_s

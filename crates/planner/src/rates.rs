@@ -1,6 +1,6 @@
 //! What turning costs on level ground, to choose among curves before any is driven.
 
-use model::Acceleration;
+use model::{Acceleration, Grade};
 
 use crate::{
     connection::{Connection, Ends, Side, WORDS, Waypoint},
@@ -189,11 +189,11 @@ pub(crate) enum Radii {
 fn rate(ground: &FreeGround<'_>, length_m: f64, turn_rad: f64, reverse: bool) -> f64 {
     let piece = Piece { start_m: [0.0, 0.0], heading_rad: 0.0, length_m, turn_rad };
     let surface = ground.lattice.surfaces.len() - 1;
-    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, surface);
+    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, f64::NAN, surface);
     let motion = manoeuvre.motion();
     let duration_s =
         if length_m > 0.0 { length_m / motion.speed_mps.abs() } else { turn_rad / motion.yaw_rate_radps };
-    let bus_w = manoeuvre.power_on_grade(1.0, 0.0, Acceleration::NONE).bus_w;
+    let bus_w = manoeuvre.power_on_grade(Grade::LEVEL, Acceleration::NONE).bus_w;
     let weights = ground.weights;
     weights.per_j * bus_w * duration_s + weights.per_m * length_m + weights.per_s * duration_s
 }

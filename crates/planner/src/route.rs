@@ -93,8 +93,8 @@ impl Route {
             distance_m: self.total.length_m,
             energy_j: self.total.energy_j,
             power_w: step.bus_w,
-            pitch_rad: step.along.asin(),
-            roll_rad: step.side_grade.atan(),
+            pitch_rad: step.grade.along.asin(),
+            roll_rad: step.grade.tilt.atan(),
             radius_m: radius_m.is_finite().then_some(radius_m),
         });
         self.steps.push(*step);
@@ -116,7 +116,7 @@ impl Route {
             .filter_map(|step| {
                 let surface = robot.surfaces.get(surfaces.get(step.surface)?)?;
                 let manoeuvre = Manoeuvre::new(model, robot, surface, step.motion, temperature_c);
-                let power = manoeuvre.power_on_grade(step.normal, step.along, Acceleration::NONE);
+                let power = manoeuvre.power_on_grade(step.grade, Acceleration::NONE);
                 Some(power.bus_w * step.duration_s)
             })
             .sum()

@@ -1,6 +1,6 @@
 //! One step of a motion from a row of cells side by side, in single precision.
 
-use model::PowerKernel;
+use model::{Grade, PowerKernel};
 
 use crate::{edge::Chain, layout::TILE, window::Window};
 
@@ -120,10 +120,11 @@ impl RowStep {
         let mut costs = [0.0; TILE];
         for x in 0..TILE {
             let (grade, cos_pitch) = (ground.grade[x], ground.cos_pitch[x]);
-            let (normal, along) = (cos_pitch * ground.cos_roll[x], self.facing * grade * cos_pitch);
+            let along = self.facing * grade * cos_pitch;
+            let tilt = self.facing * ground.side_grade[x];
             let length_m = self.horizontal_m * (1.0 + grade * grade) * cos_pitch;
             let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
-            let force_n = power.forces_n(normal, along);
+            let force_n = power.forces_n(Grade { normal: cos_pitch * ground.cos_roll[x], along, tilt });
             let bus_w = power.bus_w(power.side_w(force_n), along);
             let friction_j = bus_w * duration_s - lift_j_per_m * rise_m[x];
             let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };

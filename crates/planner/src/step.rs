@@ -1,6 +1,6 @@
 //! One step at constant grade, surface and curvature: the evaluation that lattice motions and free courses share.
 
-use model::{Acceleration, Manoeuvre, Motion as BodyMotion, Robot};
+use model::{Acceleration, Grade, Manoeuvre, Motion as BodyMotion, Robot};
 use terrain::slope;
 
 use crate::{lattice::Lattice, primitive::Piece};
@@ -20,12 +20,8 @@ pub struct Step {
     pub duration_s: f64,
     /// Body speeds.
     pub motion: BodyMotion,
-    /// Rise per metre across the heading, positive with the left side up.
-    pub side_grade: f64,
-    /// cos γ: share of the weight that presses on the ground.
-    pub normal: f64,
-    /// sin γ sin β: share of the weight along the heading.
-    pub along: f64,
+    /// How the ground carries the weight.
+    pub grade: Grade<f64>,
     /// Index of the surface among the map's, the robot's default last.
     pub surface: usize,
     /// Power drawn from the battery [W].
@@ -46,6 +42,8 @@ pub(crate) struct PreparedStep {
     end_heading_rad: f64,
     /// Unit vector of travel half way.
     pub(crate) travel: (f64, f64),
+    /// Heading less the direction of travel: half a turn where the robot backs [rad].
+    facing_rad: f64,
     /// Cell under the middle.
     pub(crate) middle: (i32, i32),
     pub(crate) end: Sample,
@@ -85,6 +83,12 @@ impl Limits {
 }
 
 impl PreparedStep {
+    /// Heading of the robot half way [rad].
+    pub(crate) fn heading_rad(&self) -> f64 {
+        let (cos, sin) = self.travel;
+        sin.atan2(cos) + self.facing_rad
+    }
+
     /// Drives the step on a lattice's ground, from a height; `None` where the limits or unknown ground forbid it.
     ///
     /// The step counts its places from the cell at row-major position `from`, and the caller has seen to it that they
@@ -133,12 +137,16 @@ impl PreparedStep {
         let cos_pitch = 1.0 / (1.0 + grade * grade).sqrt();
         let cos_roll = 1.0 / (1.0 + side_grade * side_grade).sqrt();
         let facing = if reverse { -1.0 } else { 1.0 };
-        let (normal, along) = (cos_pitch * cos_roll, facing * grade * cos_pitch);
+        let grade = Grade {
+            normal: cos_pitch * cos_roll,
+            along: facing * grade * cos_pitch,
+            tilt: facing * side_grade,
+        };
         let motion = *manoeuvre.motion();
         let length_m = self.horizontal_m / cos_pitch;
         let duration_s =
             if turning { self.turn_rad / motion.yaw_rate_radps } else { length_m / motion.speed_mps.abs() };
-        let power = manoeuvre.power_on_grade(normal, along, Acceleration::NONE);
+        let power = manoeuvre.power_on_grade(grade, Acceleration::NONE);
         if power.force_n.left.abs().max(power.force_n.right.abs()) > limits.side_force_n {
             return None;
         }
@@ -149,9 +157,7 @@ impl PreparedStep {
             rise_m: if turning { 0.0 } else { rise_m },
             duration_s,
             motion,
-            side_grade: facing * side_grade,
-            normal,
-            along,
+            grade,
             surface,
             bus_w: power.bus_w,
         })
@@ -234,6 +240,7 @@ pub(crate) fn prepare_steps(
             end_m,
             end_heading_rad: heading + facing_rad,
             travel,
+            facing_rad,
             middle: ((mx / cell_size_m).round() as i32, (my / cell_size_m).round() as i32),
             end: Sample::at(end_m, cell_size_m),
         }

@@ -24,8 +24,8 @@ pub(crate) fn energy_interval_j(
     let energy_j = |changed: &Robot| route.energy_with_j(changed, model, surfaces, motor_temperature_c);
     let u = &robot.uncertainty;
     let parameters: [Parameter; 5] = [
-        (u.mu_roll, |r, factor| r.scale_friction(factor, 1.0)),
-        (u.mu_skid, |r, factor| r.scale_friction(1.0, factor)),
+        (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(factor, 1.0))),
+        (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(1.0, factor))),
         (u.k1, |r, factor| {
             r.motors.left.k1_w_per_n2 *= factor;
             r.motors.right.k1_w_per_n2 *= factor;

@@ -42,9 +42,8 @@ impl Mechanism for CenterOfMass {
         Some(moved)
     }
 
-    fn adjust(&self, robot: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
-        let pull_n = robot.mass_kg * STANDARD_GRAVITY_MPS2 * moment.attitude.weight_along();
-        let turn_n = pull_n * values[1] / robot.track_m;
-        Adjustment { force_n: Sides { left: turn_n, right: -turn_n }, ..Adjustment::default() }
+    fn adjust(&self, robot: &Robot, values: &[f64], _: &Moment) -> Adjustment {
+        let turn_n = robot.mass_kg * STANDARD_GRAVITY_MPS2 * values[1] / robot.track_m;
+        Adjustment { lifting_n: Sides { left: turn_n, right: -turn_n }, ..Adjustment::default() }
     }
 }

@@ -1,7 +1,7 @@
 //! `grade_dependent_friction`: rolling resistance that grows with the steepness of the ground.
 
 use crate::{
-    Robot, Sides,
+    Robot,
     mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
 };
 
@@ -29,8 +29,7 @@ impl Mechanism for GradeDependentFriction {
         format!("rolling resistance changes by {:.1} % for each per cent of slope", values[0])
     }
 
-    fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
-        let (along, across) = (moment.attitude.pitch_rad.sin(), moment.attitude.roll_rad.sin());
-        Adjustment { mu_roll: Sides::both(1.0 + values[0] * along.hypot(across)), ..Adjustment::default() }
+    fn adjust(&self, _: &Robot, values: &[f64], _: &Moment) -> Adjustment {
+        Adjustment { mu_roll_per_steepness: values[0], ..Adjustment::default() }
     }
 }

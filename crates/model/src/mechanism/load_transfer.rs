@@ -31,7 +31,7 @@ impl Mechanism for LoadTransfer {
 
     fn adjust(&self, robot: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
         let outward = moment.motion.speed_mps * moment.motion.yaw_rate_radps / STANDARD_GRAVITY_MPS2;
-        let load_left = -values[0] / robot.track_m * (moment.attitude.roll_rad.tan() + outward);
-        Adjustment { load_left, ..Adjustment::default() }
+        let load_left_per_tilt = -values[0] / robot.track_m;
+        Adjustment { load_left: load_left_per_tilt * outward, load_left_per_tilt, ..Adjustment::default() }
     }
 }

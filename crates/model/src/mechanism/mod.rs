@@ -57,10 +57,8 @@ pub struct Moment {
     pub acceleration: Acceleration,
     /// The same of the rims [m/s²].
     pub rim_mps2: Sides<f64>,
-    /// How the robot stands.
+    /// How the robot stands. [`Mechanism::adjust`] must not ask for it: what follows the slope is a field of [`Adjustment`].
     pub attitude: Attitude,
-    /// Heading, counter-clockwise from east; NaN where nothing tells it [rad].
-    pub heading_rad: f64,
     /// Copper loss of each side's motor, averaged over [`Mechanism::memory_s`] backwards [W].
     pub loss_w: Sides<f64>,
 }
@@ -74,10 +72,16 @@ pub struct Adjustment {
     pub mu_roll: Sides<f64>,
     /// Factor of the skid resistance.
     pub mu_skid: f64,
+    /// What steepness adds to the rolling resistance, as a share of it per sin γ.
+    pub mu_roll_per_steepness: f64,
     /// Share of the load that is shifted from the right to the left side.
     pub load_left: f64,
+    /// The same per tan φ, φ the roll.
+    pub load_left_per_tilt: f64,
     /// Wheel force of each side, forward [N].
     pub force_n: Sides<f64>,
+    /// The same straight up, of which a slope has the share sin γ sin β [N].
+    pub lifting_n: Sides<f64>,
     /// Temperature of each motor above what was recorded or the reference [K].
     pub motor_k: Sides<f64>,
     /// Share of back-driven power that returns besides.
@@ -93,8 +97,11 @@ impl Default for Adjustment {
             mass_kg: 0.0,
             mu_roll: Sides::both(1.0),
             mu_skid: 1.0,
+            mu_roll_per_steepness: 0.0,
             load_left: 0.0,
+            load_left_per_tilt: 0.0,
             force_n: Sides::both(0.0),
+            lifting_n: Sides::both(0.0),
             motor_k: Sides::both(0.0),
             regeneration: 0.0,
             standing_w: 0.0,
@@ -110,8 +117,11 @@ impl Adjustment {
             mass_kg: self.mass_kg + other.mass_kg,
             mu_roll: self.mu_roll.zip(other.mu_roll).map(|(a, b)| a * b),
             mu_skid: self.mu_skid * other.mu_skid,
+            mu_roll_per_steepness: self.mu_roll_per_steepness + other.mu_roll_per_steepness,
             load_left: self.load_left + other.load_left,
+            load_left_per_tilt: self.load_left_per_tilt + other.load_left_per_tilt,
             force_n: self.force_n.zip(other.force_n).map(|(a, b)| a + b),
+            lifting_n: self.lifting_n.zip(other.lifting_n).map(|(a, b)| a + b),
             motor_k: self.motor_k.zip(other.motor_k).map(|(a, b)| a + b),
             regeneration: self.regeneration + other.regeneration,
             standing_w: self.standing_w + other.standing_w,
@@ -205,13 +215,12 @@ mod tests {
         let marble = &robot.surfaces["marble"];
         for mechanism in ALL {
             let seen = |values: &[f64]| {
-                let motion = Motion::of_body(&robot, 0.5, 0.4);
+                let motion = Motion::of_body(&robot, 0.5, 0.4).heading(0.7);
                 let mut moment = Moment {
                     motion,
                     acceleration: Acceleration { forward_mps2: 0.1, yaw_radps2: 0.1 },
                     rim_mps2: Sides { left: 0.05, right: 0.15 },
                     attitude: Attitude { pitch_rad: -0.25, roll_rad: 0.1 },
-                    heading_rad: 0.7,
                     loss_w: Sides::both(10.0),
                 };
                 mechanism.measure(values, &mut moment);
@@ -228,8 +237,10 @@ mod tests {
                     c,
                     &adjustment,
                 );
-                let (normal, along) = (moment.attitude.weight_normal(), moment.attitude.weight_along());
-                let power = manoeuvre.power_on_grade(normal, along, moment.acceleration);
+                let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
+                // What follows the slope stands in the adjustment, so that a planner may prepare it once for all slopes.
+                let elsewhere = Moment { attitude: Attitude::LEVEL, ..moment };
+                assert_eq!(mechanism.adjust(robot, values, &elsewhere), adjustment, "{}", mechanism.name());
                 let seen_w = mechanism.reading_w(values, power.bus_w) + power.side_w.left;
                 (seen_w, mechanism.delay_s(values), moment.motion.speed_mps)
             };

@@ -34,9 +34,9 @@ impl Mechanism for TowedLoad {
     }
 
     fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
-        let lifting_mps2 = STANDARD_GRAVITY_MPS2 * moment.attitude.weight_along();
         let rolling_n = values[0] * rolling::direction(moment.motion.speed_mps);
-        let force_n = rolling_n + values[1] * (lifting_mps2 + moment.acceleration.forward_mps2);
-        Adjustment { force_n: Sides::both(force_n / 2.0), ..Adjustment::default() }
+        let force_n = rolling_n + values[1] * moment.acceleration.forward_mps2;
+        let lifting_n = Sides::both(values[1] * STANDARD_GRAVITY_MPS2 / 2.0);
+        Adjustment { force_n: Sides::both(force_n / 2.0), lifting_n, ..Adjustment::default() }
     }
 }

@@ -40,8 +40,10 @@ impl Mechanism for Wind {
     }
 
     fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
-        let (sin, cos) = moment.heading_rad.sin_cos();
-        let along_mps = if moment.heading_rad.is_finite() { values[1] * cos + values[2] * sin } else { 0.0 };
+        let along_mps = moment.motion.heading_rad.map_or(0.0, |heading_rad| {
+            let (sin, cos) = heading_rad.sin_cos();
+            values[1] * cos + values[2] * sin
+        });
         let towards_mps = moment.motion.speed_mps - along_mps;
         let force_n = 0.5 * AIR_KG_PER_M3 * values[0] * towards_mps * towards_mps.abs();
         Adjustment { force_n: Sides::both(force_n / 2.0), ..Adjustment::default() }

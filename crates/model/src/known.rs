@@ -1,0 +1,314 @@
+//! Mechanisms that a robot's file carries: what a diagnosis found and the fields beside them cannot hold.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    Acceleration, Attitude, Error, Motion, Robot, STANDARD_GRAVITY_MPS2, Sides,
+    mechanism::{self, Adjustment, Kind, Mechanism, Moment},
+    robot::Surface,
+};
+
+/// A mechanism at values, as a robot or one of its surfaces has it.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(try_from = "KnownMechanismFile", into = "KnownMechanismFile")]
+pub struct KnownMechanism {
+    mechanism: &'static dyn Mechanism,
+    values: Vec<f64>,
+}
+
+/// A mechanism in a robot's file: its name and all of its parameters by name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct KnownMechanismFile {
+    /// Name of a mechanism of physics, as a diagnosis reports it.
+    pub mechanism: String,
+    /// Its parameters, each named with its unit.
+    pub parameters: BTreeMap<String, f64>,
+}
+
+/// Mechanisms that a surface may have: those that change its friction and nothing else.
+const OF_GROUND: [&str; 4] =
+    ["soft_soil", "surface_change", "speed_dependent_friction", "grade_dependent_friction"];
+
+impl KnownMechanism {
+    /// A mechanism at values in the order of its parameters.
+    pub fn new(mechanism: &'static dyn Mechanism, values: Vec<f64>) -> Self {
+        KnownMechanism { mechanism, values }
+    }
+
+    /// Which.
+    pub fn mechanism(&self) -> &'static dyn Mechanism {
+        self.mechanism
+    }
+
+    /// Values of its parameters, in their order.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Whether a surface may have it.
+    pub fn is_of_ground(mechanism: &dyn Mechanism) -> bool {
+        OF_GROUND.contains(&mechanism.name())
+    }
+
+    /// Whether a robot's file can have it: physics that no field of the file is there for.
+    pub fn fits_file(mechanism: &dyn Mechanism) -> bool {
+        mechanism.kind() == Kind::Physics && mechanism.name() != "center_of_mass"
+    }
+}
+
+impl std::fmt::Debug for KnownMechanism {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {:?}", self.mechanism.name(), self.values)
+    }
+}
+
+impl PartialEq for KnownMechanism {
+    fn eq(&self, other: &Self) -> bool {
+        self.mechanism.name() == other.mechanism.name() && self.values == other.values
+    }
+}
+
+impl From<KnownMechanism> for KnownMechanismFile {
+    fn from(known: KnownMechanism) -> Self {
+        let named = known.mechanism.parameters().iter().map(|p| p.name.to_owned());
+        KnownMechanismFile {
+            mechanism: known.mechanism.name().to_owned(),
+            parameters: named.zip(known.values).collect(),
+        }
+    }
+}
+
+impl TryFrom<KnownMechanismFile> for KnownMechanism {
+    type Error = String;
+
+    fn try_from(file: KnownMechanismFile) -> Result<Self, String> {
+        let name = &file.mechanism;
+        let fitting = || mechanism::ALL.into_iter().filter(|m| KnownMechanism::fits_file(*m));
+        let Some(mechanism) = fitting().find(|m| m.name() == name) else {
+            let known: Vec<&str> = fitting().map(Mechanism::name).collect();
+            let known = known.join(", ");
+            return Err(match mechanism::by_name(name).map(Mechanism::kind) {
+                None => format!("there is no mechanism `{name}`; a robot may have {known}"),
+                Some(Kind::Measurement) => {
+                    format!("`{name}` is a fault of a recording, not of a robot: mend it there")
+                }
+                Some(Kind::Physics) => {
+                    format!("write what `{name}` says into the field `{name}` of the robot")
+                }
+            });
+        };
+        let wanted = mechanism.parameters();
+        if let Some(unknown) = file.parameters.keys().find(|name| !wanted.iter().any(|p| p.name == **name)) {
+            let names: Vec<&str> = wanted.iter().map(|p| p.name).collect();
+            return Err(format!("`{name}` has no parameter `{unknown}`; it has {}", names.join(", ")));
+        }
+        let value = |p: &mechanism::Parameter| {
+            let value =
+                *file.parameters.get(p.name).ok_or(format!("`{name}` lacks its parameter `{}`", p.name))?;
+            let [low, high] = p.bounds;
+            let hint = if p.unit == "1" { "give a ratio".to_owned() } else { format!("give {}", p.unit) };
+            if (low..=high).contains(&value) {
+                Ok(value)
+            } else {
+                Err(format!("`{}` of `{name}` is {value}, must be {low} to {high}; {hint}", p.name))
+            }
+        };
+        let values = wanted.iter().map(value).collect::<Result<_, _>>()?;
+        Ok(KnownMechanism { mechanism, values })
+    }
+}
+
+impl Moment {
+    /// Steady motion on level ground, with cold motors.
+    pub fn steady(motion: Motion) -> Self {
+        Moment {
+            motion,
+            acceleration: Acceleration::NONE,
+            rim_mps2: Sides::both(0.0),
+            attitude: Attitude::LEVEL,
+            loss_w: Sides::both(0.0),
+        }
+    }
+}
+
+impl Robot {
+    /// What this robot's own mechanisms and those of a surface add at a moment.
+    #[inline]
+    pub fn adjustment(&self, surface: &Surface, moment: &Moment) -> Adjustment {
+        let mut all = Adjustment::default();
+        for known in self.mechanisms.iter().chain(&surface.mechanisms) {
+            all = all.and(known.mechanism.adjust(self, &known.values, moment));
+        }
+        all
+    }
+
+    /// Whether it has mechanisms, on any ground.
+    pub fn has_mechanisms(&self) -> bool {
+        !self.mechanisms.is_empty() || self.surfaces.values().any(|surface| !surface.mechanisms.is_empty())
+    }
+
+    /// The mass that a climb lifts: the robot's with everything that it carries and tows [kg].
+    pub fn lifted_mass_kg(&self) -> f64 {
+        let at_rest = Moment::steady(Motion::of_body(self, 0.0, 0.0));
+        let with = |mass_kg, known: &KnownMechanism| {
+            let adjustment = known.mechanism.adjust(self, &known.values, &at_rest);
+            mass_kg + adjustment.mass_kg + adjustment.lifting_n.sum() / STANDARD_GRAVITY_MPS2
+        };
+        self.mechanisms.iter().fold(self.mass_kg, with)
+    }
+
+    /// s of the mechanism `wheel_slip`: share by which the robot moves less than its wheels turn [-].
+    pub fn wheel_slip(&self) -> f64 {
+        let slips = self.mechanisms.iter().filter(|known| known.mechanism.name() == "wheel_slip");
+        slips.filter_map(|known| known.values.first()).sum()
+    }
+}
+
+/// Checks what the mechanisms' own reading cannot: where they stand and what they make of the robot.
+///
+/// # Errors
+/// [`Error::Mechanism`] names the place.
+pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
+    for (name, surface) in &robot.surfaces {
+        for (i, known) in surface.mechanisms.iter().enumerate() {
+            if !KnownMechanism::is_of_ground(known.mechanism) {
+                let mechanism = known.mechanism.name();
+                return Err(Error::Mechanism {
+                    field: format!("surfaces.{name}.mechanisms[{i}]"),
+                    message: format!(
+                        "`{mechanism}` is not of the ground; put it into the robot's `mechanisms`, a surface may have {}",
+                        OF_GROUND.join(", ")
+                    ),
+                });
+            }
+        }
+    }
+    let (mass_kg, slip) = (robot.lifted_mass_kg(), robot.wheel_slip());
+    let field = || "mechanisms".to_owned();
+    if mass_kg <= 0.0 {
+        let message =
+            format!("the robot would weigh {mass_kg:.1} kg with its `payload`; give a smaller negative load");
+        return Err(Error::Mechanism { field: field(), message });
+    }
+    if slip >= 1.0 {
+        let message = format!("wheels that slip by {slip:.2} do not move the robot; give less than 1 in all");
+        return Err(Error::Mechanism { field: field(), message });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::{Manoeuvre, PowerModel, builtin};
+
+    fn with(mechanisms: Value) -> Result<Robot, Error> {
+        let mut file = serde_json::to_value(builtin::husky_a200()).unwrap();
+        file["mechanisms"] = mechanisms;
+        Robot::from_json(&file.to_string())
+    }
+
+    fn bus_w(robot: &Robot, motion: Motion, attitude: Attitude) -> f64 {
+        let marble = robot.surface("marble").unwrap();
+        Manoeuvre::new(PowerModel::ForceBalance, robot, marble, motion, Sides::both(20.0))
+            .power(attitude)
+            .bus_w
+    }
+
+    #[test]
+    fn a_robot_with_mechanisms_survives_a_round_trip_and_one_without_says_nothing_of_them() {
+        let windy = json!([{"mechanism": "wind", "parameters": {"drag_area_m2": 0.8, "east_mps": -6.0, "north_mps": 0.0}}]);
+        let robot = with(windy.clone()).unwrap();
+        let written = serde_json::to_value(&robot).unwrap();
+        assert_eq!(written["mechanisms"], windy);
+        assert_eq!(Robot::from_json(&written.to_string()).unwrap(), robot);
+        assert_eq!(serde_json::to_value(builtin::husky_a200()).unwrap().get("mechanisms"), None);
+    }
+
+    #[test]
+    fn a_head_wind_costs_what_its_drag_takes_and_a_tail_wind_less() {
+        let robot = with(
+            json!([{"mechanism": "wind", "parameters": {"drag_area_m2": 0.8, "east_mps": -6.0, "north_mps": 0.0}}]),
+        )
+        .unwrap();
+        let motion = Motion::of_body(&robot, 0.5, 0.0);
+        let calm_w = bus_w(&builtin::husky_a200(), motion, Attitude::LEVEL);
+        let east_w = bus_w(&robot, motion.heading(0.0), Attitude::LEVEL);
+        let west_w = bus_w(&robot, motion.heading(std::f64::consts::PI), Attitude::LEVEL);
+        assert!(west_w < calm_w && calm_w < east_w, "{west_w} {calm_w} {east_w}");
+        // ½ ρ C_d A (6.5 m/s)² = 20.7 N at 0.5 m/s, through k2 of about 1.74, and its share of copper losses.
+        assert!(
+            (east_w - calm_w) > 1.7 * 20.7 * 0.5 && (east_w - calm_w) < 2.4 * 20.7 * 0.5,
+            "{}",
+            east_w - calm_w
+        );
+    }
+
+    #[test]
+    fn a_payload_in_the_list_is_the_same_mass_in_the_field() {
+        let listed = with(json!([{"mechanism": "payload", "parameters": {"mass_kg": 15.0}}])).unwrap();
+        let mut heavy = builtin::husky_a200();
+        heavy.mass_kg += 15.0;
+        let motion = Motion::of_body(&heavy, 0.4, 0.6);
+        let uphill = Attitude { pitch_rad: 0.1, roll_rad: 0.05 };
+        assert!((bus_w(&listed, motion, uphill) - bus_w(&heavy, motion, uphill)).abs() < 1e-9);
+        assert!((listed.lifted_mass_kg() - 105.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn slipping_wheels_turn_faster_for_the_same_way() {
+        let robot = with(json!([{"mechanism": "wheel_slip", "parameters": {"slip": 0.2}}])).unwrap();
+        let motion = Motion::of_body(&robot, 0.4, 0.5);
+        let back = Motion::of_wheels(&robot, motion.rim_speeds_mps);
+        assert!((motion.rim_speeds_mps.sum() / 2.0 - 0.5).abs() < 1e-12);
+        assert!((back.speed_mps - 0.4).abs() < 1e-12 && (back.yaw_rate_radps - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_place_and_what_to_write() {
+        let cases = [
+            (json!([{"mechanism": "winds", "parameters": {}}]), "mechanisms[0]", "wind"),
+            (json!([{"mechanism": "pitch_bias", "parameters": {}}]), "mechanisms[0]", "recording"),
+            (json!([{"mechanism": "center_of_mass", "parameters": {}}]), "mechanisms[0]", "field"),
+            (json!([{"mechanism": "payload", "parameters": {}}]), "mechanisms[0]", "lacks"),
+            (
+                json!([{"mechanism": "payload", "parameters": {"mass_kg": 1e6}}]),
+                "mechanisms[0]",
+                "-60 to 400",
+            ),
+            (json!([{"mechanism": "payload", "parameters": {"mass": 1}}]), "mechanisms[0]", "mass_kg"),
+            (
+                json!([{"mechanism": "payload", "parameters": {"mass_kg": -60}}, {"mechanism": "payload", "parameters": {"mass_kg": -60}}]),
+                "mechanisms",
+                "weigh",
+            ),
+        ];
+        for (mechanisms, place, hint) in cases {
+            let said = with(mechanisms.clone()).unwrap_err().to_string();
+            assert!(said.contains(place) && said.contains(hint), "{mechanisms}: {said}");
+        }
+    }
+
+    #[test]
+    fn ground_has_what_changes_its_friction_and_nothing_else() {
+        let on_marble = |mechanism: Value| {
+            let mut file = serde_json::to_value(builtin::husky_a200()).unwrap();
+            file["surfaces"]["marble"]["mechanisms"] = json!([mechanism]);
+            Robot::from_json(&file.to_string())
+        };
+        let soft = on_marble(json!({"mechanism": "soft_soil", "parameters": {"sinking": 0.5}})).unwrap();
+        let motion = Motion::of_body(&soft, 0.5, 0.0);
+        assert!(
+            bus_w(&soft, motion, Attitude::LEVEL) > bus_w(&builtin::husky_a200(), motion, Attitude::LEVEL)
+        );
+        let said =
+            on_marble(json!({"mechanism": "payload", "parameters": {"mass_kg": 5}})).unwrap_err().to_string();
+        assert!(said.contains("surfaces.marble.mechanisms[0]") && said.contains("soft_soil"), "{said}");
+    }
+}
