@@ -54,12 +54,16 @@ fn relative(scored: &[Scored]) -> Vec<f64> {
 }
 
 fn develop(scored: &[Scored]) {
-    let errors = relative(scored);
+    for s in scored {
+        let (driven, nominal, gross) = (s.driven_j, s.nominal_j, s.gross_j);
+        println!("  driven {driven:8.0} J, predicted {nominal:8.0} J, drawn and returned {gross:8.0} J");
+    }
+    let errors: Vec<f64> = scored.iter().map(|s| (s.driven_j - s.nominal_j) / s.gross_j).collect();
     let count = errors.len() as f64;
     let mean = errors.iter().sum::<f64>() / count;
     let square = errors.iter().map(|e| e * e).sum::<f64>() / count;
     println!(
-        "error of the model: mean {:+.2} %, root mean square {:.2} %",
+        "error of the model over what is drawn and returned: mean {:+.2} %, root mean square {:.2} %",
         100.0 * mean,
         100.0 * square.sqrt()
     );

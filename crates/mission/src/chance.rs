@@ -16,12 +16,14 @@ pub struct Doubt {
     /// Way over which that error changes [m]. Default 10, some posts of such a map: errors of neighbouring posts are nearly the
     /// same, since what they share (the flight line, the grass) is as large.
     pub elevation_scale_m: f64,
-    /// Relative one-sigma error that the power model makes though all its parameters are right. Default [`MODEL_SIGMA`].
+    /// One-sigma error that the power model makes of what the drives draw and return, though all its parameters are right, over
+    /// the sum of both. Default [`MODEL_SIGMA`].
     pub model_sigma: f64,
 }
 
-/// Relative one-sigma error of a drive's energy that is left when every parameter is known: root mean square over development
-/// seeds of drives through the independent world, whose tyres, motors and driver are others than the model's.
+/// One-sigma error of a drive's energy that is left when every parameter is known, over what the drives draw and return together:
+/// root mean square over development seeds of drives through the independent world, whose tyres, motors and driver are others
+/// than the model's.
 /// `cargo run --release -p joulepath-tests --example range_coverage -- develop` prints it.
 pub const MODEL_SIGMA: f64 = 0.03;
 
@@ -60,8 +62,8 @@ pub struct Chance {
     pub pack: Pack,
     /// Charge when it sets out, 1 full.
     pub charge: f64,
-    /// Power of the drives over what the model says of this robot.
-    pub model_factor: f64,
+    /// By how much the drives draw more, and return less, than the model says of this robot, over what it says [-].
+    pub model_error: f64,
     /// Error of the map's grade by stretches of the way.
     grade_error: Vec<f64>,
     scale_m: f64,
@@ -74,7 +76,7 @@ impl Chance {
             robot: robot.clone(),
             pack,
             charge,
-            model_factor: 1.0,
+            model_error: 0.0,
             grade_error: Vec::new(),
             scale_m: Doubt::NONE.elevation_scale_m,
         }
@@ -108,9 +110,9 @@ impl Drawn<'_> {
             motor.k2 = (motor.k2 * k2).max(1.0);
         }
         changed.mass_kg *= factor(u.mass_kg);
-        let model_factor = factor(doubt.model_sigma);
         let pack = Pack::new(battery, factor(battery.capacity_sigma));
         let charge = (charge + battery.charge_sigma * normal()).clamp(0.0, 1.0);
+        let model_error = doubt.model_sigma * normal();
         let grade_error = match doubt.elevation_sigma_m {
             0.0 => Vec::new(),
             sigma_m => {
@@ -123,6 +125,6 @@ impl Drawn<'_> {
                 (0..stretches).map(|_| grade()).collect()
             }
         };
-        Chance { robot: changed, pack, charge, model_factor, grade_error, scale_m: doubt.elevation_scale_m }
+        Chance { robot: changed, pack, charge, model_error, grade_error, scale_m: doubt.elevation_scale_m }
     }
 }

@@ -148,7 +148,7 @@ impl Journey {
 impl Traveller<'_> {
     fn step(&mut self, step: &Step) -> f64 {
         let winding_c = self.out.heat.map(|h| h.winding_c);
-        let Some((manoeuvre, power)) = self.power(step, winding_c) else { return self.out.least_voltage_v };
+        let Some((power, standing_w)) = self.power(step, winding_c) else { return self.out.least_voltage_v };
         let losses = losses_w(&self.chance.robot, &power, winding_c);
         let ambient_c = self.conditions.ambient_c;
         for (motor, (copper_w, gear_w)) in
@@ -157,40 +157,39 @@ impl Traveller<'_> {
             motor.advance(&self.thermal, copper_w, gear_w, ambient_c, step.duration_s);
             self.out.hottest_c = self.out.hottest_c.max(motor.winding_c);
         }
-        let standing_w = manoeuvre.kernel().standing_w;
-        let drives_w = self.chance.model_factor * (power.bus_w - standing_w);
+        let drives_w = power.bus_w - standing_w;
+        let drives_w = drives_w + self.chance.model_error * drives_w.abs();
         let delivered = self.deliver(standing_w + drives_w, step.duration_s);
-        self.sag(&manoeuvre, &power, step, standing_w, delivered.voltage_v);
+        self.sag(&power, step, standing_w, delivered.voltage_v);
         delivered.voltage_v
     }
 
-    /// The manoeuvre and its power on the ground as it may be.
-    fn power(&mut self, step: &Step, winding_c: Sides<f64>) -> Option<(Manoeuvre, Power)> {
+    /// The power on the ground as it may be, and how much of it is hotel load and electronics [W].
+    fn power(&mut self, step: &Step, winding_c: Sides<f64>) -> Option<(Power, f64)> {
         let kind = &self.journey.kinds[step.kind];
-        let fresh = |at_c: &Sides<f64>| {
-            (at_c.left - winding_c.left).abs() < STALE_K && (at_c.right - winding_c.right).abs() < STALE_K
+        let stale = |(at_c, _): &(Sides<f64>, Manoeuvre)| {
+            (at_c.left - winding_c.left).abs() > STALE_K || (at_c.right - winding_c.right).abs() > STALE_K
         };
-        let manoeuvre = match &self.ready[step.kind] {
-            Some((at_c, manoeuvre)) if fresh(at_c) => *manoeuvre,
-            _ => {
-                let robot = &self.chance.robot;
-                let surface = robot.surfaces.get(&self.journey.surfaces[kind.surface])?;
-                let manoeuvre = Manoeuvre::new(self.journey.model, robot, surface, kind.motion, winding_c);
-                self.ready[step.kind] = Some((winding_c, manoeuvre));
-                manoeuvre
-            }
-        };
+        let ready = &mut self.ready[step.kind];
+        if ready.as_ref().is_none_or(stale) {
+            let robot = &self.chance.robot;
+            let surface = robot.surfaces.get(&self.journey.surfaces[kind.surface])?;
+            let manoeuvre = Manoeuvre::new(self.journey.model, robot, surface, kind.motion, winding_c);
+            *ready = Some((winding_c, manoeuvre));
+        }
+        let (_, manoeuvre) = ready.as_ref()?;
         let facing = if kind.motion.speed_mps < 0.0 { -1.0 } else { 1.0 };
         let error = if step.moves { facing * self.chance.grade_error(step.middle_m) } else { 0.0 };
         let grade = Grade { along: step.grade.along + error, ..step.grade };
-        Some((manoeuvre, manoeuvre.power_on_grade(grade, Acceleration::NONE)))
+        let power = manoeuvre.power_on_grade(grade, Acceleration::NONE);
+        Some((power, manoeuvre.kernel().standing_w))
     }
 
     /// What a sagging voltage does to the drives: less speed, so that more time passes, or not enough force.
-    fn sag(&mut self, manoeuvre: &Manoeuvre, power: &Power, step: &Step, standing_w: f64, voltage_v: f64) {
+    fn sag(&mut self, power: &Power, step: &Step, standing_w: f64, voltage_v: f64) {
         let robot = &self.chance.robot;
         let share = self.chance.pack.motor_share(voltage_v);
-        let fastest_mps = manoeuvre.motion().rim_speeds_mps.map(f64::abs);
+        let fastest_mps = self.journey.kinds[step.kind].motion.rim_speeds_mps.map(f64::abs);
         let fastest_mps = fastest_mps.left.max(fastest_mps.right);
         let left_mps = share * robot.max_wheel_speed_mps;
         if fastest_mps > left_mps {

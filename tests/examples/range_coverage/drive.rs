@@ -19,7 +19,7 @@ const PILOT_SHARE: f64 = 0.6;
 const SAMPLES: usize = 1000;
 
 /// A mission drawn from a seed.
-pub struct Case {
+pub(crate) struct Case {
     planner: Planner,
     query: Query,
     heights_m: Vec<f64>,
@@ -31,19 +31,21 @@ pub struct Case {
 
 /// What was predicted and what became of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Scored {
+pub(crate) struct Scored {
     /// Driven energy at the battery's terminals [J].
-    pub driven_j: f64,
+    pub(crate) driven_j: f64,
     /// As files say [J].
-    pub nominal_j: f64,
+    pub(crate) nominal_j: f64,
     /// Ends of the predicted interval [J].
-    pub p05_j: f64,
+    pub(crate) p05_j: f64,
     /// See `p05_j` [J].
-    pub p95_j: f64,
+    pub(crate) p95_j: f64,
     /// Predicted.
-    pub success_probability: f64,
+    pub(crate) success_probability: f64,
     /// Whether the world's battery kept the reserve.
-    pub succeeded: bool,
+    pub(crate) succeeded: bool,
+    /// What the drives draw and return together, as planned [J].
+    pub(crate) gross_j: f64,
 }
 
 /// A Husky whose file says of the battery what the world's is like: no Peukert loss, which the world does not have.
@@ -61,7 +63,7 @@ fn husky() -> Robot {
 
 impl Case {
     /// Rolling ground of up to some 20 % slope and a way of 20 to 70 m over it; `None` where no path leads.
-    pub fn draw(seed: u64, scatter: f64) -> Option<Self> {
+    pub(crate) fn draw(seed: u64, scatter: f64) -> Option<Self> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let grid = Grid { rows: SIDE, columns: SIDE, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
         let (longest_m, height_m) = (random.random_range(20.0..60.0), random.random_range(0.5..5.0));
@@ -69,10 +71,10 @@ impl Case {
         let terrain = Terrain::new(grid, &heights_m).ok()?;
         let robot = husky();
         let planner = Planner::new(&terrain, &robot, Settings::of(&robot)).ok()?;
-        let mut place = || [random.random_range(8.0..72.0), random.random_range(8.0..72.0)];
-        let ends = std::iter::repeat_with(|| (place(), place()));
+        let mut place = || -> [f64; 2] { [random.random_range(8.0..72.0), random.random_range(8.0..72.0)] };
+        let mut ends = std::iter::repeat_with(|| (place(), place()));
         let ([sx, sy], [gx, gy]) =
-            ends.into_iter().find(|(s, g)| (20.0..70.0).contains(&(s[0] - g[0]).hypot(s[1] - g[1])))?;
+            ends.find(|(s, g)| (20.0..70.0).contains(&(s[0] - g[0]).hypot(s[1] - g[1])))?;
         let query = Query {
             start: Start { x_m: sx, y_m: sy, heading_rad: None },
             goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
@@ -87,7 +89,7 @@ impl Case {
 }
 
 /// Predicts and drives; `None` where no path leads or the world's pilot does not get there.
-pub fn score(case: &Case) -> Option<Scored> {
+pub(crate) fn score(case: &Case) -> Option<Scored> {
     let mut random = case.random.clone();
     let robot = &case.planner.lattice().robot;
     let battery = robot.battery?;
@@ -127,6 +129,7 @@ pub fn score(case: &Case) -> Option<Scored> {
         p05_j: found.likely.energy_j.p05,
         p95_j: found.likely.energy_j.p95,
         success_probability: found.likely.success_probability,
+        gross_j: route.total.energy_j + 2.0 * route.total.recovered_j,
         succeeded: left >= battery.reserve_fraction,
     })
 }
