@@ -62,11 +62,12 @@ fn husky() -> Robot {
 }
 
 impl Case {
-    /// Rolling ground of up to some 20 % slope and a way of 20 to 70 m over it; `None` where no path leads.
+    /// Gentle ground, on which the world's pilot keeps to the path within decimetres (on rougher ground it cuts the windings of an
+    /// energy-minimal path, and what it draws is that of another way), and a way of 20 to 70 m over it; `None` where no path leads.
     pub(crate) fn draw(seed: u64, scatter: f64) -> Option<Self> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let grid = Grid { rows: SIDE, columns: SIDE, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
-        let (longest_m, height_m) = (random.random_range(20.0..60.0), random.random_range(0.5..5.0));
+        let (longest_m, height_m) = (random.random_range(30.0..60.0), random.random_range(0.2..1.5));
         let heights_m = synthetic::relief(grid, random.random(), longest_m, height_m);
         let terrain = Terrain::new(grid, &heights_m).ok()?;
         let robot = husky();
