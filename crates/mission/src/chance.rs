@@ -25,7 +25,7 @@ pub struct Doubt {
 /// root mean square over development seeds of drives through the independent world, whose tyres, motors and driver are others
 /// than the model's.
 /// `cargo run --release -p joulepath-tests --example range_coverage -- develop` prints it.
-pub const MODEL_SIGMA: f64 = 0.03;
+pub const MODEL_SIGMA: f64 = 0.015;
 
 impl Default for Doubt {
     fn default() -> Self {

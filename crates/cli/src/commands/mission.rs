@@ -25,8 +25,8 @@ pub(crate) struct Arguments {
     /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
-    /// Places to visit, written as the start
-    #[arg(long, required = true, num_args = 1.., allow_hyphen_values = true)]
+    /// A place to visit, written as the start; give as many as there are
+    #[arg(long, required = true, allow_hyphen_values = true)]
     waypoint: Vec<Place>,
     /// Visit them in the order given
     #[arg(long)]
@@ -46,8 +46,8 @@ pub(crate) struct Arguments {
     /// What it draws for that [W]
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
     service_power_w: f64,
-    /// Chargers that may be driven to, written as the start
-    #[arg(long, num_args = 1.., allow_hyphen_values = true)]
+    /// A charger that may be driven to, written as the start; give as many as there are
+    #[arg(long, allow_hyphen_values = true)]
     charger: Vec<Place>,
     /// Power of the chargers [W]
     #[arg(long, default_value_t = 150.0)]
