@@ -343,7 +343,7 @@ impl From<&Mission> for MissionAnswer {
             weakest_leg: WeakestAnswer { to_stop, arrival_charge, margin: arrival_charge - found.reserve },
             search: MissionSearch {
                 ways_energy_j: found.ways_j,
-                least_energy_j: found.bound_j,
+                least_energy_j: found.bound_j.min(found.ways_j),
                 excess_at_most_j: (found.ways_j - found.bound_j).max(0.0),
             },
         }
