@@ -60,8 +60,13 @@ impl Place {
         StartPose { x_m, y_m, heading_rad: self.heading_deg.map(f64::to_radians) }
     }
 
+    /// The heading, counter-clockwise from east [rad].
+    pub(crate) fn heading_rad(&self) -> Option<f64> {
+        self.heading_deg.map(f64::to_radians)
+    }
+
     /// The place in metres of a map.
-    fn on(&self, grid: &Grid) -> [f64; 2] {
+    pub(crate) fn on(&self, grid: &Grid) -> [f64; 2] {
         if self.fraction { grid.at_fraction_m(self.x, self.y) } else { [self.x, self.y] }
     }
 }
@@ -203,7 +208,7 @@ pub(crate) fn patience() -> Patience {
     Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
 }
 
-fn read_map(path: &Path) -> anyhow::Result<Terrain> {
+pub(crate) fn read_map(path: &Path) -> anyhow::Result<Terrain> {
     io::read_path(path).map_err(|error| {
         let message = error.to_string();
         let named = message.contains(&path.display().to_string());
@@ -212,7 +217,7 @@ fn read_map(path: &Path) -> anyhow::Result<Terrain> {
 }
 
 /// A built-in robot's name stays a name; anything else is a file.
-fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
+pub(crate) fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
     let is_file = name.ends_with(".json") || name.contains(std::path::MAIN_SEPARATOR);
     if !is_file {
         return Ok(RobotChoice::Name(name.to_owned()));

@@ -28,10 +28,24 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// 2 for wrong input, 3 for no path or none within limits, 1 for anything else.
+/// A battery that does not last: an answer, which has been printed, and an exit status of its own.
+#[derive(Debug)]
+pub(crate) struct OutOfCharge(pub(crate) String);
+
+impl fmt::Display for OutOfCharge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for OutOfCharge {}
+
+/// 2 for wrong input, 3 for no path, none within limits or out of charge, 1 for anything else.
 pub(crate) fn exit_code(error: &anyhow::Error) -> ExitCode {
     let code = if error.downcast_ref::<BadInput>().is_some() {
         2
+    } else if error.downcast_ref::<OutOfCharge>().is_some() {
+        3
     } else if let Some(Refused(problem)) = error.downcast_ref::<Refused>() {
         match problem.kind {
             ProblemType::NoPath | ProblemType::LimitsContradict => 3,

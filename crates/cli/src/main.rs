@@ -33,6 +33,10 @@ enum Command {
     Matrix(commands::matrix::Arguments),
     /// Find the ground within energies or charges of a place
     Reachable(commands::reachable::Arguments),
+    /// Tell whether the battery lasts to a goal and back
+    Range(commands::range::Arguments),
+    /// Plan many stops on a charge, in the best order
+    Mission(commands::mission::Arguments),
     /// Compare the power that recorded drives drew with what the robot's model says
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
@@ -59,6 +63,8 @@ fn main() -> ExitCode {
         Command::Alternatives(arguments) => commands::alternatives::run(&arguments),
         Command::Matrix(arguments) => commands::matrix::run(&arguments),
         Command::Reachable(arguments) => commands::reachable::run(&arguments),
+        Command::Range(arguments) => commands::range::run(&arguments),
+        Command::Mission(arguments) => commands::mission::run(&arguments),
         Command::Predict(arguments) => commands::predict::run(&arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),

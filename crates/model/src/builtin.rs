@@ -46,7 +46,7 @@ pub fn husky_a200() -> Robot {
         },
         hotel_power_w: 0.0,
         drive_electronics_w: 0.0,
-        battery: Some(Battery { capacity_wh: 480.0, nominal_voltage_v: 24.0, reserve_fraction: 0.2 }),
+        battery: Some(Battery::lead_acid(480.0, 24.0, 0.2)),
         limits: Limits { max_side_force_n: Some(600.0), max_pitch_rad: 0.52, max_roll_rad: 0.45 },
         surfaces: BTreeMap::from([("marble".into(), marble()), ("sandy_loam".into(), sandy_loam())]),
         default_surface: "marble".into(),

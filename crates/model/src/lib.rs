@@ -8,6 +8,7 @@
 //! side up, yaw rate positive turning left; power positive when drawn from the battery.
 
 mod balance;
+mod battery;
 pub mod builtin;
 mod error;
 pub mod fit;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::battery::Battery;
 use crate::{Error, Sides, known::KnownMechanism, robot_limits};
 
 /// A skid-steered robot with one motor a side.
@@ -103,20 +104,6 @@ pub struct Motor {
     /// Wheel force per motor current [N/A]; needed only for recordings of motor current.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n_per_a: Option<f64>,
-}
-
-/// The battery pack.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Battery {
-    /// Nominal capacity [Wh].
-    pub capacity_wh: f64,
-    /// Nominal voltage [V].
-    pub nominal_voltage_v: f64,
-    /// Fraction of the capacity that must stay, 0 to 1. Default 0.2.
-    #[serde(default = "reserve_fraction")]
-    pub reserve_fraction: f64,
 }
 
 /// What the robot must not be asked to do.
@@ -383,9 +370,6 @@ fn motor_constant_per_k() -> f64 {
 fn regeneration() -> f64 {
     1.0
 }
-fn reserve_fraction() -> f64 {
-    0.2
-}
 fn slip_angle_scale_rad() -> f64 {
     0.30
 }
@@ -437,6 +421,10 @@ mod tests {
             ("/surfaces/marble/mu_skid", 29.0),
             ("/limits/max_pitch_rad", 30.0),
             ("/battery/reserve_fraction", 20.0),
+            ("/battery/peukert_exponent", 11.6),
+            ("/battery/ageing_factor", 80.0),
+            ("/battery/temperature_c", 298.0),
+            ("/battery/charge_efficiency", 85.0),
             ("/center_of_mass/left_m", 0.4),
             ("/slip_track_m", 54.0),
             ("/uncertainty/k1", 5.0),

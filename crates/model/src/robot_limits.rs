@@ -3,7 +3,7 @@
 //! They are wide enough for anything from a desk toy to a mining loader and narrow enough that a
 //! value in the wrong unit (millimetres, degrees, per cent) falls outside.
 
-use crate::{Error, Robot, known};
+use crate::{Error, Robot, battery::Battery, known};
 
 const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -92,15 +92,49 @@ fn check_electrics(robot: &Robot) -> Result<(), Error> {
     within("hotel_power_w", robot.hotel_power_w, 0.0, 1e5, "give watts")?;
     within("drive_electronics_w", robot.drive_electronics_w, 0.0, 1e4, "give watts per side")?;
     if let Some(battery) = &robot.battery {
-        within("battery.capacity_wh", battery.capacity_wh, 1e-3, 1e6, "give watt hours")?;
-        within("battery.nominal_voltage_v", battery.nominal_voltage_v, 1.0, 1500.0, "give volts")?;
-        within("battery.reserve_fraction", battery.reserve_fraction, 0.0, 0.99, "give a fraction")?;
+        check_battery(battery)?;
     }
     if let Some(force) = robot.limits.max_side_force_n {
         within("limits.max_side_force_n", force, 0.1, 1e6, "give newtons")?;
     }
     within("limits.max_pitch_rad", robot.limits.max_pitch_rad, 0.001, HALF_PI, "give radians")?;
     within("limits.max_roll_rad", robot.limits.max_roll_rad, 0.001, HALF_PI, "give radians")
+}
+
+fn check_battery(b: &Battery) -> Result<(), Error> {
+    let (volts, fraction) = ("give volts", "give a fraction");
+    let nominal_v = b.nominal_voltage_v;
+    within("battery.capacity_wh", b.capacity_wh, 1e-3, 1e6, "give watt hours")?;
+    within("battery.nominal_voltage_v", nominal_v, 1.0, 1500.0, volts)?;
+    within("battery.reserve_fraction", b.reserve_fraction, 0.0, 0.99, fraction)?;
+    within("battery.peukert_exponent", b.peukert_exponent, 1.0, 2.0, "it is 1 to 1.6; 1 loses nothing")?;
+    within("battery.rated_hours", b.rated_hours, 0.1, 200.0, "give hours")?;
+    within("battery.ageing_factor", b.ageing_factor, 0.05, 1.2, "give capacity now over capacity when new")?;
+    within("battery.temperature_c", b.temperature_c, -40.0, 80.0, "give °C")?;
+    within("battery.capacity_per_k", b.capacity_per_k, 0.0, 0.05, "give 1/K")?;
+    let of_nominal = |field: &str, value: f64, min: f64, max: f64| {
+        within(
+            field,
+            value,
+            min * nominal_v,
+            max * nominal_v,
+            "give volts of the whole pack, near the nominal voltage",
+        )
+    };
+    of_nominal("battery.full_voltage_v", b.full_v(), 0.9, 1.5)?;
+    of_nominal("battery.empty_voltage_v", b.empty_v(), 0.5, b.full_v() / nominal_v)?;
+    of_nominal("battery.cutoff_voltage_v", b.cutoff_v(), 0.0, b.full_v() / nominal_v)?;
+    within("battery.internal_resistance_ohm", b.resistance_ohm(), 0.0, 1e3, "give ohms")?;
+    within(
+        "battery.charge_acceptance_per_h",
+        b.charge_acceptance_per_h,
+        0.0,
+        100.0,
+        "give current over ampere hours",
+    )?;
+    within("battery.charge_efficiency", b.charge_efficiency, 0.0, 1.0, fraction)?;
+    within("battery.capacity_sigma", b.capacity_sigma, 0.0, 1.0, "give a relative sigma, 0.05 for 5 %")?;
+    within("battery.charge_sigma", b.charge_sigma, 0.0, 0.5, "give a fraction, 0.02 for 2 %")
 }
 
 fn check_surfaces(robot: &Robot) -> Result<(), Error> {

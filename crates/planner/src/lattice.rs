@@ -87,7 +87,7 @@ impl Lattice {
         let motions = motions(robot, cell_size_m, settings.reverse);
         let footprint = Footprint::of(robot);
         let manoeuvres = |piece: &Piece, reverse: bool, heading_rad: f64| -> Vec<Manoeuvre> {
-            let motion = body_motion(robot, &settings, piece, reverse).heading(heading_rad);
+            let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
             surfaces.iter().map(|surface| manoeuvre(robot, &settings, motion, surface)).collect()
         };
         let chains = std::array::from_fn(|h| {
@@ -213,7 +213,7 @@ impl Lattice {
         heading_rad: f64,
         surface: usize,
     ) -> Manoeuvre {
-        let motion = body_motion(&self.robot, &self.settings, piece, reverse).heading(heading_rad);
+        let motion = piece_motion(&self.robot, &self.settings, piece, reverse).heading(heading_rad);
         manoeuvre(&self.robot, &self.settings, motion, &self.surfaces[surface])
     }
 
@@ -299,16 +299,28 @@ fn manoeuvre(
     Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
 }
 
-/// Body speeds on a piece: the asked speed, lowered where the outer wheel would exceed its limit.
-fn body_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
+/// Body speeds on a piece at the speed asked for.
+fn piece_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
+    body_motion(robot, settings.speed_mps, piece.radius_m(), piece.turn_rad, reverse)
+}
+
+/// Body speeds at a speed asked for and a signed radius of the path, `None` when straight: the speed is lowered where the outer
+/// wheel would exceed its limit. On the spot, where the radius is 0, `turn` tells by its sign which way.
+pub fn body_motion(
+    robot: &Robot,
+    speed_mps: f64,
+    radius_m: Option<f64>,
+    turn: f64,
+    reverse: bool,
+) -> BodyMotion {
     let half_m = robot.half_slip_track_m();
     let way = if reverse { -1.0 } else { 1.0 };
-    match piece.radius_m() {
-        None => BodyMotion::of_body(robot, way * settings.speed_mps, 0.0),
-        Some(0.0) => BodyMotion::of_body(robot, 0.0, piece.turn_rad.signum() * settings.speed_mps / half_m),
+    match radius_m {
+        None => BodyMotion::of_body(robot, way * speed_mps, 0.0),
+        Some(0.0) => BodyMotion::of_body(robot, 0.0, turn.signum() * speed_mps / half_m),
         Some(radius_m) => {
             let outer_per_speed = 1.0 + half_m / radius_m.abs();
-            let speed_mps = settings.speed_mps.min(robot.max_wheel_speed_mps / outer_per_speed);
+            let speed_mps = speed_mps.min(robot.max_wheel_speed_mps / outer_per_speed);
             BodyMotion::of_body(robot, way * speed_mps, speed_mps / radius_m)
         }
     }

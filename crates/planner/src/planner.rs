@@ -284,7 +284,7 @@ fn goal_snap(route: &Route, ends: &Ends, query: &Query) -> Snap {
 }
 
 /// Names of the surfaces that steps index: the map's, then the robot's default.
-pub(crate) fn surface_names(lattice: &Lattice) -> Vec<String> {
+pub fn surface_names(lattice: &Lattice) -> Vec<String> {
     let mut names = lattice.terrain.surfaces().map_or(Vec::new(), |s| s.names.clone());
     names.push(lattice.robot.default_surface.clone());
     names

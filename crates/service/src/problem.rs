@@ -55,6 +55,8 @@ pub enum ProblemType {
     WaypointBlocked,
     /// No path keeps all the limits asked for.
     LimitsContradict,
+    /// A deadline that no plan can keep.
+    DeadlineTooShort,
     /// The search stopped at its deadline.
     Timeout,
     /// The body or the map exceeds a limit.
@@ -115,7 +117,8 @@ impl ProblemType {
             | T::NoPath
             | T::WaypointOutsideMap
             | T::WaypointBlocked
-            | T::LimitsContradict => StatusCode::UNPROCESSABLE_ENTITY,
+            | T::LimitsContradict
+            | T::DeadlineTooShort => StatusCode::UNPROCESSABLE_ENTITY,
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
@@ -148,6 +151,7 @@ impl ProblemType {
             T::WaypointOutsideMap => "A pose lies outside the map",
             T::WaypointBlocked => "The robot cannot stand at a pose",
             T::LimitsContradict => "No path keeps the limits",
+            T::DeadlineTooShort => "The deadline is too short",
             T::Timeout => "The search ran out of time",
             T::TooLarge => "Too large",
             T::StoreFull => "The store is full",
@@ -265,6 +269,41 @@ impl Problem {
             }
             _ => Problem::new(ProblemType::Internal, error.to_string()),
         }
+    }
+
+    /// Why a question about range cannot be answered.
+    pub fn no_range(error: &mission::Error) -> Self {
+        use mission::Error as E;
+        let (kind, at) = match error {
+            E::Plan(error) => return Problem::no_plan(error),
+            E::Robot(error) => return Problem::invalid_robot(error, "/robot"),
+            E::NoBattery => (ProblemType::InvalidRobot, "/robot/battery".to_owned()),
+            E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, pointer(field)),
+            E::ReserveAboveCharge { .. } => (ProblemType::InvalidRequest, "/charge".to_owned()),
+            E::NowhereToGo => (ProblemType::NoPath, "/start".to_owned()),
+            _ => return Problem::new(ProblemType::Internal, error.to_string()),
+        };
+        Problem::new(kind, error.to_string()).at(at)
+    }
+
+    /// Why a mission cannot be planned.
+    pub fn no_mission(error: &mission::MissionError) -> Self {
+        use mission::MissionError as E;
+        let (kind, at) = match error {
+            E::Question(error) => return Problem::no_range(error),
+            E::Routing(routing::Error::Planner(error)) => return Problem::no_plan(error),
+            E::Count { list, count, most, .. } => {
+                let kind = if count > most { ProblemType::TooLarge } else { ProblemType::InvalidRequest };
+                (kind, format!("/{list}"))
+            }
+            E::Unreachable { waypoint, .. } | E::NoWayHome { waypoint, .. } => {
+                (ProblemType::NoPath, format!("/waypoints/{waypoint}"))
+            }
+            E::NoChain => (ProblemType::NoPath, "/waypoints".to_owned()),
+            E::DeadlineTooShort { .. } => (ProblemType::DeadlineTooShort, "/deadline_s".to_owned()),
+            _ => return Problem::new(ProblemType::Internal, error.to_string()),
+        };
+        Problem::new(kind, error.to_string()).at(at)
     }
 
     /// Why the planner has no path.

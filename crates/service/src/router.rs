@@ -24,8 +24,8 @@ use crate::{
     Engine,
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, plan, reachable, recordings,
-        robots, status,
+        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, mission, plan, range,
+        reachable, recordings, robots, status,
     },
 };
 
@@ -37,6 +37,7 @@ use crate::{
     ),
     tags(
         (name = "plan", description = "Paths and their energy"),
+        (name = "battery", description = "Whether a charge lasts, and for which stops"),
         (name = "maps", description = "Terrain at hand"),
         (name = "robots", description = "Robots at hand"),
         (name = "recordings", description = "Drive logs at hand"),
@@ -53,6 +54,8 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(alternatives::handler))
         .routes(routes!(matrix::handler))
         .routes(routes!(reachable::handler))
+        .routes(routes!(range::handler))
+        .routes(routes!(mission::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(robots::list))

@@ -77,9 +77,8 @@ pub struct MotorFile {
     pub force_n_per_a: Option<f64>,
 }
 
-/// The battery pack.
+/// The battery pack. What else a file says of it is for who predicts range: this world has cells of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 #[allow(missing_docs)]
 pub struct BatteryFile {
     pub capacity_wh: f64,
