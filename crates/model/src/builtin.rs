@@ -68,13 +68,13 @@ fn marble() -> Surface {
 }
 
 /// Sandy loam, as fitted to the motor currents of a Husky A200 on eight drives (BorealTC, LaRocque et al., IROS 2024):
-/// `cargo run --release -p joulepath-calibration --example husky_table`. 95 % intervals: μ_R 0.128 to 0.186, with the no-load
-/// current of the motors in it; μ_S 0.300 to 0.529; the scale, which these drives hardly determine, 0.03 to 0.26 rad.
+/// `cargo run --release -p joulepath-calibration --example husky_table`. 95 % intervals: μ_R 0.129 to 0.184, with the no-load
+/// current of the motors in it; μ_S 0.302 to 0.525; the scale, which these drives hardly determine, 0.03 to 0.25 rad.
 fn sandy_loam() -> Surface {
     Surface {
         mu_roll: 0.157,
-        mu_skid: 0.415,
-        slip_angle_scale_rad: 0.144,
+        mu_skid: 0.413,
+        slip_angle_scale_rad: 0.138,
         dogru_marques: None,
         mechanisms: Vec::new(),
     }
