@@ -10,7 +10,7 @@ fn slope_map() -> Value {
     json!({ "cell_size_m": 1.0, "rows": 16, "columns": 24, "elevation_m": (0..16).map(row).collect::<Vec<_>>() })
 }
 
-fn question(extra: Value) -> Value {
+fn question(extra: &Value) -> Value {
     let mut question = json!({ "map": slope_map(), "robot": "husky-a200" });
     question.as_object_mut().unwrap().extend(extra.as_object().unwrap().clone());
     question
@@ -28,9 +28,9 @@ fn goal() -> Value {
 fn a_matrix_holds_what_plans_hold() {
     let server = Server::start();
     let poses = json!([start(), goal(), { "x_m": 12.5, "y_m": 4.5 }]);
-    let answer = server.post_json("/v1/matrix", &question(json!({ "sources": poses })));
+    let answer = server.post_json("/v1/matrix", &question(&json!({ "sources": poses })));
     assert_eq!(answer.status, 200, "{}", answer.text);
-    let plan = server.post_json("/v1/plan", &question(json!({ "start": start(), "goal": goal() }))).json();
+    let plan = server.post_json("/v1/plan", &question(&json!({ "start": start(), "goal": goal() }))).json();
     for field in ["energy_j", "duration_s", "distance_m"] {
         let (entry, own) = (answer.json()[field][0][1].as_f64().unwrap(), plan[field].as_f64().unwrap());
         assert!((entry - own).abs() <= 1e-9 * own, "{field}: {entry}, {own}");
@@ -41,7 +41,7 @@ fn a_matrix_holds_what_plans_hold() {
 #[test]
 fn contours_are_geojson_and_the_raster_is_a_map_again() {
     let server = Server::start();
-    let body = question(json!({ "start": start(), "kind": "out-and-back", "energies_j": [300.0, 1500.0] }));
+    let body = question(&json!({ "start": start(), "kind": "out-and-back", "energies_j": [300.0, 1500.0] }));
     let answer = server.post_json("/v1/reachable", &body);
     assert_eq!(answer.status, 200, "{}", answer.text);
     let features = answer.json()["features"].as_array().unwrap().clone();
@@ -59,9 +59,9 @@ fn limits_hold_and_those_that_no_path_keeps_are_told_with_the_least() {
     let with = |field: &str, value: f64| {
         let mut ends = ends.clone();
         ends[field] = json!(value);
-        server.post_json("/v1/plan", &question(ends))
+        server.post_json("/v1/plan", &question(&ends))
     };
-    let free = server.post_json("/v1/plan", &question(ends.clone())).json();
+    let free = server.post_json("/v1/plan", &question(&ends)).json();
     let most_s = 1.01 * free["duration_s"].as_f64().unwrap();
     assert!(with("max_time_s", most_s).json()["duration_s"].as_f64().unwrap() <= most_s);
     let problem = with("max_time_s", 1.0).problem(422, "limits-contradict");
@@ -90,7 +90,7 @@ fn a_ridge_steeper_than_the_slope_limit_is_told_from_no_path() {
 fn alternatives_trade_energy_for_time() {
     let server = Server::start();
     let ends = json!({ "start": start(), "goal": goal(), "count": 5, "epsilon": 0.0 });
-    let answer = server.post_json("/v1/alternatives", &question(ends));
+    let answer = server.post_json("/v1/alternatives", &question(&ends));
     assert_eq!(answer.status, 200, "{}", answer.text);
     let found = answer.json()["alternatives"].as_array().unwrap().clone();
     assert!(!found.is_empty());
@@ -105,23 +105,23 @@ fn alternatives_trade_energy_for_time() {
 fn what_cannot_be_asked_is_named_by_its_place() {
     let server = Server::start();
     let away = json!({ "x_m": 900.0, "y_m": 4.5 });
-    let refused = |path: &str, body: Value, status: u16, kind: &str, pointer: &str| {
+    let refused = |path: &str, body: &Value, status: u16, kind: &str, pointer: &str| {
         let problem = server.post_json(path, &question(body)).problem(status, kind);
         assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
     };
-    refused("/v1/matrix", json!({ "sources": [start(), away] }), 422, "waypoint-outside-map", "/sources/1");
-    refused("/v1/matrix", json!({ "sources": [] }), 400, "invalid-request", "/sources");
+    refused("/v1/matrix", &json!({ "sources": [start(), away] }), 422, "waypoint-outside-map", "/sources/1");
+    refused("/v1/matrix", &json!({ "sources": [] }), 400, "invalid-request", "/sources");
     let many: Vec<Value> = vec![start(); 60];
-    refused("/v1/matrix", json!({ "sources": many }), 413, "too-large", "/sources");
+    refused("/v1/matrix", &json!({ "sources": many }), 413, "too-large", "/sources");
     let reach = |extra: Value| {
         let mut body = json!({ "start": start() });
         body.as_object_mut().unwrap().extend(extra.as_object().unwrap().clone());
         body
     };
-    refused("/v1/reachable", reach(json!({})), 400, "invalid-request", "/energies_j");
+    refused("/v1/reachable", &reach(json!({})), 400, "invalid-request", "/energies_j");
     let wrong = reach(json!({ "energies_j": [10.0, -1.0] }));
-    refused("/v1/reachable", wrong, 400, "invalid-request", "/energies_j/1");
-    refused("/v1/reachable", reach(json!({ "charges": [1.5] })), 400, "invalid-request", "/charges/0");
+    refused("/v1/reachable", &wrong, 400, "invalid-request", "/energies_j/1");
+    refused("/v1/reachable", &reach(json!({ "charges": [1.5] })), 400, "invalid-request", "/charges/0");
     let outside = json!({ "start": away, "energies_j": [10.0] });
     refused("/v1/reachable", outside, 422, "start-outside-map", "/start");
     let ends = json!({ "start": start(), "goal": goal(), "count": 1 });
@@ -144,7 +144,7 @@ fn the_command_line_answers_as_the_service_does() {
     let (code, text, _) = run(&["matrix", "--source", "3.5,3.5,0", "--source", "19.5,11.5", "--json"]);
     let entry = serde_json::from_str::<Value>(&text).unwrap()["energy_j"][0][1].as_f64().unwrap();
     let plan = Server::start()
-        .post_json("/v1/plan", &question(json!({ "start": start(), "goal": goal() })))
+        .post_json("/v1/plan", &question(&json!({ "start": start(), "goal": goal() })))
         .json()["energy_j"]
         .as_f64()
         .unwrap();

@@ -128,7 +128,10 @@ pub struct CurrentModel<'a> {
 }
 
 /// What was worked out last for some of the numbers, by row.
-struct Kept<const N: usize>(RefCell<Vec<([f64; N], Rc<[f64]>)>>);
+struct Kept<const N: usize>(RefCell<Vec<Point<N>>>);
+
+/// Numbers, and what was worked out for them.
+type Point<const N: usize> = ([f64; N], Rc<[f64]>);
 
 /// Points that are kept: that at hand, and those on both sides of it along two numbers, in the order in which derivatives are taken.
 const KEPT_POINTS: usize = 5;

@@ -37,8 +37,11 @@ pub struct Problem<'a> {
     /// Errors beyond so many sigmas count linearly rather than squared.
     pub largest: f64,
     /// Predicts what was recorded from all parameters.
-    pub predict: &'a dyn Fn(&[f64]) -> Result<Vec<f64>, Error>,
+    pub predict: Predict<'a>,
 }
+
+/// What would have been recorded of all parameters.
+pub type Predict<'a> = &'a dyn Fn(&[f64]) -> Result<Vec<f64>, Error>;
 
 /// A solution.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use recording::PowerForm;
 use crate::{
     Drives, Error,
     field::{applied, known_before, with_new_ground},
-    fit::{Fit, Problem},
+    fit::{Fit, Predict, Problem},
     folds,
     noise::{LARGEST, Noise},
     power::{PowerModel, seen_w},
@@ -99,7 +99,7 @@ struct Data<'a> {
     recorded: &'a [f64],
     block: &'a [usize],
     series: &'a [usize],
-    predict: &'a dyn Fn(&[f64]) -> Result<Vec<f64>, Error>,
+    predict: Predict<'a>,
 }
 
 impl<'a> Data<'a> {

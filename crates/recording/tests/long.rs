@@ -75,9 +75,9 @@ fn parquet_and_mcap_beyond_their_room_become_means_on_the_same_lines() {
     {
         let path = folder.path().join(name);
         if format == Format::Parquet {
-            write_parquet(&path)
+            write_parquet(&path);
         } else {
-            write_mcap(&path)
+            write_mcap(&path);
         }
         let read = |room| read_file(File::open(&path).unwrap(), format, "long", map, &unwatched(), room);
         assert_eq!(read(Room::default()).unwrap().recording.rows(), ROWS, "{name}");
