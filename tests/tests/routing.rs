@@ -123,9 +123,9 @@ fn what_cannot_be_asked_is_named_by_its_place() {
     refused("/v1/reachable", &wrong, 400, "invalid-request", "/energies_j/1");
     refused("/v1/reachable", &reach(json!({ "charges": [1.5] })), 400, "invalid-request", "/charges/0");
     let outside = json!({ "start": away, "energies_j": [10.0] });
-    refused("/v1/reachable", outside, 422, "start-outside-map", "/start");
+    refused("/v1/reachable", &outside, 422, "start-outside-map", "/start");
     let ends = json!({ "start": start(), "goal": goal(), "count": 1 });
-    refused("/v1/alternatives", ends, 400, "invalid-request", "/count");
+    refused("/v1/alternatives", &ends, 400, "invalid-request", "/count");
     assert!(server.get("/v1/status").json()["limits"]["matrix_entries"].is_u64());
 }
 
