@@ -18,21 +18,33 @@ export function plain(value: number): string {
 export const metres = (value_m: number) =>
   Math.abs(value_m) >= 10_000 ? `${digits(value_m / 1000, 1)}${THIN}km` : `${digits(value_m, Math.abs(value_m) < 100 ? 1 : 0)}${THIN}m`;
 
+export interface EnergyUnit {
+  name: string;
+  joules: number;
+}
+
+/** The unit in which an energy is short to write. */
+export function energyUnit(value_j: number): EnergyUnit {
+  if (Math.abs(value_j) >= 1e6) return { name: "MJ", joules: 1e6 };
+  return Math.abs(value_j) >= 1000 ? { name: "kJ", joules: 1000 } : { name: "J", joules: 1 };
+}
+
 export function energy(value_j: number): string {
-  if (Math.abs(value_j) >= 1e6) return `${digits(value_j / 1e6, 2)}${THIN}MJ`;
-  return Math.abs(value_j) >= 1000 ? `${digits(value_j / 1000, 1)}${THIN}kJ` : `${digits(value_j, 0)}${THIN}J`;
+  const { name, joules } = energyUnit(value_j);
+  return `${digits(value_j / joules, name === "J" ? 0 : name === "kJ" ? 1 : 2)}${THIN}${name}`;
 }
 
 export const power = (value_w: number) => `${digits(value_w, Math.abs(value_w) < 100 ? 1 : 0)}${THIN}W`;
 export const percent = (share: number, places = 0) => `${digits(100 * share, places)}${THIN}%`;
 export const degrees = (value_rad: number, places = 1) => `${digits((value_rad * 180) / Math.PI, places)}°`;
 
-/** Minutes and seconds, or hours and minutes. */
-export function duration(value_s: number): string {
+/** Minutes and seconds. */
+export function clock(value_s: number): string {
   const whole = Math.round(value_s);
-  const pair = (a: number, b: number) => `${a}:${String(b).padStart(2, "0")}`;
-  return whole < 3600 ? `${pair(Math.floor(whole / 60), whole % 60)}${THIN}min` : `${pair(Math.floor(whole / 3600), Math.floor((whole % 3600) / 60))}${THIN}h`;
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
+
+export const duration = (value_s: number) => `${clock(value_s)}${THIN}min`;
 
 export function bytes(count: number): string {
   if (count < 1e3) return `${count}${THIN}B`;
@@ -41,3 +53,6 @@ export function bytes(count: number): string {
 
 /** `motor_heating` as words. */
 export const words = (name: string) => name.replaceAll("_", " ");
+
+/** `left_n` with its unit N as words, without the unit that stands beside it. */
+export const quantity = (name: string, unit: string) => words(unit === "1" ? name : name.replace(/_[a-z0-9]+$/, ""));

@@ -1,5 +1,5 @@
 /** One mechanism that was left out: how big, how sure, and what else it could be. */
-import { percent, plain, power, words } from "../format";
+import { percent, plain, power, quantity, words } from "../format";
 import { Fact } from "./recordings";
 import type { Finding } from "./report";
 
@@ -43,7 +43,7 @@ function Parameter({ name, value, unit, interval_95 }: Finding["parameters"][num
   const shownUnit = unit === "1" ? "" : unit;
   return (
     <li>
-      <span>{words(name)}</span>
+      <span>{quantity(name, unit)}</span>
       <span class="number">
         <b>
           {plain(value)} {shownUnit}

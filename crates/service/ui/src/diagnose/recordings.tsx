@@ -10,9 +10,16 @@ import { job, leave, problem, take, taken, takeStored, type Role, type Taken } f
 
 const ENDINGS = ".csv,.tsv,.parquet,.mcap,.bag";
 
+const POWER_FORMS: Record<string, string> = {
+  sides: "both sides",
+  battery: "the battery",
+  current_and_voltage: "current and voltage",
+  motor_currents: "motor currents",
+};
+
 const ROLES: { role: Role; label: string; about: string }[] = [
   { role: "suspect", label: "Drop the suspect drives here", about: "CSV, Parquet, MCAP or ROS 1 bag, two minutes of driving at least" },
-  { role: "healthy", label: "Drop healthy drives here", about: "Optional: the same robot when all was well. They make it far sharper" },
+  { role: "healthy", label: "Drop healthy drives here", about: "Optional: the same robot when all was well. Makes it far sharper" },
 ];
 
 export function Recordings() {
@@ -91,7 +98,7 @@ function Reading({ report }: { report: ReadingReport }) {
         <Fact name="Drives" value={String(report.runs.length)} />
         <Fact name="Time" value={duration(seconds)} />
         <Fact name="Rate" value={rate_hz ? `${plain(rate_hz)} Hz` : "–"} />
-        <Fact name="Power by" value={report.power_form ? words(report.power_form.replaceAll("-", " ")) : "–"} />
+        <Fact name="Power by" value={POWER_FORMS[report.power_form ?? ""] ?? "nothing"} />
       </dl>
       {warnings.length > 0 ? (
         <ul class="warnings">

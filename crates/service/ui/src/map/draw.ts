@@ -7,8 +7,8 @@ import { toPixel, type Size, type View } from "./view";
 /** How each path is drawn; dashes tell them apart without colour. */
 export const STYLE: Record<Objective | "former", { color: string; dash: number[]; name: string }> = {
   energy: { color: "path-energy", dash: [], name: "Energy-minimal" },
-  distance: { color: "path-distance", dash: [9, 6], name: "Shortest" },
-  time: { color: "path-time", dash: [2, 6], name: "Fastest" },
+  distance: { color: "path-distance", dash: [10, 9], name: "Shortest" },
+  time: { color: "path-time", dash: [1, 7], name: "Fastest" },
   former: { color: "path-former", dash: [12, 4, 2, 4], name: "Before correction" },
 };
 
@@ -51,33 +51,37 @@ export function drawContours(scene: Scene, contours: Contour[]): void {
   });
 }
 
-function drawPath(scene: Scene, poses: Pose[], style: keyof typeof STYLE, isFocus: boolean): void {
-  const { context, color } = scene;
-  const { color: name, dash } = STYLE[style];
-  const width = isFocus ? 4 : 3;
+const FOCUS_PX = 4;
+const OTHER_PX = 3;
+/** A pale rim keeps every colour readable on every ground. */
+const RIM_PX = 1.5;
+
+interface Drawn {
+  style: keyof typeof STYLE;
+  poses: Pose[];
+  width: number;
+}
+
+function stroke(scene: Scene, { poses, width }: Drawn, color: string, dash: number[]): void {
+  const { context } = scene;
   context.beginPath();
   trace(scene, poses.map((p) => [p.x_m, p.y_m]));
   context.lineJoin = "round";
   context.lineCap = "round";
-  // A pale rim keeps every colour readable on every ground.
-  context.setLineDash([]);
-  context.strokeStyle = color("casing");
-  context.lineWidth = width + 3;
-  context.globalAlpha = 0.85;
-  context.stroke();
-  context.globalAlpha = 1;
   context.setLineDash(dash);
-  context.strokeStyle = color(name);
+  context.strokeStyle = color;
   context.lineWidth = width;
   context.stroke();
   context.setLineDash([]);
 }
 
-/** All paths, the one in focus on top. */
+/** All paths, the one in focus on top; between the dashes of one, another that runs below it shows. */
 export function drawPaths(scene: Scene, plans: Record<Objective, Plan>, former: Plan | null, focus: Objective): void {
-  if (former) drawPath(scene, former.poses, "former", false);
   const order = [...OBJECTIVES].reverse().sort((a, b) => Number(a === focus) - Number(b === focus));
-  for (const objective of order) drawPath(scene, plans[objective].poses, objective, objective === focus);
+  const all: Drawn[] = order.map((style) => ({ style, poses: plans[style].poses, width: style === focus ? FOCUS_PX : OTHER_PX }));
+  if (former) all.unshift({ style: "former", poses: former.poses, width: OTHER_PX });
+  for (const drawn of all) stroke(scene, { ...drawn, width: drawn.width + 2 * RIM_PX }, scene.color("casing"), []);
+  for (const drawn of all) stroke(scene, drawn, scene.color(STYLE[drawn.style].color), STYLE[drawn.style].dash);
 }
 
 /** Length of the heading handle [px]. */

@@ -36,8 +36,12 @@ export function onMap(place: Place): Place {
   return { ...place, x_m: within(place.x_m, west_m, width_m), y_m: within(place.y_m, south_m, height_m) };
 }
 
+/** To the millimetre, as links write it: a link then means the very same place. */
+const rounded = (value_m: number) => Number(value_m.toFixed(3));
+
 export function setEnd(end: End, place: Place): void {
-  state[end].value = onMap(place);
+  const { x_m, y_m, ...heading } = onMap(place);
+  state[end].value = { x_m: rounded(x_m), y_m: rounded(y_m), ...heading };
   state.along_m.value = null;
 }
 

@@ -1,7 +1,7 @@
 /** The answer: one sentence, three paths side by side, and the charge that is left. */
 import type { Objective, Plan } from "../api/plans";
 import { OBJECTIVES } from "../api/plans";
-import { duration, energy, metres, percent } from "../format";
+import { clock, energy, energyUnit, metres, percent, type EnergyUnit } from "../format";
 import { STYLE } from "../map/draw";
 import { ProblemCard } from "../widgets/problem_card";
 import { arrivalCharge } from "./charge";
@@ -12,8 +12,10 @@ export function Answer() {
   const plans = state.comparison.value;
   if (state.problem.value) return <ProblemCard problem={state.problem.value} />;
   if (!plans) return <NoAnswer />;
+  const unit = energyUnit(plans.distance.energy_j);
   return (
-    <section class="answer" aria-label="Paths compared" aria-busy={state.isPlanning.value} data-slow={followsAnswer.value}>
+    <section class="answer" aria-label="Paths compared" aria-busy={state.isPlanning.value} data-slow={followsAnswer.value && !state.isDragging.value}>
+      {followsAnswer.value && <progress class="answer-wait" aria-label="Planning" />}
       <Headline />
       <div class="answer-scroll">
         <table>
@@ -21,17 +23,25 @@ export function Answer() {
           <thead>
             <tr>
               <th scope="col">Path</th>
-              <th scope="col">Energy</th>
-              <th scope="col">Time</th>
-              <th scope="col">Length</th>
-              <th scope="col">Climb</th>
+              <th scope="col">
+                Energy <small>{unit.name}</small>
+              </th>
+              <th scope="col">
+                Time <small>min</small>
+              </th>
+              <th scope="col">
+                Length <small>m</small>
+              </th>
+              <th scope="col">
+                Climb <small>m</small>
+              </th>
             </tr>
           </thead>
           <tbody>
             {OBJECTIVES.map((objective) => (
-              <Row key={objective} objective={objective} plan={plans[objective]} />
+              <Row key={objective} objective={objective} plan={plans[objective]} unit={unit} />
             ))}
-            {state.former.value && <Figures name="former" plan={state.former.value} />}
+            {state.former.value && <Figures name="former" plan={state.former.value} unit={unit} />}
           </tbody>
         </table>
       </div>
@@ -74,15 +84,35 @@ function Headline() {
           ? "The shortest path is also the energy-minimal one."
           : `The energy-minimal path saves ${energy(shortest.energy_j - best.energy_j)} against the shortest, ${detour}.`}
       </p>
+      <Correction now={best} />
     </header>
   );
 }
 
-function Row({ objective, plan }: { objective: Objective; plan: Plan }) {
-  return <Figures name={objective} plan={plan} isChosen={state.focus.value === objective} choose={() => (state.focus.value = objective)} />;
+/** What a correction of the robot has changed. */
+function Correction({ now }: { now: Plan }) {
+  const before = state.former.value;
+  if (!before) return null;
+  const more_j = now.energy_j - before.energy_j;
+  const size = `${energy(Math.abs(more_j))} (${percent(Math.abs(more_j / before.energy_j), 1)})`;
+  return (
+    <p class="correction">
+      With the corrected robot {size} {more_j < 0 ? "less" : "more"} than its file predicted before.
+    </p>
+  );
 }
 
-function Figures({ name, plan, isChosen, choose }: { name: keyof typeof STYLE; plan: Plan; isChosen?: boolean; choose?: () => void }) {
+interface RowProps {
+  plan: Plan;
+  unit: EnergyUnit;
+}
+
+function Row({ objective, ...row }: RowProps & { objective: Objective }) {
+  return <Figures name={objective} isChosen={state.focus.value === objective} choose={() => (state.focus.value = objective)} {...row} />;
+}
+
+function Figures({ name, plan, unit, isChosen, choose }: RowProps & { name: keyof typeof STYLE; isChosen?: boolean; choose?: () => void }) {
+  const written = (value_j: number) => (value_j / unit.joules).toFixed(1);
   const [low, high] = plan.energy_interval_j;
   const label = (
     <>
@@ -102,14 +132,14 @@ function Figures({ name, plan, isChosen, choose }: { name: keyof typeof STYLE; p
         )}
       </th>
       <td>
-        <b>{energy(plan.energy_j)}</b>
+        <b>{written(plan.energy_j)}</b>
         <small title="95 % interval, from what is not known of the robot exactly">
-          {energy(low).split("\u202f")[0]} – {energy(high)}
+          {written(low)} – {written(high)}
         </small>
       </td>
-      <td>{duration(plan.duration_s)}</td>
-      <td>{metres(plan.distance_m)}</td>
-      <td>{metres(plan.climb_m)}</td>
+      <td>{clock(plan.duration_s)}</td>
+      <td>{plan.distance_m.toFixed(plan.distance_m < 100 ? 1 : 0)}</td>
+      <td>{plan.climb_m.toFixed(plan.climb_m < 10 ? 1 : 0)}</td>
     </tr>
   );
 }
@@ -148,9 +178,8 @@ function Charge({ plan }: { plan: Plan }) {
 function Proof() {
   const search = state.comparison.value?.energy.search;
   if (!search) return null;
-  const text =
-    search.bound === null || search.bound <= 1.0005
-      ? "Proven: no path of the planner's lattice takes less."
-      : `Proven: no path takes less than ${percent(1 / search.bound)} of this${state.isDragging.value ? "; the best follows when you let go" : ""}.`;
+  const isLeast = search.bound === null || search.bound <= 1.0005;
+  const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
+  const text = isLeast ? "Proven: no path of the planner's lattice takes less." : state.isDragging.value ? `${near}, which follows.` : `${near}.`;
   return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
 }

@@ -4,6 +4,7 @@ import { listMaps, readCells, storeMap, type MapSummary } from "../api/maps";
 import { problemOf, type Problem } from "../api/problem";
 import { listRobots } from "../api/robots";
 import { mapType } from "../api/upload";
+import { setEnd } from "../map/ends";
 import * as state from "./state";
 
 /** How much of a map has been sent, 0 to 1; null when none is. */
@@ -68,12 +69,14 @@ export async function addSample(): Promise<void> {
   await sent(await sample.blob(), "image/tiff");
   const map = state.map.value;
   if (!map) return;
+  const middle_m = map.cell_size_m / 2;
   const at = (u: number, v: number) => ({
-    x_m: map.origin_m[0] + u * map.columns * map.cell_size_m,
-    y_m: map.origin_m[1] + v * map.rows * map.cell_size_m,
+    x_m: map.origin_m[0] + u * map.columns * map.cell_size_m + middle_m,
+    y_m: map.origin_m[1] + v * map.rows * map.cell_size_m + middle_m,
   });
-  state.start.value = at(0.08, 0.12);
-  state.goal.value = at(0.9, 0.88);
+  // The ends of `joulepath demo`.
+  setEnd("start", at(0.08, 0.12));
+  setEnd("goal", at(0.9, 0.88));
   state.tool.value = "move";
 }
 

@@ -1,8 +1,6 @@
 /** The robot and what the sliders change of it; every change is planned anew. */
 import { duration, metres, percent, words } from "../format";
 import { Slider } from "../widgets/slider";
-import { Progress } from "../widgets/progress";
-import { followsAnswer } from "./slow";
 import * as state from "./state";
 
 /** No robot is loaded with more than this share of its own mass here. */
@@ -49,7 +47,6 @@ export function Question() {
         />
       )}
       <Ground />
-      {followsAnswer.value && <Progress label="Planning" share={null} />}
       <Along />
     </section>
   );

@@ -1,5 +1,5 @@
 /** Asks anew whenever the question changes; an answer that is no longer wanted is called off. */
-import { effect } from "@preact/signals";
+import { batch, effect, untracked } from "@preact/signals";
 import { announce } from "../announce";
 import { isAbort } from "../api/ask";
 import { compare, type PlanQuestion } from "../api/plans";
@@ -25,25 +25,69 @@ export function question(known = state.robot.value): PlanQuestion | null {
   };
 }
 
-let latest = new AbortController();
+/** A question, and the same for the robot before a correction where there is one. */
+interface Asked {
+  now: PlanQuestion;
+  former: PlanQuestion | null;
+}
 
-async function answer(asked: PlanQuestion, earlier: PlanQuestion | null, signal: AbortSignal): Promise<void> {
+/** While a slider moves, an answer under way is given so long before a newer question takes its place: were each step to
+ * call off the one before, none would ever come. */
+const DRAGGED_PATIENCE_MS = 2000;
+
+let running: { controller: AbortController; since: number } | null = null;
+let waiting: { asked: Asked; timer: ReturnType<typeof setTimeout> } | null = null;
+
+function stop(): void {
+  clearTimeout(waiting?.timer);
+  waiting = null;
+  running?.controller.abort();
+  running = null;
+}
+
+function begin(asked: Asked): void {
+  stop();
+  const controller = new AbortController();
+  running = { controller, since: performance.now() };
+  state.isPlanning.value = true;
+  void answer(asked, controller.signal).finally(() => {
+    if (running?.controller !== controller) return;
+    running = null;
+    if (waiting) begin(waiting.asked);
+    else state.isPlanning.value = false;
+  });
+}
+
+function askSoon(asked: Asked): void {
+  if (!running || !state.isDragging.peek()) {
+    begin(asked);
+    return;
+  }
+  clearTimeout(waiting?.timer);
+  const left_ms = Math.max(0, running.since + DRAGGED_PATIENCE_MS - performance.now());
+  waiting = { asked, timer: setTimeout(() => begin(asked), left_ms) };
+}
+
+async function answer({ now, former }: Asked, signal: AbortSignal): Promise<void> {
   try {
-    const [found, before] = await Promise.all([compare(asked, { signal }), earlier && compare(earlier, { signal })]);
+    const [found, before] = await Promise.all([compare(now, { signal }), former && compare(former, { signal })]);
     if (signal.aborted) return;
-    state.comparison.value = found;
-    state.former.value = before?.energy ?? null;
-    state.problem.value = null;
-    if (!state.isDragging.value) {
+    batch(() => {
+      state.comparison.value = found;
+      state.former.value = before?.energy ?? null;
+      state.problem.value = null;
+    });
+    if (!state.isDragging.peek()) {
       announce(`The energy-minimal path takes ${energy(found.energy.energy_j)}, ${percent(found.saving_fraction)} less than the shortest.`);
     }
   } catch (thrown) {
     if (signal.aborted || isAbort(thrown)) return;
-    state.problem.value = problemOf(thrown);
-    state.comparison.value = null;
-    state.former.value = null;
+    batch(() => {
+      state.problem.value = problemOf(thrown);
+      state.comparison.value = null;
+      state.former.value = null;
+    });
   }
-  state.isPlanning.value = false;
 }
 
 /** Begins to follow the question. */
@@ -51,16 +95,17 @@ export function followQuestion(): void {
   effect(() => {
     const asked = question();
     const formerRobot = state.robots.value?.find(({ id }) => id === state.formerId.value);
-    const earlier = formerRobot ? question(formerRobot) : null;
+    const former = formerRobot ? question(formerRobot) : null;
     const bound = state.isDragging.value ? { bound: DRAGGED_BOUND } : {};
-    latest.abort();
-    if (!asked) {
-      state.comparison.value = null;
+    untracked(() => {
+      if (asked) {
+        askSoon({ now: { ...asked, ...bound }, former: former && { ...former, ...bound } });
+        return;
+      }
+      stop();
       state.isPlanning.value = false;
-      return;
-    }
-    latest = new AbortController();
-    state.isPlanning.value = true;
-    void answer({ ...asked, ...bound }, earlier && { ...earlier, ...bound }, latest.signal);
+      state.comparison.value = null;
+      state.former.value = null;
+    });
   });
 }

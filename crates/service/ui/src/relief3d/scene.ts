@@ -82,7 +82,7 @@ export function showRelief(element: HTMLElement): Shown | null {
       texture.anisotropy = renderer.capabilities.getMaxAnisotropy();
       terrain.add(new Mesh(geometry, new MeshBasicMaterial({ map: texture })));
       if (!isPlaced) {
-        camera.position.set(-0.9, 1.25, 1.9);
+        camera.position.set(-0.95, 1.6, 2.3);
         controls.target.set(0, 0, 0.1);
         controls.update();
         isPlaced = true;

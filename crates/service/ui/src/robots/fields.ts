@@ -24,9 +24,9 @@ function field(pointer: string, name: string, unit: string, least: number, great
 }
 
 const motor = (side: "left" | "right"): Field[] => [
-  field(`/motors/${side}/k1_w_per_n2`, `k1, ${side}`, "W/N²", 0, 10, { about: "Copper loss per squared wheel force" }),
-  field(`/motors/${side}/k2`, `k2, ${side}`, "", 1, 20, { about: "Electrical per mechanical power" }),
-  field(`/motors/${side}/force_n_per_a`, `Force per ampere, ${side}`, "N/A", 1e-3, 1e4, { isOptional: true, about: "Only for recordings of motor current" }),
+  field(`/motors/${side}/k1_w_per_n2`, "k1", "W/N²", 0, 10, { about: "Copper loss per squared wheel force" }),
+  field(`/motors/${side}/k2`, "k2", "", 1, 20, { about: "Electrical per mechanical power" }),
+  field(`/motors/${side}/force_n_per_a`, "Force per ampere", "N/A", 1e-3, 1e4, { isOptional: true, about: "Only for recordings of motor current" }),
 ];
 
 export const GROUPS: FieldGroup[] = [
@@ -50,15 +50,15 @@ export const GROUPS: FieldGroup[] = [
       field("/center_of_mass/height_m", "Height", "m", 0, 5, { about: "Above the ground" }),
     ],
   },
+  { name: "Left motor", fields: motor("left") },
+  { name: "Right motor", fields: motor("right") },
   {
-    name: "Motors",
+    name: "Both motors",
     fields: [
-      ...motor("left"),
-      ...motor("right"),
       field("/motors/regeneration", "Regeneration", "", 0, 1, { about: "Share of back-driven power that reaches the battery" }),
-      field("/motors/reference_temperature_c", "Reference temperature", "°C", -60, 150),
-      field("/motors/resistance_per_k", "Resistance per kelvin", "1/K", 0, 0.02, { about: "Copper has 0.0039" }),
-      field("/motors/motor_constant_per_k", "Motor constant per kelvin", "1/K", -0.01, 0),
+      field("/motors/reference_temperature_c", "Reference", "°C", -60, 150, { about: "Temperature at which k1 and k2 hold" }),
+      field("/motors/resistance_per_k", "Resistance", "1/K", 0, 0.02, { about: "Its rise per kelvin; copper has 0.0039" }),
+      field("/motors/motor_constant_per_k", "Motor constant", "1/K", -0.01, 0, { about: "Its rise per kelvin; magnets weaken" }),
     ],
   },
   {
@@ -95,9 +95,9 @@ export const GROUPS: FieldGroup[] = [
 export function surfaceFields(name: string): Field[] {
   const at = `/surfaces/${name.replaceAll("~", "~0").replaceAll("/", "~1")}`;
   return [
-    field(`${at}/mu_roll`, "Rolling friction μ_R", "", 0, 2, { about: "Resistance over load" }),
-    field(`${at}/mu_skid`, "Skid friction μ_S", "", 0, 3, { about: "Sideways resistance over load" }),
-    field(`${at}/slip_angle_scale_rad`, "Slip angle scale α_s", "rad", 0, HALF_PI, { isOptional: true }),
+    field(`${at}/mu_roll`, "Rolling friction μR", "", 0, 2, { about: "Resistance over load" }),
+    field(`${at}/mu_skid`, "Skid friction μS", "", 0, 3, { about: "Sideways resistance over load" }),
+    field(`${at}/slip_angle_scale_rad`, "Slip angle scale αs", "rad", 0, HALF_PI, { isOptional: true }),
   ];
 }
 
