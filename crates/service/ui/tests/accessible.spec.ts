@@ -1,15 +1,9 @@
-import { AxeBuilder } from "@axe-core/playwright";
-import { expect, openSample, test } from "./service";
+import { checkAccessible, expect, openSample, test } from "./service";
 
 for (const scheme of ["light", "dark"] as const) {
   test(`axe finds nothing serious in ${scheme} colours`, async ({ page, service }) => {
     await page.emulateMedia({ colorScheme: scheme });
-    const check = async (where: string) => {
-      const { violations } = await new AxeBuilder({ page }).analyze();
-      const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-      const said = grave.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${where}: ${id} at ${target.join(" ")}: ${failureSummary}`));
-      expect(said).toEqual([]);
-    };
+    const check = (where: string) => checkAccessible(page, where);
     await page.goto(service.url);
     await expect(page.getByRole("button", { name: "Open the sample map" })).toBeVisible();
     await check("without a map");

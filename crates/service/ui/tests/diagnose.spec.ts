@@ -1,4 +1,4 @@
-import { answered, colors, expect, openSample, picture, test } from "./service";
+import { answered, checkAccessible, colors, expect, openSample, picture, test } from "./service";
 
 const ground = { rolling: { grade: 0.04 } };
 
@@ -23,6 +23,10 @@ test("a drive is diagnosed, the corrected robot accepted, and old and new paths 
   expect(await colors(page.locator(".time-axis canvas").last())).toBeGreaterThan(10);
   expect(await colors(page.locator(".drive-map canvas"))).toBeGreaterThan(10);
   await picture(page, `diagnosis-${info.project.name}`);
+  await checkAccessible(page, "report");
+  await page.getByRole("button", { name: "Switch to dark colours" }).click();
+  await checkAccessible(page, "report in dark colours");
+  await page.getByRole("button", { name: "Switch to light colours" }).click();
 
   const link = page.url();
   expect(link).toContain("job=");

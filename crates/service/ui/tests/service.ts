@@ -4,6 +4,7 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
+import { AxeBuilder } from "@axe-core/playwright";
 import { test as base, expect, type Locator, type Page } from "@playwright/test";
 
 const repository = resolve(import.meta.dirname, "../../../..");
@@ -105,6 +106,14 @@ export async function press(page: Page, right: number, up: number): Promise<void
 export async function picture(page: Page, name: string, options: { fullPage?: boolean } = {}): Promise<void> {
   const folder = process.env.JOULEPATH_PICTURES;
   await page.screenshot({ path: folder ? join(folder, `${name}.png`) : test.info().outputPath(`${name}.png`), ...options });
+}
+
+/** Fails when axe finds what is serious or worse. */
+export async function checkAccessible(page: Page, where: string): Promise<void> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  const said = grave.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${where}: ${id} at ${target.join(" ")}: ${failureSummary}`));
+  expect(said).toEqual([]);
 }
 
 export { expect };

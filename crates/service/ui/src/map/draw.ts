@@ -2,6 +2,7 @@
 import type { Place, Plan, Pose } from "../api/plans";
 import { OBJECTIVES, type Objective } from "../api/plans";
 import type { Contour } from "../api/reachable";
+import { energy } from "../format";
 import { toPixel, type Size, type View } from "./view";
 
 /** How each path is drawn; dashes tell them apart without colour. */
@@ -30,25 +31,37 @@ function trace({ context, view, size }: Scene, points: Iterable<[number, number]
   }
 }
 
-/** Areas within reach, the nearest drawn strongest. */
+/** Contours of energy, each with how much it stands for at its northern end. */
 export function drawContours(scene: Scene, contours: Contour[]): void {
-  const { context, color } = scene;
-  contours.forEach(({ polygons }, i) => {
+  const { context, color, view, size } = scene;
+  for (const { polygons } of contours) {
     context.beginPath();
     for (const ring of polygons.flat()) {
       trace(scene, ring);
       context.closePath();
     }
-    context.globalAlpha = 0.1;
+    context.setLineDash([]);
+    context.globalAlpha = 0.07;
     context.fillStyle = color("reach");
     context.fill("evenodd");
-    context.globalAlpha = 0.95 - (0.5 * i) / Math.max(contours.length, 1);
-    context.strokeStyle = color("reach");
-    context.lineWidth = i === contours.length - 1 ? 2 : 1;
-    context.setLineDash([]);
-    context.stroke();
     context.globalAlpha = 1;
-  });
+    context.strokeStyle = color("reach");
+    context.lineWidth = 1.5;
+    context.stroke();
+  }
+  context.font = "600 11px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.lineWidth = 3;
+  context.strokeStyle = color("casing");
+  context.fillStyle = color("reach");
+  for (const { polygons, energy_j } of contours) {
+    const top = polygons.flat(2).reduce<[number, number] | null>((best, point) => (best && best[1] >= point[1] ? best : point), null);
+    if (!top) continue;
+    const { x, y } = toPixel(view, size, ...top);
+    context.strokeText(energy(energy_j), x, y);
+    context.fillText(energy(energy_j), x, y);
+  }
 }
 
 const FOCUS_PX = 4;

@@ -10,7 +10,7 @@ export interface ArrivalCharge {
   reserve: number;
 }
 
-const J_PER_WH = 3600;
+export const J_PER_WH = 3600;
 
 /** Charge less the plan's energy, by the battery's nominal capacity; null without a battery. */
 export function arrivalCharge(plan: Plan, robot: Robot, charge: number): ArrivalCharge | null {

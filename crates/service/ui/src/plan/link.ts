@@ -34,7 +34,8 @@ export function readLink(): void {
   const layer = said.get("layer");
   if (layer === "slope" || layer === "surface") state.layer.value = layer;
   state.is3d.value = said.has("3d");
-  state.wantsReach.value = said.has("reach");
+  const reach = said.get("reach");
+  state.reach.value = reach === "outward" || reach === "out-and-back" ? reach : null;
   if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
   if (said.has("job")) job.value = { id: said.get("job") ?? "", state: "queued" };
 }
@@ -53,7 +54,7 @@ function link(): string {
   say("surface", state.surface.value);
   say("layer", state.layer.value === "elevation" ? null : state.layer.value);
   if (state.is3d.value) said.set("3d", "");
-  if (state.wantsReach.value) said.set("reach", "");
+  say("reach", state.reach.value);
   say("job", job.value?.id);
   const query = said.toString().replaceAll("%2C", ",").replace(/=(?=&|$)/g, "");
   return `#${tab.value}${query ? `?${query}` : ""}`;

@@ -1,6 +1,7 @@
 /** Which map, how it is drawn, and what a click on it does. */
 import { metres } from "../format";
 import type { MapSummary } from "../api/maps";
+import type { ReachKind } from "../api/reachable";
 import { Choice } from "../widgets/choice";
 import { MAP_ENDINGS } from "./first_map";
 import { addMap, chooseMap } from "./load";
@@ -56,9 +57,15 @@ export function MapBar() {
         ]}
       />
       {state.hasReach.value && (
-        <button type="button" aria-pressed={state.wantsReach.value} onClick={() => (state.wantsReach.value = !state.wantsReach.value)}>
-          Reach
-        </button>
+        <select
+          aria-label="Contours of energy"
+          value={state.reach.value ?? ""}
+          onChange={(event) => (state.reach.value = (event.currentTarget.value as ReachKind) || null)}
+        >
+          <option value="">No contours</option>
+          <option value="outward">Reach from start</option>
+          <option value="out-and-back">Reach and back</option>
+        </select>
       )}
       <button type="button" aria-pressed={state.is3d.value} onClick={() => (state.is3d.value = !state.is3d.value)}>
         3-D

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import type { Cells, MapSummary } from "../api/maps";
 import type { Comparison, Objective, Place, Plan } from "../api/plans";
 import type { Problem } from "../api/problem";
-import type { Contour } from "../api/reachable";
+import type { Contour, ReachKind } from "../api/reachable";
 import type { KnownRobot, Robot } from "../api/robots";
 
 export type Layer = "elevation" | "slope" | "surface";
@@ -35,8 +35,8 @@ export const charge = signal(1);
 export const layer = signal<Layer>("elevation");
 export const is3d = signal(false);
 
-/** Whether contours are asked for, and whether the service has them. */
-export const wantsReach = signal(false);
+/** Which contours are wanted, and whether the service has any. */
+export const reach = signal<ReachKind | null>(null);
 export const hasReach = signal(false);
 export const contours = signal<Contour[]>([]);
 
