@@ -8,7 +8,11 @@ use serde_json::{Value, json};
 /// An answer with its headers, asked with more headers.
 fn ask(url: &str, headers: &[(&str, &str)]) -> ureq::http::Response<ureq::Body> {
     let agent: ureq::Agent = ureq::Agent::config_builder().http_status_as_error(false).build().into();
-    headers.iter().fold(agent.get(url), |request, (name, value)| request.header(*name, *value)).call().unwrap()
+    headers
+        .iter()
+        .fold(agent.get(url), |request, (name, value)| request.header(*name, *value))
+        .call()
+        .unwrap()
 }
 
 fn plan_as(server: &Server, accept: &str) -> ureq::http::Response<ureq::Body> {
@@ -61,7 +65,8 @@ fn without_the_third_dimension_the_page_takes_less_than_300_kb() {
 #[test]
 fn cells_come_as_bytes_with_the_elevations_of_the_map() {
     let server = Server::start();
-    let map = server.post("/v1/maps", "application/json", &std::fs::read(file("maps/yard.json")).unwrap()).json();
+    let map =
+        server.post("/v1/maps", "application/json", &std::fs::read(file("maps/yard.json")).unwrap()).json();
     let url = format!("{}/v1/maps/{}", server.url, map["id"].as_str().unwrap());
     let accept = [("accept", "application/octet-stream")];
     let bytes = ask(&url, &accept).body_mut().read_to_vec().unwrap();
@@ -74,7 +79,9 @@ fn cells_come_as_bytes_with_the_elevations_of_the_map() {
 
     let few = ask(&format!("{url}?max_cells=100"), &accept).body_mut().read_to_vec().unwrap();
     assert!(few.len() <= 48 + 600, "{}", few.len());
-    server.get(&format!("/v1/maps/{}?max_cells=0", map["id"].as_str().unwrap())).problem(400, "invalid-request");
+    server
+        .get(&format!("/v1/maps/{}?max_cells=0", map["id"].as_str().unwrap()))
+        .problem(400, "invalid-request");
     server.get(&format!("/v1/maps/{}?cells=9", map["id"].as_str().unwrap())).problem(400, "invalid-request");
 }
 

@@ -20,7 +20,10 @@ followQuestion();
 followReach();
 followJobs();
 keepLink();
-addEventListener("hashchange", readLink);
+addEventListener("hashchange", () => {
+  readLink();
+  void loadAll();
+});
 void loadAll();
 
 const page = document.getElementById("page");

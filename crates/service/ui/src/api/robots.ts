@@ -12,6 +12,7 @@ export interface Surface {
   mu_skid: number;
   slip_angle_scale_rad?: number;
   dogru_marques?: unknown;
+  mechanisms?: unknown;
 }
 
 export interface Robot {

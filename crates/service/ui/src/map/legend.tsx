@@ -1,7 +1,8 @@
 /** What the ground's colours mean. */
 import { degrees, metres, words } from "../format";
 import * as state from "../plan/state";
-import { ELEVATION, gradient, SLOPE, UNKNOWN } from "./ramp";
+import type { Cells } from "../api/maps";
+import { ELEVATION, gradient, OBSTACLE, SLOPE, UNKNOWN, type Rgb } from "./ramp";
 import { surfaceColor } from "./relief";
 
 export function Legend({ least, greatest }: { least: number; greatest: number }) {
@@ -20,34 +21,48 @@ export function Legend({ least, greatest }: { least: number; greatest: number })
           {written(greatest)}
         </span>
       </div>
+      {state.cells.value && <Swatches of={blockedOf(state.cells.value)} />}
     </figure>
   );
 }
 
 function Surfaces() {
-  const names = state.map.value?.surfaces ?? [];
-  const swatch = (rgb: number[]) => ({ backgroundColor: `rgb(${rgb.join(" ")})` });
+  const cells = state.cells.value;
   return (
     <figure class="legend">
       <figcaption>Surface</figcaption>
-      <ul class="legend-list">
-        {names.map((name, i) => (
-          <li key={name}>
-            <i style={swatch(surfaceColor(i))} />
-            {words(name)}
-          </li>
-        ))}
-        <li>
-          <i style={swatch(surfaceColor(255))} />
-          not named
-        </li>
-        {(state.map.value?.passable_fraction ?? 1) < 1 && (
-          <li>
-            <i style={swatch(UNKNOWN)} />
-            unknown
-          </li>
-        )}
-      </ul>
+      {cells && <Swatches of={surfacesOf(cells)} />}
     </figure>
+  );
+}
+
+interface Kind {
+  name: string;
+  rgb: Rgb;
+}
+
+/** Where nothing can drive. */
+function blockedOf({ obstacle, z_m }: Cells): Kind[] {
+  return [
+    ...(obstacle.includes(1) ? [{ name: "obstacle", rgb: OBSTACLE }] : []),
+    ...(z_m.some((z) => Number.isNaN(z)) ? [{ name: "unknown", rgb: UNKNOWN }] : []),
+  ];
+}
+
+function surfacesOf(cells: Cells): Kind[] {
+  const open = cells.surface.includes(255) ? [{ name: "left open", rgb: surfaceColor(255) }] : [];
+  return [...cells.surfaces.map((name, i) => ({ name: words(name), rgb: surfaceColor(i) })), ...open, ...blockedOf(cells)];
+}
+
+function Swatches({ of }: { of: Kind[] }) {
+  return (
+    <ul class="legend-list">
+      {of.map(({ name, rgb }) => (
+        <li key={name}>
+          <i style={{ backgroundColor: `rgb(${rgb.join(" ")})` }} />
+          {name}
+        </li>
+      ))}
+    </ul>
   );
 }

@@ -138,7 +138,7 @@ export function MapView() {
         <canvas ref={below} class="map-ground" aria-hidden="true" />
         <canvas ref={above} class="map-over" aria-hidden="true" />
       </div>
-      <p id="map-keys" class="unseen">
+      <p id="map-keys" class="map-keys">
         {KEYS}
       </p>
       {hint.value && <p class="map-hint">{hint}</p>}

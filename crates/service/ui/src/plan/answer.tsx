@@ -4,6 +4,7 @@ import { OBJECTIVES } from "../api/plans";
 import { clock, energy, energyUnit, metres, percent, type EnergyUnit } from "../format";
 import { STYLE } from "../map/draw";
 import { ProblemCard } from "../widgets/problem_card";
+import { Progress } from "../widgets/progress";
 import { arrivalCharge } from "./charge";
 import { followsAnswer } from "./slow";
 import * as state from "./state";
@@ -52,15 +53,18 @@ export function Answer() {
 }
 
 function NoAnswer() {
-  const text = !state.start.value
-    ? "Click the map where the robot starts. Drag as you click to set its heading."
-    : !state.goal.value
-      ? "Now click where it is to go."
-      : "Planning…";
+  const [start, goal] = [state.start.value, state.goal.value];
+  if (start && goal) {
+    return (
+      <section class="answer answer-none" aria-label="Paths compared" aria-busy={state.isPlanning.value}>
+        <Progress label="Planning" share={null} />
+      </section>
+    );
+  }
   return (
     <section class="answer answer-none" aria-label="Paths compared">
-      <p class="answer-big">{state.start.value && state.goal.value ? "Planning" : "Where to?"}</p>
-      <p>{text}</p>
+      <p class="answer-big">Where to?</p>
+      <p>{start ? "Now click where it is to go." : "Click the map where the robot starts. Drag as you click to set its heading."}</p>
     </section>
   );
 }

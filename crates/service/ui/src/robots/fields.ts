@@ -1,5 +1,8 @@
 /** The fields of a robot: what they mean, their units, and the ranges that the service keeps to (`robot_limits.rs` of the model). */
 
+import { words } from "../format";
+import { escaped } from "./pointer";
+
 export interface Field {
   /** JSON pointer into the robot. */
   pointer: string;
@@ -93,12 +96,27 @@ export const GROUPS: FieldGroup[] = [
 
 /** The fields of one kind of ground. */
 export function surfaceFields(name: string): Field[] {
-  const at = `/surfaces/${name.replaceAll("~", "~0").replaceAll("/", "~1")}`;
+  const at = `/surfaces/${escaped(name)}`;
   return [
     field(`${at}/mu_roll`, "Rolling friction μR", "", 0, 2, { about: "Resistance over load" }),
     field(`${at}/mu_skid`, "Skid friction μS", "", 0, 3, { about: "Sideways resistance over load" }),
     field(`${at}/slip_angle_scale_rad`, "Slip angle scale αs", "rad", 0, HALF_PI, { isOptional: true }),
   ];
+}
+
+/** A mechanism that a robot or one of its surfaces carries, as a diagnosis puts it there. */
+interface Mechanism {
+  mechanism: string;
+  parameters: Record<string, number>;
+}
+
+/** The numbers of the mechanisms under a pointer; their ranges are the service's to know. */
+export function mechanismGroups(mechanisms: unknown, at: string): FieldGroup[] {
+  if (!Array.isArray(mechanisms)) return [];
+  return (mechanisms as Mechanism[]).map(({ mechanism, parameters }, i) => ({
+    name: words(mechanism),
+    fields: Object.keys(parameters).map((name) => field(`${at}/mechanisms/${i}/parameters/${name}`, words(name), "", -Infinity, Infinity)),
+  }));
 }
 
 /** What is wrong with a value, before the service is asked. */

@@ -2,6 +2,9 @@
 
 const parts = (pointer: string) => pointer.split("/").slice(1).map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
 
+/** A name as part of a pointer. */
+export const escaped = (name: string) => name.replaceAll("~", "~0").replaceAll("/", "~1");
+
 type Branch = Record<string, unknown>;
 
 export function read(document: unknown, pointer: string): unknown {

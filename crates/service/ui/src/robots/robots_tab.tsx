@@ -1,19 +1,20 @@
 /** The Robots tab: which there are, and one of them to look at and edit. */
 import type { Robot } from "../api/robots";
-import { loadAll, loadProblem } from "../plan/load";
+import { loadProblem } from "../plan/load";
+import { Unreachable } from "../plan/plan_tab";
 import { saveFile } from "../plan/downloads";
 import * as plan from "../plan/state";
 import { words } from "../format";
 import { DropZone } from "../widgets/drop_zone";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
-import { complaint, GROUPS, surfaceFields, type FieldGroup } from "./fields";
+import { complaint, GROUPS, mechanismGroups, surfaceFields, type FieldGroup } from "./fields";
 import { NumberField } from "./number_field";
-import { read } from "./pointer";
+import { escaped, read } from "./pointer";
 import { choose, edited, isSaving, knownShown, open, problem, save, shown, use } from "./state";
 
 export function RobotsTab() {
-  if (loadProblem.value && !plan.robots.value) return <ProblemCard problem={loadProblem.value} retry={loadAll} />;
+  if (loadProblem.value && !plan.robots.value) return <Unreachable />;
   if (!plan.robots.value) return <Progress label="Fetching the robots" share={null} />;
   return (
     <div class="robots">
@@ -42,7 +43,12 @@ export function RobotsTab() {
 
 function Editor({ robot }: { robot: Robot }) {
   const surfaces = Object.keys(robot.surfaces ?? {});
-  const groups: FieldGroup[] = [...GROUPS, ...surfaces.map((name) => ({ name: `Ground: ${words(name)}`, fields: surfaceFields(name) }))];
+  const grounds = surfaces.flatMap((name): FieldGroup[] => {
+    const own = mechanismGroups(robot.surfaces[name]?.mechanisms, `/surfaces/${escaped(name)}`);
+    const group = { name: `Ground: ${words(name)}`, fields: surfaceFields(name) };
+    return [group, ...own.map((mechanism) => ({ ...mechanism, name: `${words(name)}: ${mechanism.name}` }))];
+  });
+  const groups: FieldGroup[] = [...mechanismGroups(robot.mechanisms, ""), ...GROUPS, ...grounds];
   const wrong = groups.flatMap(({ fields }) => fields).filter((field) => complaint(field, read(robot, field.pointer)));
   return (
     <form
