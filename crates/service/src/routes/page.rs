@@ -47,10 +47,10 @@ fn file(name: &str, headers: &HeaderMap) -> Response {
         return Problem::new(ProblemType::NotFound, detail).into_response();
     };
     let hash: String = metadata.sha256_hash().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-    let tag = format!("\"{hash}\"");
+    // Weak, because the bytes differ by how they are compressed.
+    let tag = format!("W/\"{hash}\"");
     let known = headers.get(header::IF_NONE_MATCH).and_then(|v| v.to_str().ok());
-    let is_known =
-        known.is_some_and(|known| known.split(',').any(|k| k.trim().trim_start_matches("W/") == tag));
+    let is_known = known.is_some_and(|known| known.split(',').any(|known| known.trim() == tag));
     // All names but that of the first file hold a hash of what is in them.
     let keep = if name == "index.html" { "no-cache" } else { "public, max-age=31536000, immutable" };
     let about = [

@@ -10,9 +10,12 @@ import "uplot/dist/uPlot.min.css";
 import "./style/tokens.css";
 import "./style/base.css";
 import "./style/controls.css";
+import "./style/map.css";
+import "./style/answer.css";
 import "./style/plan.css";
 import "./style/robots.css";
 import "./style/diagnose.css";
+import "./style/report.css";
 
 readLink();
 followMap();

@@ -1,8 +1,8 @@
 /** The Diagnose tab: recordings in, progress, report. */
 import { Problem } from "../api/problem";
-import { listRobotsOptions } from "./robot_options";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
+import { RobotSelect } from "../widgets/robot_select";
 import { Recordings } from "./recordings";
 import { ReportPage } from "./report_page";
 import { again, begin, cancel, idsOf, job, problem, robotId, taken } from "./state";
@@ -39,12 +39,7 @@ function Ask() {
       </header>
       <Recordings />
       <footer class="diagnose-start">
-        <label class="field">
-          <span>Robot that drove</span>
-          <select value={robotId.value ?? plan.robotId.value} onChange={(event) => (robotId.value = event.currentTarget.value)}>
-            {listRobotsOptions()}
-          </select>
-        </label>
+        <RobotSelect label="Robot that drove" value={robotId.value ?? plan.robotId.value} choose={(id) => (robotId.value = id)} />
         <button type="button" class="primary" disabled={!isReady} onClick={() => void begin()}>
           Diagnose
         </button>

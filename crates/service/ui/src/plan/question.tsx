@@ -1,5 +1,6 @@
 /** The robot and what the sliders change of it; every change is planned anew. */
 import { duration, metres, percent, words } from "../format";
+import { RobotSelect } from "../widgets/robot_select";
 import { Slider } from "../widgets/slider";
 import * as state from "./state";
 
@@ -53,25 +54,12 @@ export function Question() {
 }
 
 function RobotChoice() {
-  const all = state.robots.value ?? [];
   const choose = (id: string) => {
     state.robotId.value = id;
     state.formerId.value = null;
     state.surface.value = null;
   };
-  return (
-    <label class="field">
-      <span>Robot</span>
-      <select value={state.robotId.value} onChange={(event) => choose(event.currentTarget.value)}>
-        {all.map(({ id, robot, isStored }) => (
-          <option key={id} value={id}>
-            {robot.name}
-            {isStored ? ` · stored ${id.slice(0, 6)}` : ""}
-          </option>
-        ))}
-      </select>
-    </label>
-  );
+  return <RobotSelect label="Robot" value={state.robotId.value} choose={choose} />;
 }
 
 function Ground() {
