@@ -29,9 +29,9 @@ export function Relief3d() {
         status.value = "shown";
         const stops = [
           effect(() => {
-            void state.layer.value;
+            void [state.layer.value, theme.value];
             const [cells, picture] = [state.cells.value, groundPicture()];
-            if (cells && picture) shown.ground(cells, picture, stretch.value);
+            if (cells && picture) shown.ground(cells, picture, stretch.value, color("relief-tint"));
           }),
           effect(() => {
             void [theme.value, stretch.value, state.cells.value];

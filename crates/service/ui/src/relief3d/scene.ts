@@ -27,7 +27,7 @@ import { STYLE } from "../map/draw";
 const MESH_SIDE = 400;
 
 export interface Shown {
-  ground: (cells: Cells, picture: HTMLCanvasElement, stretch: number) => void;
+  ground: (cells: Cells, picture: HTMLCanvasElement, stretch: number, tint: string) => void;
   paths: (plans: Comparison | null, former: Plan | null, focus: Objective, color: (name: string) => string) => void;
   robot: (pose: Pose | null) => void;
   end: () => void;
@@ -68,21 +68,21 @@ export function showRelief(element: HTMLElement): Shown | null {
   let isPlaced = false;
   const terrain = new Group();
   const lines = new Group();
-  const robot = new Mesh(new ConeGeometry(0.022, 0.06, 4), new MeshLambertMaterial({ color: 0xffb000 }));
+  const robot = new Mesh(new ConeGeometry(0.028, 0.08, 4), new MeshLambertMaterial({ color: 0xffb000 }));
   robot.visible = false;
   scene.add(terrain, lines, robot);
 
   return {
-    ground(cells, picture, stretch) {
+    ground(cells, picture, stretch, tint) {
       const { toScene: next, geometry } = meshOf(cells, stretch);
       toScene = next;
       clear(terrain);
       const texture = new CanvasTexture(picture);
       texture.colorSpace = SRGBColorSpace;
       texture.anisotropy = renderer.capabilities.getMaxAnisotropy();
-      terrain.add(new Mesh(geometry, new MeshBasicMaterial({ map: texture })));
+      terrain.add(new Mesh(geometry, new MeshBasicMaterial({ map: texture, color: tint })));
       if (!isPlaced) {
-        camera.position.set(-0.95, 1.6, 2.3);
+        camera.position.set(-0.86, 1.45, 2.08);
         controls.target.set(0, 0, 0.1);
         controls.update();
         isPlaced = true;
