@@ -5,6 +5,7 @@ import { PlanTab } from "./plan/plan_tab";
 import { RobotsTab } from "./robots/robots_tab";
 import { tab, type Tab } from "./tab";
 import { theme, toggleTheme } from "./theme";
+import { TokenForm } from "./widgets/token_form";
 
 const NAMES: Record<Tab, string> = { plan: "Plan", robots: "Robots", diagnose: "Diagnose" };
 
@@ -31,6 +32,7 @@ export function App() {
           {theme.value === "dark" ? "☀" : "☾"}
         </button>
       </header>
+      <TokenForm />
       <main id="main" tabIndex={-1}>
         {tab.value === "plan" && <PlanTab />}
         {tab.value === "robots" && <RobotsTab />}

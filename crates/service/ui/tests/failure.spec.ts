@@ -39,3 +39,22 @@ test("a goal moved to where no path leads leaves the map usable", async ({ page,
   await press(page, info.project.name === "phone" ? 0.5 : 0.55, 0.55);
   await answered(page);
 });
+
+test("a guarded service is asked again with the token that it wants", async ({ page, service }) => {
+  await page.route("**/v1/**", (route) =>
+    route.request().headers().authorization === "Bearer secret"
+      ? route.continue()
+      : route.fulfill({
+          status: 401,
+          contentType: "application/problem+json",
+          body: JSON.stringify({ type: "unauthorized", title: "A token is needed", status: 401, detail: "this service wants a token" }),
+        }),
+  );
+  await page.goto(service.url);
+  await page.getByLabel("This service wants a token:").fill("secret");
+  await page.getByRole("button", { name: "Go on" }).click();
+  await expect(page.getByRole("button", { name: "Open the sample map" })).toBeVisible();
+  await page.getByRole("button", { name: "Open the sample map" }).click();
+  await answered(page);
+  expect(page.url()).not.toContain("secret");
+});

@@ -1,3 +1,4 @@
+import { eventsOf } from "../src/api/events";
 import { poseAt } from "../src/map/along";
 import { roundLength_m, toMetres, toPixel, zoomed } from "../src/map/view";
 import { energiesOf } from "../src/plan/reach";
@@ -47,4 +48,20 @@ test("a field is changed by its pointer and nothing else is", () => {
   expect(after.mechanisms).toEqual([{ parameters: { left_n: 3 } }]);
   expect(before.surfaces["wet/clay"].mu_roll).toBe(0.1);
   expect(changed(before, "/surfaces", undefined)).toEqual({ mechanisms: before.mechanisms });
+});
+
+test("events are read whole, however the stream is cut", async () => {
+  const text = "event: progress\nid: 1\ndata: {\"a\":1}\n\n: alive\n\nid: 2\r\ndata: {\r\ndata: }\r\n\r\n";
+  for (const length of [1, 3, 7, 1000]) {
+    const bytes = new TextEncoder().encode(text);
+    const stream = new ReadableStream<Uint8Array>({
+      start(controller) {
+        for (let at = 0; at < bytes.length; at += length) controller.enqueue(bytes.slice(at, at + length));
+        controller.close();
+      },
+    });
+    const events = [];
+    for await (const event of eventsOf(stream)) events.push({ ...event });
+    expect(events).toEqual([{ id: "1", data: '{"a":1}' }, { id: "2", data: "{\n}" }]);
+  }
 });

@@ -1,5 +1,6 @@
 /** Requests to the service. */
 import { refused, unreachable } from "./problem";
+import { authorization, noticed } from "./token";
 
 /** What a request may carry. */
 export interface Asking {
@@ -7,12 +8,14 @@ export interface Asking {
   /** Sent as JSON. */
   json?: unknown;
   accept?: string;
+  /** More header fields. */
+  headers?: Record<string, string>;
   signal?: AbortSignal;
 }
 
 /** Sends a request; whatever is not a success is thrown as a `Problem`. */
 export async function send(path: string, asking: Asking = {}): Promise<Response> {
-  const headers: Record<string, string> = { accept: asking.accept ?? "application/json" };
+  const headers: Record<string, string> = { accept: asking.accept ?? "application/json", ...authorization(), ...asking.headers };
   const init: RequestInit = { method: asking.method ?? "GET", headers };
   if (asking.signal) init.signal = asking.signal;
   if (asking.json !== undefined) {
@@ -27,6 +30,7 @@ export async function send(path: string, asking: Asking = {}): Promise<Response>
     if (asking.signal?.aborted) throw thrown;
     throw unreachable();
   }
+  noticed(response.status);
   if (!response.ok) throw refused(response.status, await response.text());
   return response;
 }

@@ -1,5 +1,6 @@
 /** Files to the service, telling how far they are. `fetch` cannot tell that yet, the older request can. */
 import { refused, unreachable } from "./problem";
+import { authorization, noticed } from "./token";
 
 /** Posts a body and reads JSON; `tell` hears the share sent, 0 to 1. */
 export function upload<T>(path: string, body: Blob, contentType: string, tell: (share: number) => void): Promise<T> {
@@ -8,9 +9,11 @@ export function upload<T>(path: string, body: Blob, contentType: string, tell: (
     request.open("POST", path);
     request.setRequestHeader("content-type", contentType);
     request.setRequestHeader("accept", "application/json");
+    for (const [name, value] of Object.entries(authorization())) request.setRequestHeader(name, value);
     request.upload.onprogress = (event) => event.lengthComputable && tell(event.loaded / event.total);
     request.onerror = () => reject(unreachable());
     request.onload = () => {
+      noticed(request.status);
       if (request.status >= 200 && request.status < 300) resolve(JSON.parse(request.responseText) as T);
       else reject(refused(request.status, request.responseText));
     };
