@@ -3,11 +3,9 @@ import { announcement } from "./announce";
 import { DiagnoseTab } from "./diagnose/diagnose_tab";
 import { PlanTab } from "./plan/plan_tab";
 import { RobotsTab } from "./robots/robots_tab";
-import { tab, type Tab } from "./tab";
+import { tab, TAB_NAMES, TABS } from "./tab";
 import { theme, toggleTheme } from "./theme";
 import { TokenForm } from "./widgets/token_form";
-
-const NAMES: Record<Tab, string> = { plan: "Plan", robots: "Robots", diagnose: "Diagnose" };
 
 export function App() {
   const other = theme.value === "dark" ? "light" : "dark";
@@ -22,9 +20,9 @@ export function App() {
           joulepath
         </h1>
         <nav aria-label="Parts of the page">
-          {(Object.keys(NAMES) as Tab[]).map((name) => (
+          {TABS.map((name) => (
             <button key={name} type="button" aria-current={tab.value === name ? "page" : undefined} onClick={() => (tab.value = name)}>
-              {NAMES[name]}
+              {TAB_NAMES[name]}
             </button>
           ))}
         </nav>

@@ -83,6 +83,7 @@ test("the slope layer and the third dimension are drawn", async ({ page, service
   await expect.poll(() => colors(canvas)).toBeGreaterThan(200);
   await page.getByRole("button", { name: "Elevation" }).click();
   await page.getByRole("slider", { name: "Along the path" }).fill("200");
+  await page.getByRole("button", { name: "Switch to dark colours" }).click();
   await picture(page, `relief-${info.project.name}`);
 });
 

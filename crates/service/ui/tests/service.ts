@@ -102,10 +102,14 @@ export async function press(page: Page, right: number, up: number): Promise<void
   await page.mouse.click(box.x + right * box.width, box.y + (1 - up) * box.height);
 }
 
-/** A picture for the README, where those are wanted. */
-export async function picture(page: Page, name: string, options: { fullPage?: boolean } = {}): Promise<void> {
+/** Pictures that the README shows. */
+const SHOWN = ["plan-desktop", "plan-phone", "relief-desktop", "diagnosis-desktop"];
+
+/** A picture of what a test sees, for who looks into its results, or for the README where those are wanted. */
+export async function picture(page: Page, name: string): Promise<void> {
   const folder = process.env.JOULEPATH_PICTURES;
-  await page.screenshot({ path: folder ? join(folder, `${name}.png`) : test.info().outputPath(`${name}.png`), ...options });
+  const isShown = folder !== undefined && SHOWN.includes(name);
+  await page.screenshot({ path: isShown ? join(folder, `${name}.png`) : test.info().outputPath(`${name}.png`), scale: "css" });
 }
 
 /** Fails when axe finds what is serious or worse. */

@@ -45,6 +45,11 @@ function Ask() {
         </button>
         {!isReady && <small>{taken.value.length === 0 ? "A recording of the suspect drive is needed." : "Waiting for a recording that can be read."}</small>}
       </footer>
+      {taken.value.length === 0 && (
+        <p class="diagnose-none">
+          No recording at hand? <code>joulepath simulate</code> drives a robot through a world of its own, which may conceal what there is to find.
+        </p>
+      )}
     </>
   );
 }

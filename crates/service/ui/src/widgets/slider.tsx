@@ -13,10 +13,16 @@ interface Props {
   note?: string;
 }
 
+const release = () => (isDragging.value = false);
+
+/** From now until it is let go, wherever that is. */
+function hold(): void {
+  isDragging.value = true;
+  for (const end of ["pointerup", "pointercancel", "blur"]) addEventListener(end, release, { once: true });
+}
+
 export function Slider({ label, value, least, greatest, step, written, change, note }: Props) {
   const id = `slider-${label.toLowerCase().replaceAll(" ", "-")}`;
-  const hold = () => (isDragging.value = true);
-  const release = () => (isDragging.value = false);
   const share = (value - least) / (greatest - least || 1);
   return (
     <div class="slider">
@@ -33,9 +39,8 @@ export function Slider({ label, value, least, greatest, step, written, change, n
         style={{ "--share": `${100 * share}%` }}
         onInput={(event) => change(event.currentTarget.valueAsNumber)}
         onPointerDown={hold}
-        onPointerUp={release}
-        onPointerCancel={release}
-        onBlur={release}
+        onKeyDown={(event) => event.repeat && hold()}
+        onKeyUp={release}
       />
       {note && <small>{note}</small>}
     </div>
