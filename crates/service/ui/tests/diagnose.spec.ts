@@ -22,7 +22,10 @@ test("a drive is diagnosed, the corrected robot accepted, and old and new paths 
   await expect(page.locator(".bars")).toContainText("noise floor");
   expect(await colors(page.locator(".time-axis canvas").last())).toBeGreaterThan(10);
   expect(await colors(page.locator(".drive-map canvas"))).toBeGreaterThan(10);
+  const usual = page.viewportSize()!;
+  await page.setViewportSize({ width: Math.min(usual.width, 1080), height: 1130 });
   await picture(page, `diagnosis-${info.project.name}`);
+  await page.setViewportSize(usual);
   await checkAccessible(page, "report");
   await page.getByRole("button", { name: "Switch to dark colours" }).click();
   await checkAccessible(page, "report in dark colours");

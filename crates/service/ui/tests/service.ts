@@ -52,7 +52,19 @@ export class Service {
   }
 }
 
+/** With DIST the page comes from that folder instead of the program, which then need not be built for every change of it. */
+const dist = process.env.DIST;
+
 export const test = base.extend<{ service: Service }>({
+  context: async ({ context }, use) => {
+    if (dist) {
+      await context.route(/:\d+\/(page\/[^?]*)?$/, (route) => {
+        const path = new URL(route.request().url()).pathname;
+        return route.fulfill({ path: join(dist, path === "/" ? "index.html" : path) });
+      });
+    }
+    await use(context);
+  },
   service: async ({ browserName: _ }, use) => {
     const service = await Service.start();
     await use(service);
