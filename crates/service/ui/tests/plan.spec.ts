@@ -17,6 +17,17 @@ test("the sample map is drawn and its three paths are compared at once", async (
   expect(complaints).toEqual([]);
 });
 
+test("the first picture of a stored map comes without being asked for", async ({ page, service }) => {
+  await service.storeMap("maps/minnesota.tif", "image/tiff");
+  const begun = performance.now();
+  await page.goto(service.url, { waitUntil: "commit" });
+  await page.waitForFunction(() => {
+    const canvas = document.querySelector<HTMLCanvasElement>(".map-ground");
+    return (canvas?.getContext("2d")?.getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data[3] ?? 0) > 0;
+  });
+  console.log(`    first picture after ${Math.round(performance.now() - begun)} ms`);
+});
+
 test("a map that is dropped is shown, and start and goal are what is pressed", async ({ page, service }) => {
   await page.goto(service.url);
   await page.locator(".first-map input[type=file]").setInputFiles(repositoryFile("maps/yard.json"));

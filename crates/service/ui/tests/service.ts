@@ -124,12 +124,14 @@ export async function picture(page: Page, name: string): Promise<void> {
   await page.screenshot({ path: isShown ? join(folder, `${name}.png`) : test.info().outputPath(`${name}.png`), scale: "css" });
 }
 
-/** Fails when axe finds what is serious or worse. */
+/** Fails when axe finds what is serious or worse, or when the page is wider than its window. */
 export async function checkAccessible(page: Page, where: string): Promise<void> {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
   const said = grave.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${where}: ${id} at ${target.join(" ")}: ${failureSummary}`));
   expect(said).toEqual([]);
+  const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  expect(over, `${where}: pixels beyond the window`).toBeLessThanOrEqual(0);
 }
 
 export { expect };
