@@ -58,8 +58,8 @@ export function TimeAxis({ trace, where }: { trace: Trace; where: Difference[] }
         height={150}
         data={data.power}
         lines={[
-          { name: "recorded", color: "recorded", width: 1 },
-          { name: "corrected", color: "after", width: 1.25 },
+          { name: "recorded", color: "recorded", width: 3 },
+          { name: "corrected", color: "after", width: 1 },
         ]}
         bands={bands}
         hasAxis={false}

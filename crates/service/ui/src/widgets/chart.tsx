@@ -32,6 +32,9 @@ interface Props {
   hasAxis?: boolean;
 }
 
+/** A tick, with a minus as wide as a plus. */
+const written = (tick: number) => String(tick).replace("-", "\u2212");
+
 const FONT = "11px system-ui, sans-serif";
 
 function options({ height, lines, bands = [], hasAxis = true, axisUnit }: Props, width: number, point: (at: number) => void): uPlot.Options {
@@ -45,8 +48,8 @@ function options({ height, lines, bands = [], hasAxis = true, axisUnit }: Props,
     scales: { x: { time: false } },
     cursor: { y: false, drag: { x: false, y: false }, points: { size: 8 } },
     axes: [
-      { ...axis, show: hasAxis, size: 24, gap: 2, values: (_, ticks) => ticks.map((tick, i) => (i === ticks.length - 1 && axisUnit ? `${tick} ${axisUnit}` : String(tick))) },
-      { ...axis, size: 48, gap: 4, space: 22 },
+      { ...axis, show: hasAxis, size: 24, gap: 2, values: (_, ticks) => ticks.map((tick, i) => written(tick) + (i === ticks.length - 1 && axisUnit ? ` ${axisUnit}` : "")) },
+      { ...axis, size: 48, gap: 4, space: 22, values: (_, ticks) => ticks.map(written) },
     ],
     series: [
       {},
