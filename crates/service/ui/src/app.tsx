@@ -26,7 +26,13 @@ export function App() {
             </button>
           ))}
         </nav>
-        <button type="button" class="theme" aria-label={`Switch to ${other} colours`} title={`Switch to ${other} colours`} onClick={toggleTheme}>
+        <button
+          type="button"
+          class="theme"
+          aria-label={`Switch to ${other} colours`}
+          title={`Switch to ${other} colours`}
+          onClick={toggleTheme}
+        >
           {theme.value === "dark" ? "☀" : "☾"}
         </button>
       </header>

@@ -5,7 +5,11 @@ const ground = { rolling: { grade: 0.04 } };
 test("a drive is diagnosed, the corrected robot accepted, and old and new paths stand side by side", async ({ page, service }, info) => {
   const healthy = service.simulate("monday", { terrain: ground, seed: 1, robot_seed: 5 }, { kind: "rich", duration_s: 900, seed: 7 });
   const effects = [{ effect: "payload", strength: 25, onset_s: 400 }];
-  const suspect = service.simulate("tuesday", { terrain: ground, seed: 2, robot_seed: 5, effects }, { kind: "rich", duration_s: 900, seed: 8 });
+  const suspect = service.simulate(
+    "tuesday",
+    { terrain: ground, seed: 2, robot_seed: 5, effects },
+    { kind: "rich", duration_s: 900, seed: 8 },
+  );
   await openSample(page, service);
   await page.getByRole("button", { name: "Diagnose" }).click();
 

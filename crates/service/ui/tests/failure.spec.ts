@@ -2,7 +2,9 @@ import { answered, expect, openSample, press, test } from "./service";
 
 test("a file that is no map is refused by name of what is wrong with it", async ({ page, service }) => {
   await page.goto(service.url);
-  await page.locator(".first-map input[type=file]").setInputFiles({ name: "wrong.json", mimeType: "application/json", buffer: Buffer.from('{"rows": 2}') });
+  await page
+    .locator(".first-map input[type=file]")
+    .setInputFiles({ name: "wrong.json", mimeType: "application/json", buffer: Buffer.from('{"rows": 2}') });
   await expect(page.getByRole("alert")).toContainText("The request cannot be read");
   await expect(page.getByRole("alert")).toContainText("Missing field");
 });

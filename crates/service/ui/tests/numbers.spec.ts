@@ -23,14 +23,18 @@ test("what arrives is the charge less the energy, with its interval", () => {
 });
 
 test("a pose between two lies between them, and turns the short way", () => {
-  const pose = (distance_m: number, heading_rad: number) => ({ x_m: distance_m, y_m: 0, z_m: 0, t_s: 0, energy_j: 10 * distance_m, heading_rad, distance_m }) as Pose;
+  const pose = (distance_m: number, heading_rad: number) =>
+    ({ x_m: distance_m, y_m: 0, z_m: 0, t_s: 0, energy_j: 10 * distance_m, heading_rad, distance_m }) as Pose;
   const between = poseAt([pose(0, 3), pose(2, -3)], 1)!;
   expect([between.x_m, between.energy_j]).toEqual([1, 10]);
   expect(Math.abs(between.heading_rad)).toBeCloseTo(Math.PI, 6);
 });
 
 test("zooming keeps the place under the pointer, and pixels and metres are inverse", () => {
-  const [view, size] = [{ x_m: 50, y_m: 20, px_per_m: 4 }, { width: 800, height: 600 }];
+  const [view, size] = [
+    { x_m: 50, y_m: 20, px_per_m: 4 },
+    { width: 800, height: 600 },
+  ];
   const map = { origin_m: [0, 0] as [number, number], columns: 200, rows: 100, cell_size_m: 1 };
   const about = { x: 123, y: 456 };
   const before = toMetres(view, size, about);
@@ -51,7 +55,7 @@ test("a field is changed by its pointer and nothing else is", () => {
 });
 
 test("events are read whole, however the stream is cut", async () => {
-  const text = "event: progress\nid: 1\ndata: {\"a\":1}\n\n: alive\n\nid: 2\r\ndata: {\r\ndata: }\r\n\r\n";
+  const text = 'event: progress\nid: 1\ndata: {"a":1}\n\n: alive\n\nid: 2\r\ndata: {\r\ndata: }\r\n\r\n';
   for (const length of [1, 3, 7, 1000]) {
     const bytes = new TextEncoder().encode(text);
     const stream = new ReadableStream<Uint8Array>({
@@ -62,6 +66,9 @@ test("events are read whole, however the stream is cut", async () => {
     });
     const events = [];
     for await (const event of eventsOf(stream)) events.push({ ...event });
-    expect(events).toEqual([{ id: "1", data: '{"a":1}' }, { id: "2", data: "{\n}" }]);
+    expect(events).toEqual([
+      { id: "1", data: '{"a":1}' },
+      { id: "2", data: "{\n}" },
+    ]);
   }
 });

@@ -2,7 +2,10 @@ import { answered, colors, energyOf, expect, ground, openSample, paths, picture,
 
 test("the sample map is drawn and its three paths are compared at once", async ({ page, service }, info) => {
   const outside: string[] = [];
-  page.on("request", (request) => request.url().startsWith(service.url) || request.url().startsWith("blob:") || outside.push(request.url()));
+  page.on(
+    "request",
+    (request) => request.url().startsWith(service.url) || request.url().startsWith("blob:") || outside.push(request.url()),
+  );
   const complaints: string[] = [];
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   await openSample(page, service);
@@ -74,7 +77,10 @@ test("pointing at a chart moves the robot on the map, and pointing at the path m
   test.skip(info.project.name === "phone", "fingers use the slider along the path");
   await openSample(page, service);
   const before = await paths(page).screenshot();
-  await page.locator(".u-over").nth(2).hover({ position: { x: 200, y: 40 } });
+  await page
+    .locator(".u-over")
+    .nth(2)
+    .hover({ position: { x: 200, y: 40 } });
   await expect(page.locator(".chart-card b").nth(3)).toHaveText(/kJ/);
   expect((await paths(page).screenshot()).equals(before)).toBe(false);
   const power = await page.locator(".chart-card b").nth(2).innerText();

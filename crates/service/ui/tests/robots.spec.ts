@@ -34,7 +34,11 @@ test("a robot's file is taken up, and a wrong one refused", async ({ page, servi
   await page.goto(`${service.url}/#robots`);
   const robot = (await (await page.request.get(`${service.url}/v1/robots/husky-a200`)).json()) as object;
   const input = page.locator(".robot-list input[type=file]");
-  await input.setInputFiles({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ ...robot, name: "mine" })) });
+  await input.setInputFiles({
+    name: "mine.json",
+    mimeType: "application/json",
+    buffer: Buffer.from(JSON.stringify({ ...robot, name: "mine" })),
+  });
   await expect(page.getByRole("button", { name: /mine.*stored/ })).toBeVisible();
   await input.setInputFiles({ name: "text.json", mimeType: "application/json", buffer: Buffer.from("not json") });
   await expect(page.getByRole("alert")).toContainText("is not JSON");

@@ -15,7 +15,10 @@ export const repositoryFile = (path: string) => join(repository, path);
 
 export class Service {
   readonly folder = mkdtempSync(join(tmpdir(), "joulepath-page-"));
-  private constructor(readonly url: string, private readonly child: ChildProcess) {}
+  private constructor(
+    readonly url: string,
+    private readonly child: ChildProcess,
+  ) {}
 
   static async start(): Promise<Service> {
     const folder = mkdtempSync(join(tmpdir(), "joulepath-store-"));
@@ -36,7 +39,11 @@ export class Service {
   /** Stores a map of the repository. Returns its id. */
   async storeMap(path: string, type: string): Promise<string> {
     const { readFileSync } = await import("node:fs");
-    const response = await fetch(`${this.url}/v1/maps`, { method: "POST", headers: { "content-type": type }, body: readFileSync(repositoryFile(path)) });
+    const response = await fetch(`${this.url}/v1/maps`, {
+      method: "POST",
+      headers: { "content-type": type },
+      body: readFileSync(repositoryFile(path)),
+    });
     return ((await response.json()) as { id: string }).id;
   }
 
@@ -128,7 +135,9 @@ export async function picture(page: Page, name: string): Promise<void> {
 export async function checkAccessible(page: Page, where: string): Promise<void> {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const grave = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  const said = grave.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${where}: ${id} at ${target.join(" ")}: ${failureSummary}`));
+  const said = grave.flatMap(({ id, nodes }) =>
+    nodes.map(({ target, failureSummary }) => `${where}: ${id} at ${target.join(" ")}: ${failureSummary}`),
+  );
   expect(said).toEqual([]);
   const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   expect(over, `${where}: pixels beyond the window`).toBeLessThanOrEqual(0);

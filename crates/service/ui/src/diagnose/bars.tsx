@@ -23,8 +23,8 @@ export function Bars({ report: { baseline, corrected } }: { report: Report }) {
         </div>
       ))}
       <p class="bars-note">
-        Root mean square error over averages of one second. The line is the noise floor, <b class="number">{power(baseline.noise_floor_w)}</b>: what no model could
-        predict.
+        Root mean square error over averages of one second. The line is the noise floor,{" "}
+        <b class="number">{power(baseline.noise_floor_w)}</b>: what no model could predict.
       </p>
     </div>
   );

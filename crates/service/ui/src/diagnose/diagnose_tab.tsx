@@ -35,7 +35,10 @@ function Ask() {
     <>
       <header class="diagnose-head">
         <h2>When a drive took more than was predicted</h2>
-        <p>Give its recording. joulepath finds where model and recording differ, which physics was left out, how big it is, and how sure that is.</p>
+        <p>
+          Give its recording. joulepath finds where model and recording differ, which physics was left out, how big it is, and how sure that
+          is.
+        </p>
       </header>
       <Recordings />
       <footer class="diagnose-start">
@@ -43,11 +46,16 @@ function Ask() {
         <button type="button" class="primary" disabled={!isReady} onClick={() => void begin()}>
           Diagnose
         </button>
-        {!isReady && <small>{taken.value.length === 0 ? "A recording of the suspect drive is needed." : "Waiting for a recording that can be read."}</small>}
+        {!isReady && (
+          <small>
+            {taken.value.length === 0 ? "A recording of the suspect drive is needed." : "Waiting for a recording that can be read."}
+          </small>
+        )}
       </footer>
       {taken.value.length === 0 && (
         <p class="diagnose-none">
-          No recording at hand? <code>joulepath simulate</code> drives a robot through a world of its own, which may conceal what there is to find.
+          No recording at hand? <code>joulepath simulate</code> drives a robot through a world of its own, which may conceal what there is
+          to find.
         </p>
       )}
     </>
@@ -62,7 +70,10 @@ function UnderWay() {
     <div class="under-way" role="status">
       <h2>Diagnosing</h2>
       <Progress label={step.charAt(0).toUpperCase() + step.slice(1)} share={progress?.fraction ?? null} />
-      <p>Every known mechanism is fitted to the drives beside the refitted robot and judged where it was not fitted. You may leave this page open, or come back by its link.</p>
+      <p>
+        Every known mechanism is fitted to the drives beside the refitted robot and judged where it was not fitted. You may leave this page
+        open, or come back by its link.
+      </p>
       <button type="button" onClick={() => void cancel()}>
         Call it off
       </button>

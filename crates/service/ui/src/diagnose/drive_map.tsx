@@ -77,7 +77,9 @@ function draw(canvas: HTMLCanvasElement, trace: Trace, where: Difference[], most
 
 /** The error that nine in ten stay below: beyond it colours are full. */
 function fullAt(trace: Trace): number {
-  const errors = trace.recorded_w.flatMap((recorded, i) => (recorded === null || trace.filed_w[i] == null ? [] : [Math.abs(recorded - trace.filed_w[i])]));
+  const errors = trace.recorded_w.flatMap((recorded, i) =>
+    recorded === null || trace.filed_w[i] == null ? [] : [Math.abs(recorded - trace.filed_w[i])],
+  );
   errors.sort((a, b) => a - b);
   return errors[Math.floor(0.9 * errors.length)] || 1;
 }
@@ -114,7 +116,13 @@ export function DriveMap({ trace, where }: { trace: Trace; where: Difference[] }
   return (
     <section class="card drive-map" aria-label="Where the robot drove">
       <h3>On the ground</h3>
-      <canvas ref={canvas} height={HEIGHT} role="img" aria-label="The drives from above, coloured by recorded less predicted power" onMouseMove={point} />
+      <canvas
+        ref={canvas}
+        height={HEIGHT}
+        role="img"
+        aria-label="The drives from above, coloured by recorded less predicted power"
+        onMouseMove={point}
+      />
       <p class="key">
         <span>
           <i style={{ backgroundColor: "var(--error-high)" }} />

@@ -51,7 +51,11 @@ function Stored({ role }: { role: Role }) {
   const others = all.filter(({ id }) => !taken.value.some((one) => one.recording?.id === id));
   if (others.length === 0) return null;
   const choose = (id: string) => {
-    if (id) readRecording(id).then((recording) => takeStored(recording, role), (thrown) => (problem.value = problemOf(thrown)));
+    if (id)
+      readRecording(id).then(
+        (recording) => takeStored(recording, role),
+        (thrown) => (problem.value = problemOf(thrown)),
+      );
   };
   return (
     <select class="stored" aria-label={`A stored recording as ${role}`} value="" onChange={(event) => choose(event.currentTarget.value)}>
@@ -76,7 +80,9 @@ function Card({ one }: { one: Taken }) {
         </button>
       </header>
       {one.problem && <ProblemCard problem={one.problem} />}
-      {!one.problem && !one.recording && <Progress label={one.share < 1 ? "Sending" : "Reading"} share={one.share < 1 ? one.share : null} />}
+      {!one.problem && !one.recording && (
+        <Progress label={one.share < 1 ? "Sending" : "Reading"} share={one.share < 1 ? one.share : null} />
+      )}
       {one.recording && <Reading report={one.recording.report} />}
     </article>
   );

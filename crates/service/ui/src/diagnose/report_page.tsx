@@ -72,7 +72,10 @@ function Acts({ report }: { report: Report }) {
       <button type="button" class="primary" onClick={() => void accept(report)}>
         Accept the corrected robot and plan with it
       </button>
-      <button type="button" onClick={() => saveFile(new Blob([JSON.stringify(report, null, 2)], { type: "application/json" }), "report.json")}>
+      <button
+        type="button"
+        onClick={() => saveFile(new Blob([JSON.stringify(report, null, 2)], { type: "application/json" }), "report.json")}
+      >
         Download the report
       </button>
       <button type="button" onClick={again}>

@@ -117,7 +117,8 @@ export function followJobs(): void {
     readJob<Report>(id).then(
       (now) => {
         told(now);
-        if (now.state === "queued" || now.state === "running") stop = followJob<Report>(id, told, (thrown) => (problem.value = problemOf(thrown)));
+        if (now.state === "queued" || now.state === "running")
+          stop = followJob<Report>(id, told, (thrown) => (problem.value = problemOf(thrown)));
       },
       (thrown) => {
         problem.value = problemOf(thrown);

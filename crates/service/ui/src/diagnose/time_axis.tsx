@@ -37,7 +37,12 @@ export function TimeAxis({ trace, where }: { trace: Trace; where: Difference[] }
       <header>
         <h3>Over time</h3>
         {trace.runs.length > 1 && (
-          <Choice label="Drive" value={String(run)} choose={(value) => setRun(Number(value))} options={trace.runs.map((name, i) => ({ value: String(i), name }))} />
+          <Choice
+            label="Drive"
+            value={String(run)}
+            choose={(value) => setRun(Number(value))}
+            options={trace.runs.map((name, i) => ({ value: String(i), name }))}
+          />
         )}
       </header>
       <p class="key">

@@ -78,7 +78,10 @@ interface Drawn {
 function stroke(scene: Scene, { poses, width }: Drawn, color: string, dash: number[]): void {
   const { context } = scene;
   context.beginPath();
-  trace(scene, poses.map((p) => [p.x_m, p.y_m]));
+  trace(
+    scene,
+    poses.map((p) => [p.x_m, p.y_m]),
+  );
   context.lineJoin = "round";
   context.lineCap = "round";
   context.setLineDash(dash);
@@ -164,9 +167,17 @@ export function drawRobot({ context, view, size, color }: Scene, pose: Pose): vo
 /** The keyboard's cursor. */
 export function drawCrosshair({ context, view, size, color }: Scene, at: Place): void {
   const { x, y } = toPixel(view, size, at.x_m, at.y_m);
-  for (const [width, name] of [[4, "casing"], [1.5, "end-ink"]] as const) {
+  for (const [width, name] of [
+    [4, "casing"],
+    [1.5, "end-ink"],
+  ] as const) {
     context.beginPath();
-    for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
+    for (const [dx, dy] of [
+      [1, 0],
+      [-1, 0],
+      [0, 1],
+      [0, -1],
+    ] as const) {
       context.moveTo(x + 5 * dx, y + 5 * dy);
       context.lineTo(x + 16 * dx, y + 16 * dy);
     }

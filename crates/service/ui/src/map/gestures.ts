@@ -14,7 +14,8 @@ export interface Board {
   show: (view: View) => void;
 }
 
-type Doing = { kind: "pan" } | { kind: "move"; end: End } | { kind: "turn"; end: End; isPlacing: boolean } | { kind: "pinch"; apart: number };
+type Doing =
+  { kind: "pan" } | { kind: "move"; end: End } | { kind: "turn"; end: End; isPlacing: boolean } | { kind: "pinch"; apart: number };
 
 /** Pixels within which something is hit; fingers are wider than pointers. */
 const reach = (event: PointerEvent) => (event.pointerType === "touch" ? 26 : 15);

@@ -11,7 +11,8 @@ export const cursor = signal<Place | null>(null);
 
 const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-export const KEYS = "Arrow keys move the cursor, with Shift further. Enter places; S sets the start here, G the goal. Square brackets turn the start. Plus and minus zoom, 0 shows all.";
+export const KEYS =
+  "Arrow keys move the cursor, with Shift further. Enter places; S sets the start here, G the goal. Square brackets turn the start. Plus and minus zoom, 0 shows all.";
 
 /** Acts on a key. Returns whether it was one of the map's. */
 export function press(event: KeyboardEvent, view: View, size: Size, show: (view: View) => void): boolean {

@@ -15,12 +15,19 @@ export function Answer() {
   if (!plans) return <NoAnswer />;
   const unit = energyUnit(plans.distance.energy_j);
   return (
-    <section class="answer" aria-label="Paths compared" aria-busy={state.isPlanning.value} data-slow={followsAnswer.value && !state.isDragging.value}>
+    <section
+      class="answer"
+      aria-label="Paths compared"
+      aria-busy={state.isPlanning.value}
+      data-slow={followsAnswer.value && !state.isDragging.value}
+    >
       {followsAnswer.value && <progress class="answer-wait" aria-label="Planning" />}
       <Headline />
       <div class="answer-scroll">
         <table>
-          <caption class="unseen">Energy-minimal, shortest and fastest paths. Choose one to follow it on the map and in the charts.</caption>
+          <caption class="unseen">
+            Energy-minimal, shortest and fastest paths. Choose one to follow it on the map and in the charts.
+          </caption>
           <thead>
             <tr>
               <th scope="col">Path</th>
@@ -153,7 +160,16 @@ export function Swatch({ name }: { name: keyof typeof STYLE }) {
   const { color, dash } = STYLE[name];
   return (
     <svg class="swatch" viewBox="0 0 26 8" width="26" height="8" aria-hidden="true">
-      <line x1="2" y1="4" x2="24" y2="4" stroke={`var(--${color})`} stroke-width="3.5" stroke-linecap="round" stroke-dasharray={dash.map((length) => length * 0.7).join(" ") || undefined} />
+      <line
+        x1="2"
+        y1="4"
+        x2="24"
+        y2="4"
+        stroke={`var(--${color})`}
+        stroke-width="3.5"
+        stroke-linecap="round"
+        stroke-dasharray={dash.map((length) => length * 0.7).join(" ") || undefined}
+      />
     </svg>
   );
 }
@@ -169,7 +185,11 @@ function Charge({ plan }: { plan: Plan }) {
     <div class="charge" data-fine={fine}>
       <span>Arrives with</span>
       <b class="number">{percent(Math.max(left.charge, 0), 1)}</b>
-      <div class="charge-bar" role="img" aria-label={`Charge at the goal between ${percent(left.least, 1)} and ${percent(left.greatest, 1)}, reserve ${percent(left.reserve)}`}>
+      <div
+        class="charge-bar"
+        role="img"
+        aria-label={`Charge at the goal between ${percent(left.least, 1)} and ${percent(left.greatest, 1)}, reserve ${percent(left.reserve)}`}
+      >
         <i style={{ width: share(left.charge) }} />
         <em style={{ left: share(left.reserve) }} />
       </div>
@@ -184,6 +204,10 @@ function Proof() {
   if (!search) return null;
   const isLeast = search.bound === null || search.bound <= 1.0005;
   const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
-  const text = isLeast ? "Proven: no path of the planner's lattice takes less." : state.isDragging.value ? `${near}, which follows.` : `${near}.`;
+  const text = isLeast
+    ? "Proven: no path of the planner's lattice takes less."
+    : state.isDragging.value
+      ? `${near}, which follows.`
+      : `${near}.`;
   return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
 }

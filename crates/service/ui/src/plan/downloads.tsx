@@ -9,7 +9,12 @@ import * as state from "./state";
 const FORMS = [
   { name: "JSON", type: "application/json", ending: "json", about: "Everything that is known of the path" },
   { name: "GeoJSON", type: "application/geo+json", ending: "geojson", about: "The line in the map's metres" },
-  { name: "GPX", type: "application/gpx+xml", ending: "gpx", about: "A track; its start is put at 0° N 0° E, since maps do not say where on earth they lie" },
+  {
+    name: "GPX",
+    type: "application/gpx+xml",
+    ending: "gpx",
+    about: "A track; its start is put at 0° N 0° E, since maps do not say where on earth they lie",
+  },
   { name: "CSV", type: "text/csv", ending: "csv", about: "Pose by pose" },
 ] as const;
 

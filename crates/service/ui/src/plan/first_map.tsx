@@ -9,8 +9,8 @@ export function FirstMap() {
     <div class="first-map">
       <h2>Paths that cost the least energy</h2>
       <p>
-        Give the ground, a start and a goal. joulepath finds the path that draws least from a skid-steered robot's battery, proves that none is
-        cheaper, and shows it beside the shortest and the fastest.
+        Give the ground, a start and a goal. joulepath finds the path that draws least from a skid-steered robot's battery, proves that none
+        is cheaper, and shows it beside the shortest and the fastest.
       </p>
       <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
         <span>GeoTIFF in projected metres, ESRI ASCII grid (.asc), or a JSON grid</span>

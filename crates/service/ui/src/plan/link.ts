@@ -56,7 +56,10 @@ function link(): string {
   if (state.is3d.value) said.set("3d", "");
   say("reach", state.reach.value);
   say("job", job.value?.id);
-  const query = said.toString().replaceAll("%2C", ",").replace(/=(?=&|$)/g, "");
+  const query = said
+    .toString()
+    .replaceAll("%2C", ",")
+    .replace(/=(?=&|$)/g, "");
   return `#${tab.value}${query ? `?${query}` : ""}`;
 }
 

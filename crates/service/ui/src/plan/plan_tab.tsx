@@ -19,9 +19,7 @@ export function PlanTab() {
     <div class="plan">
       <section class="plan-map" aria-label="Map" onDragOver={(event) => event.preventDefault()} onDrop={drop}>
         {!isEmpty && <MapBar />}
-        {loadProblem.value && (
-          <ProblemCard problem={loadProblem.value} close={() => (loadProblem.value = null)} />
-        )}
+        {loadProblem.value && <ProblemCard problem={loadProblem.value} close={() => (loadProblem.value = null)} />}
         {sending.value !== null && <Progress label="Sending the map" share={sending.value < 1 ? sending.value : null} />}
         {isEmpty ? <FirstMap /> : <Ground />}
       </section>

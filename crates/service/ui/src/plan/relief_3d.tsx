@@ -57,7 +57,12 @@ export function Relief3d() {
   }, []);
   return (
     <div class="map relief-3d">
-      <div ref={place} class="map-frame" role="img" aria-label="The ground and the paths in three dimensions; drag to turn, scroll to zoom" />
+      <div
+        ref={place}
+        class="map-frame"
+        role="img"
+        aria-label="The ground and the paths in three dimensions; drag to turn, scroll to zoom"
+      />
       {status.value === "fetching" && <Progress label="Fetching the 3-D view" share={null} />}
       {status.value === "impossible" && (
         <p class="map-hint" role="alert">
@@ -66,7 +71,14 @@ export function Relief3d() {
       )}
       <label class="relief-stretch">
         Heights × {stretch.value}
-        <input type="range" min={1} max={6} step={0.5} value={stretch.value} onInput={(event) => (stretch.value = event.currentTarget.valueAsNumber)} />
+        <input
+          type="range"
+          min={1}
+          max={6}
+          step={0.5}
+          value={stretch.value}
+          onInput={(event) => (stretch.value = event.currentTarget.valueAsNumber)}
+        />
       </label>
     </div>
   );

@@ -147,7 +147,8 @@ function meshOf(cells: Cells, stretch: number) {
   }
   const middle_m = (least + greatest) / 2;
   const [east_m, north_m] = [x_m + (columns * cell_size_m) / 2, y_m + (rows * cell_size_m) / 2];
-  const toScene = (x: number, y: number, z: number) => new Vector3((x - east_m) * scale, (z - middle_m) * scale * stretch, -(y - north_m) * scale);
+  const toScene = (x: number, y: number, z: number) =>
+    new Vector3((x - east_m) * scale, (z - middle_m) * scale * stretch, -(y - north_m) * scale);
 
   const position = new Float32Array(3 * wide * high);
   const uv = new Float32Array(2 * wide * high);

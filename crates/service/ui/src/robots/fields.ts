@@ -29,7 +29,10 @@ function field(pointer: string, name: string, unit: string, least: number, great
 const motor = (side: "left" | "right"): Field[] => [
   field(`/motors/${side}/k1_w_per_n2`, "k1", "W/N²", 0, 10, { about: "Copper loss per squared wheel force" }),
   field(`/motors/${side}/k2`, "k2", "", 1, 20, { about: "Electrical per mechanical power" }),
-  field(`/motors/${side}/force_n_per_a`, "Force per ampere", "N/A", 1e-3, 1e4, { isOptional: true, about: "Only for recordings of motor current" }),
+  field(`/motors/${side}/force_n_per_a`, "Force per ampere", "N/A", 1e-3, 1e4, {
+    isOptional: true,
+    about: "Only for recordings of motor current",
+  }),
 ];
 
 export const GROUPS: FieldGroup[] = [
@@ -39,7 +42,10 @@ export const GROUPS: FieldGroup[] = [
       field("/mass_kg", "Mass", "kg", 0.1, 20_000, { about: "With everything on board" }),
       field("/wheelbase_m", "Wheelbase", "m", 0.02, 10, { about: "Front to rear axle" }),
       field("/track_m", "Track", "m", 0.02, 10, { about: "Left to right wheel centres" }),
-      field("/slip_track_m", "Slip track", "m", 0.01, 100, { isOptional: true, about: "Yaw rate is the difference of the sides' speeds over this; half to ten times the track" }),
+      field("/slip_track_m", "Slip track", "m", 0.01, 100, {
+        isOptional: true,
+        about: "Yaw rate is the difference of the sides' speeds over this; half to ten times the track",
+      }),
       field("/wheel_radius_m", "Wheel radius", "m", 0.005, 2),
       field("/max_wheel_speed_mps", "Top wheel speed", "m/s", 0.01, 30),
       field("/yaw_inertia_kgm2", "Yaw inertia", "kg m²", 1e-6, 1e6, { isOptional: true }),

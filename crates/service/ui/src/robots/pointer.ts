@@ -1,6 +1,10 @@
 /** Reading and changing a document by JSON pointers (RFC 6901). */
 
-const parts = (pointer: string) => pointer.split("/").slice(1).map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
+const parts = (pointer: string) =>
+  pointer
+    .split("/")
+    .slice(1)
+    .map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
 
 /** A name as part of a pointer. */
 export const escaped = (name: string) => name.replaceAll("~", "~0").replaceAll("/", "~1");

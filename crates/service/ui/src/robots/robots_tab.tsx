@@ -65,7 +65,10 @@ function Editor({ robot }: { robot: Robot }) {
           <input type="text" value={robot.name} onInput={(event) => (edited.value = { ...robot, name: event.currentTarget.value })} />
         </label>
         <div class="robot-acts">
-          <button type="button" onClick={() => saveFile(new Blob([JSON.stringify(robot, null, 2)], { type: "application/json" }), `${robot.name}.json`)}>
+          <button
+            type="button"
+            onClick={() => saveFile(new Blob([JSON.stringify(robot, null, 2)], { type: "application/json" }), `${robot.name}.json`)}
+          >
             Download
           </button>
           {edited.value && (

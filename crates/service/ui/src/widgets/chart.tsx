@@ -37,7 +37,11 @@ const written = (tick: number) => String(tick).replace("-", "\u2212");
 
 const FONT = "11px system-ui, sans-serif";
 
-function options({ height, lines, bands = [], hasAxis = true, axisUnit }: Props, width: number, point: (at: number) => void): uPlot.Options {
+function options(
+  { height, lines, bands = [], hasAxis = true, axisUnit }: Props,
+  width: number,
+  point: (at: number) => void,
+): uPlot.Options {
   const [ink, grid] = [color("ink-soft"), color("line")];
   const axis = { stroke: ink, font: FONT, grid: { stroke: grid, width: 1 }, ticks: { show: false } };
   return {
@@ -48,7 +52,13 @@ function options({ height, lines, bands = [], hasAxis = true, axisUnit }: Props,
     scales: { x: { time: false } },
     cursor: { y: false, drag: { x: false, y: false }, points: { size: 8 } },
     axes: [
-      { ...axis, show: hasAxis, size: 24, gap: 2, values: (_, ticks) => ticks.map((tick, i) => written(tick) + (i === ticks.length - 1 && axisUnit ? ` ${axisUnit}` : "")) },
+      {
+        ...axis,
+        show: hasAxis,
+        size: 24,
+        gap: 2,
+        values: (_, ticks) => ticks.map((tick, i) => written(tick) + (i === ticks.length - 1 && axisUnit ? ` ${axisUnit}` : "")),
+      },
       { ...axis, size: 48, gap: 4, space: 22, values: (_, ticks) => ticks.map(written) },
     ],
     series: [
@@ -97,7 +107,11 @@ export function Chart(props: Props) {
   useEffect(() => {
     const element = place.current;
     if (!element) return;
-    const made = new uPlot(options(props, element.clientWidth || 300, (at) => pointed.current?.(at)), props.data as uPlot.AlignedData, element);
+    const made = new uPlot(
+      options(props, element.clientWidth || 300, (at) => pointed.current?.(at)),
+      props.data as uPlot.AlignedData,
+      element,
+    );
     plot.current = made;
     const watcher = new ResizeObserver(() => {
       if (element.clientWidth > 0) made.setSize({ width: element.clientWidth, height: props.height });
