@@ -11,7 +11,7 @@ import { expect, test } from "./service";
 const robot = { battery: { capacity_wh: 100, nominal_voltage_v: 24, reserve_fraction: 0.2 } } as Robot;
 
 test("contours stand at round energies, and end at what the charge gives", () => {
-  expect(energiesOf(robot, 1, 52_000)).toEqual([20_000, 40_000, 60_000]);
+  expect(energiesOf(robot, 1, 52_000)).toEqual([10_000, 20_000, 30_000, 40_000, 50_000, 60_000]);
   // 10 % above the reserve of 100 Wh are 36 kJ.
   expect(energiesOf(robot, 0.3, 52_000).at(-1)).toBeCloseTo(36_000, 6);
   expect(energiesOf(robot, 0.1, 52_000)).toEqual([]);

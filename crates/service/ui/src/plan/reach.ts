@@ -8,7 +8,7 @@ import { J_PER_WH } from "./charge";
 import * as state from "./state";
 
 /** About so many contours are drawn. */
-const CONTOURS = 5;
+const CONTOURS = 8;
 
 /** Beyond the path's own energy contours go on for this share of it. */
 const BEYOND = 1.25;
