@@ -176,7 +176,7 @@ pub struct Detectable {
 }
 
 /// Power of the drives under suspicion over the time driven, all channels together.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trace {
     /// Drive of each point.
     pub run: Vec<usize>,
@@ -192,4 +192,24 @@ pub struct Trace {
     pub runs: Vec<String>,
     /// Where the robot was, where that is known [m].
     pub position_m: Vec<Option<[f64; 2]>>,
+}
+
+impl Trace {
+    /// At most so many points of it, evenly taken.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Trace {
+        let stride = self.t_s.len().div_ceil(most.max(1)).max(1);
+        fn every<T: Clone>(values: &[T], stride: usize) -> Vec<T> {
+            values.iter().step_by(stride).cloned().collect()
+        }
+        Trace {
+            run: every(&self.run, stride),
+            t_s: every(&self.t_s, stride),
+            recorded_w: every(&self.recorded_w, stride),
+            filed_w: every(&self.filed_w, stride),
+            corrected_w: every(&self.corrected_w, stride),
+            runs: self.runs.clone(),
+            position_m: every(&self.position_m, stride),
+        }
+    }
 }

@@ -21,6 +21,7 @@ use crate::{
     planners::Planners,
     problem::{Problem, ProblemType},
     recordings::RecordingStore,
+    robots::RobotStore,
     store::MapStore,
 };
 
@@ -33,6 +34,7 @@ struct Shared {
     maps: MapStore,
     planners: Planners,
     recordings: RecordingStore,
+    robots: RobotStore,
     jobs: Jobs,
     turns: Arc<Semaphore>,
     /// Jobs take a turn here before they wait for one among all computations.
@@ -49,7 +51,7 @@ impl Drop for Asked {
 }
 
 impl Engine {
-    /// An engine without maps. Recordings are kept in a folder; without one, as long as the engine lasts.
+    /// An engine without maps. Recordings and robots are kept in a folder; without one, as long as the engine lasts.
     ///
     /// # Errors
     /// When the folder cannot be made.
@@ -59,6 +61,7 @@ impl Engine {
             maps: MapStore::default(),
             planners: Planners::default(),
             recordings: RecordingStore::open(folder)?,
+            robots: RobotStore::open(folder)?,
             jobs: Jobs::default(),
             turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
@@ -80,6 +83,10 @@ impl Engine {
 
     pub(crate) fn recordings(&self) -> &RecordingStore {
         &self.0.recordings
+    }
+
+    pub(crate) fn robots(&self) -> &RobotStore {
+        &self.0.robots
     }
 
     pub(crate) fn jobs(&self) -> &Jobs {

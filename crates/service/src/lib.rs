@@ -4,7 +4,9 @@
 //! functions that turn a request into an answer are plain and are shared with the command line, so both give the same
 //! document and the same errors.
 
+mod accept;
 mod body;
+mod cells;
 mod engine;
 mod geojson;
 mod job;
@@ -14,6 +16,8 @@ mod planners;
 mod problem;
 mod receive;
 mod recordings;
+mod robots;
+mod route_file;
 mod router;
 pub mod routes;
 mod serve;

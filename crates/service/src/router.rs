@@ -24,7 +24,7 @@ use crate::{
     Engine,
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, mission, plan, range,
+        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, mission, page, plan, range,
         reachable, recordings, robots, status,
     },
 };
@@ -58,7 +58,7 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(mission::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
-        .routes(routes!(robots::list))
+        .routes(routes!(robots::create, robots::list))
         .routes(routes!(robots::read))
         .routes(routes!(recordings::create, recordings::list))
         .routes(routes!(recordings::read, recordings::remove))
@@ -83,6 +83,7 @@ pub fn router(engine: Engine) -> Router {
     let body_pause = engine.limits().body_pause;
     let request_id = HeaderName::from_static("x-request-id");
     routes
+        .merge(page::routes())
         .route("/openapi.json", get(|| async move { ([("content-type", "application/json")], document) }))
         .fallback(|request: Request<axum::body::Body>| async move {
             let detail = format!("{} leads nowhere; /openapi.json lists the paths", request.uri().path());

@@ -9,6 +9,7 @@ pub mod jobs;
 pub mod maps;
 pub mod matrix;
 pub mod mission;
+pub(crate) mod page;
 pub mod plan;
 pub mod range;
 pub mod reachable;

@@ -35,7 +35,7 @@ pub(super) const MOST_RECORDINGS: usize = 1000;
 #[derive(Clone, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrateRequest {
-    /// Name of a built-in robot, or a robot: what is known before.
+    /// Name of a built-in robot, id of a stored one, or a robot: what is known before.
     pub robot: RobotChoice,
     /// Ids of stored recordings.
     #[schema(min_items = 1, max_items = 1000)]
@@ -90,12 +90,13 @@ struct Work {
 impl Work {
     /// Refuses at once what can be known without reading a recording.
     fn prepare(engine: &Engine, request: CalibrateRequest) -> Result<Work, Problem> {
-        let CalibrateRequest { robot, recordings, method, reference_surface, map, lift } = request;
+        let CalibrateRequest { mut robot, recordings, method, reference_surface, map, lift } = request;
         let count = recordings.len();
         if !(1..=MOST_RECORDINGS).contains(&count) {
             let detail = format!("{count} recordings are named, but it must be 1 to {MOST_RECORDINGS}");
             return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/recordings"));
         }
+        robot.look_up(engine.robots());
         let mut robot = robot.robot()?;
         if let Some(text) = lift {
             let lifted = lift::read(&text).and_then(|lifts| lift::apply(&robot, &lifts));

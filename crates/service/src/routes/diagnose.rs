@@ -23,11 +23,14 @@ use crate::{
     recordings::{Note, map_from},
 };
 
+/// Most points of power over time in an answer: more than a screen has columns.
+const MOST_POINTS: usize = 4000;
+
 /// What to diagnose.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiagnoseRequest {
-    /// Name of a built-in robot, or a robot.
+    /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Ids of stored recordings that the robot's model may not describe.
     #[schema(min_items = 1, max_items = 1000)]
@@ -43,7 +46,7 @@ pub struct DiagnoseRequest {
 
 /// Start diagnosing recordings. The job's result has `verdict` (`consistent`, `explained`, `ambiguous` or `unexplained`) with its
 /// `sentence`, `where` they differ, `findings` (mechanism, parameters with intervals, evidence, what cannot be told apart, fit
-/// before and after), `next_drive`, and the corrected `robot`.
+/// before and after), `next_drive`, the corrected `robot`, and the `trace` of power over time, for drawing.
 #[utoipa::path(
     post, path = "/v1/diagnose", tag = "jobs",
     request_body = DiagnoseRequest,
@@ -78,7 +81,8 @@ struct Work {
 impl Work {
     /// Refuses at once what can be known without reading a recording.
     fn prepare(engine: &Engine, request: DiagnoseRequest) -> Result<Work, Problem> {
-        let DiagnoseRequest { robot, recordings, reference, map } = request;
+        let DiagnoseRequest { mut robot, recordings, reference, map } = request;
+        robot.look_up(engine.robots());
         for (ids, least, field) in [(&recordings, 1, "/recordings"), (&reference, 0, "/reference")] {
             let count = ids.len();
             if !(least..=MOST_RECORDINGS).contains(&count) {
@@ -110,6 +114,7 @@ impl Work {
         };
         let mut answer = serde_json::to_value(&found).map_err(unwritable)?;
         answer["robot"] = serde_json::to_value(&found.corrected_robot).map_err(unwritable)?;
+        answer["trace"] = serde_json::to_value(found.trace.thinned(MOST_POINTS)).map_err(unwritable)?;
         Ok(answer)
     }
 }

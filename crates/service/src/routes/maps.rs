@@ -4,16 +4,19 @@ use std::sync::Arc;
 
 use axum::{
     Json,
-    extract::{Request, State},
-    http::StatusCode,
+    extract::{Query, Request, State},
+    http::{HeaderMap, StatusCode, Uri, header},
+    response::{IntoResponse, Response},
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use terrain::{MapFile, Patch, Terrain, io};
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 use crate::{
     Engine,
+    accept::preferred,
     body::{Id, JsonBody, content_type, from_json, read as read_body},
+    cells,
     problem::{Problem, ProblemType},
     store::Stored,
 };
@@ -152,15 +155,52 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Json<MapList> {
     Json(MapList { maps: engine.maps().list() })
 }
 
-/// One map as a JSON grid.
+/// How many cells to send.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+pub struct CellsQuery {
+    /// Most cells of an answer in bytes: of a larger map every so many are sent. Default: all.
+    #[param(minimum = 1)]
+    pub max_cells: Option<usize>,
+}
+
+/// One map as a JSON grid, or its cells in bytes as `Accept` asks. The bytes, little-endian: `JPC1`; columns, rows and stride
+/// as u32; cell_size_m, the south-west corner's x and y, and base_m as f64; by rows from the south, an f32 of elevation above
+/// base_m for each cell, NaN where unknown; then a u8 of its surface, an index into the summary's names or 255; then a u8
+/// that is 1 where there is an obstacle.
 #[utoipa::path(
     get, path = "/v1/maps/{id}", tag = "maps",
-    params(("id" = String, Path, description = "Content hash of the map")),
-    responses((status = 200, body = MapFile), (status = 404, body = Problem, content_type = "application/problem+json"))
+    params(("id" = String, Path, description = "Content hash of the map"), CellsQuery),
+    responses(
+        (status = 200, description = "The map", content((MapFile = "application/json"), (Vec<u8> = "application/octet-stream"))),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json")
+    )
 )]
-pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<MapFile>, Problem> {
+pub(crate) async fn read(
+    State(engine): State<Engine>,
+    Id(id): Id,
+    headers: HeaderMap,
+    uri: Uri,
+) -> Result<Response, Problem> {
+    let CellsQuery { max_cells } = cells_query(&uri)?;
     let map: Arc<Terrain> = engine.maps().get(&id)?;
-    Ok(Json(MapFile::from(&*map)))
+    if preferred(&headers, &["application/json", "application/octet-stream"]) == "application/json" {
+        return Ok(Json(MapFile::from(&*map)).into_response());
+    }
+    let bytes = engine.compute(move |_| Ok(cells::bytes(&map, max_cells.unwrap_or(usize::MAX)))).await?;
+    Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+}
+
+fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
+    let refused =
+        |why: String| Problem::new(ProblemType::InvalidRequest, format!("the query cannot be read: {why}"));
+    let Query(query) = Query::<CellsQuery>::try_from_uri(uri)
+        .map_err(|error| refused(format!("{error}; it may hold `max_cells`")))?;
+    match query.max_cells {
+        Some(0) => Err(refused("max_cells is 0, but must be at least 1".into())),
+        _ => Ok(query),
+    }
 }
 
 /// Change a rectangle of a map's cells. The changed map is stored beside the other, under its own id; what has been worked

@@ -24,9 +24,11 @@ use super::{
 };
 use crate::{
     Engine,
+    accept::preferred,
     body::{JsonBody, object, optional_object},
     geojson,
     problem::{Problem, ProblemType},
+    route_file,
 };
 
 /// What to plan.
@@ -38,7 +40,7 @@ pub struct PlanRequest {
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
-    /// Name of a built-in robot, or a robot.
+    /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Where the robot stands.
     #[serde(deserialize_with = "object")]
@@ -237,7 +239,12 @@ fn one() -> f64 {
     post, path = "/v1/plan", tag = "plan",
     request_body = PlanRequest,
     responses(
-        (status = 200, description = "The path; as GeoJSON when `Accept` asks for application/geo+json", body = PlanAnswer),
+        (status = 200, description = "The path, in the form that `Accept` asks for; the start of a GPX track is put at 0° N 0° E", content(
+            (PlanAnswer = "application/json"),
+            (Object = "application/geo+json"),
+            (String = "text/csv"),
+            (String = "application/gpx+xml")
+        )),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
@@ -251,35 +258,16 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Response, Problem> {
-    let accept = headers.get(header::ACCEPT).and_then(|v| v.to_str().ok()).unwrap_or("*/*");
-    let as_geojson = preference(accept, "application/geo+json") > preference(accept, "application/json");
+    let form =
+        preferred(&headers, &["application/json", "application/geo+json", "text/csv", "application/gpx+xml"]);
     let found = with_planner(&engine, &mut request, answer).await?;
-    if as_geojson {
-        let body = geojson::path(&found);
-        return Ok(([(header::CONTENT_TYPE, "application/geo+json")], Json(body)).into_response());
-    }
-    Ok(Json(found).into_response())
-}
-
-/// How much an `Accept` header wants a media type, 0 to 1 (RFC 9110, section 12.5.1); the most specific range counts.
-pub(crate) fn preference(accept: &str, media_type: &str) -> f64 {
-    let group = media_type.split('/').next().unwrap_or_default();
-    let mut found = (0, 0.0);
-    for range in accept.split(',') {
-        let mut parts = range.split(';').map(str::trim);
-        let name = parts.next().unwrap_or_default();
-        let exactness = match name.split_once('/') {
-            _ if name.eq_ignore_ascii_case(media_type) => 3,
-            Some((g, "*")) if g == group => 2,
-            Some(("*", "*")) => 1,
-            _ => continue,
-        };
-        let weight = parts.find_map(|p| p.strip_prefix("q=")?.parse().ok()).unwrap_or(1.0);
-        if exactness > found.0 {
-            found = (exactness, weight);
-        }
-    }
-    found.1
+    let body = match form {
+        "application/geo+json" => Json(geojson::path(&found)).into_response(),
+        "text/csv" => route_file::csv(&found).into_response(),
+        "application/gpx+xml" => route_file::gpx(&found).into_response(),
+        _ => Json(found).into_response(),
+    };
+    Ok(([(header::CONTENT_TYPE, form)], body).into_response())
 }
 
 /// Longest search for the path that a slope limit forbids [s].
@@ -291,6 +279,7 @@ pub(crate) async fn with_planner<T: Send + 'static>(
     request: &mut PlanRequest,
     answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
+    request.robot.look_up(engine.robots());
     let stored = choose_map(engine, request)?;
     let (inline, request) = (request.map.take(), request.clone());
     let own = engine.clone();
@@ -581,25 +570,4 @@ impl From<&Snap> for SnapAnswer {
 
 fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_preferred_media_type_is_the_one_with_the_greater_weight() {
-        let geojson =
-            |accept| preference(accept, "application/geo+json") > preference(accept, "application/json");
-        assert!(geojson("application/geo+json"));
-        assert!(geojson("application/json;q=0.5, application/geo+json"));
-        for accept in [
-            "*/*",
-            "application/json",
-            "application/json, application/geo+json;q=0.1",
-            "text/html, */*;q=0.8",
-        ] {
-            assert!(!geojson(accept), "{accept}");
-        }
-    }
 }

@@ -14,11 +14,12 @@ use terrain::{MapFile, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, preference, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, with_planner},
     robots::RobotChoice,
 };
 use crate::{
     Engine,
+    accept::preferred,
     body::{JsonBody, object, optional_object},
     problem::{Problem, ProblemType},
 };
@@ -140,9 +141,8 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<ReachableRequest>,
 ) -> Result<Response, Problem> {
-    let accept = headers.get(header::ACCEPT).and_then(|v| v.to_str().ok()).unwrap_or("*/*");
-    let vector = preference(accept, "application/geo+json").max(preference(accept, "application/json"));
-    let as_raster = preference(accept, "image/tiff") > vector;
+    let as_raster =
+        preferred(&headers, &["application/geo+json", "application/json", "image/tiff"]) == "image/tiff";
     let mut plan = request.plan();
     with_planner(&engine, &mut plan, move |planner, _, patience| {
         let found = Found::of(planner, &request, patience)?;

@@ -1,6 +1,6 @@
-//! `GET /v1/robots`, and robots as requests name them.
+//! `/v1/robots`: robots at hand, and robots as requests name them.
 
-use axum::Json;
+use axum::{Json, extract::State, http::StatusCode};
 use model::{Robot, builtin, robot::RobotFile};
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -8,19 +8,33 @@ use serde::{
 };
 use utoipa::ToSchema;
 
-use crate::{body::Id, problem::Problem};
+use crate::{
+    Engine,
+    body::{Id, JsonBody},
+    problem::Problem,
+    robots::RobotStore,
+};
 
-/// A robot by the name of a built-in one, or in full.
+/// A robot by the name of a built-in one or the id of a stored one, or in full.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
 pub enum RobotChoice {
-    /// Name of a built-in robot, as `husky-a200`.
+    /// Name of a built-in robot, as `husky-a200`, or id of a stored one.
     Name(String),
     /// The robot itself.
     File(Box<RobotFile>),
 }
 
 impl RobotChoice {
+    /// Puts a stored robot in the place of its id.
+    pub(crate) fn look_up(&mut self, stored: &RobotStore) {
+        if let RobotChoice::Name(id) = self
+            && let Some(robot) = stored.get(id)
+        {
+            *self = RobotChoice::File(Box::new(RobotFile::from(robot)));
+        }
+    }
+
     /// The robot, checked.
     ///
     /// # Errors
@@ -61,25 +75,65 @@ impl<'de> Deserialize<'de> for RobotChoice {
 /// Robots at hand.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct RobotList {
-    /// In the order of their names.
+    /// Built-in ones, in the order of their names.
     pub robots: Vec<Robot>,
+    /// Stored ones, in the order of their ids.
+    pub stored: Vec<StoredRobot>,
+}
+
+/// A robot with the id that requests may name it by.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct StoredRobot {
+    /// Content hash: the same robot always has the same id.
+    #[schema(example = "9c1185a5c5e9fc54")]
+    pub id: String,
+    /// The robot, every default filled in.
+    pub robot: Robot,
+}
+
+/// Store a robot.
+#[utoipa::path(
+    post, path = "/v1/robots", tag = "robots",
+    request_body = RobotFile,
+    responses(
+        (status = 201, description = "Stored", body = StoredRobot),
+        (status = 200, description = "Already at hand", body = StoredRobot),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 507, body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn create(
+    State(engine): State<Engine>,
+    JsonBody(file): JsonBody<RobotFile>,
+) -> Result<(StatusCode, Json<StoredRobot>), Problem> {
+    let robot = Robot::try_from(file).map_err(|error| Problem::invalid_robot(&error, ""))?;
+    let (own, kept) = (engine.clone(), robot.clone());
+    let (id, new) = engine.on_disk(move || own.robots().insert(kept)).await?;
+    let status = if new { StatusCode::CREATED } else { StatusCode::OK };
+    Ok((status, Json(StoredRobot { id, robot })))
 }
 
 /// Robots that requests may name.
 #[utoipa::path(get, path = "/v1/robots", tag = "robots", responses((status = 200, body = RobotList)))]
-pub(crate) async fn list() -> Json<RobotList> {
+pub(crate) async fn list(State(engine): State<Engine>) -> Json<RobotList> {
     let mut robots = builtin::all();
     robots.sort_by(|a, b| a.name.cmp(&b.name));
-    Json(RobotList { robots })
+    let stored = engine.robots().list().into_iter().map(|(id, robot)| StoredRobot { id, robot }).collect();
+    Json(RobotList { robots, stored })
 }
 
-/// One robot by its name.
+/// One robot by its name or id.
 #[utoipa::path(
     get, path = "/v1/robots/{id}", tag = "robots",
-    params(("id" = String, Path, description = "Name of the robot", example = "husky-a200")),
+    params(("id" = String, Path, description = "Name of a built-in robot or id of a stored one", example = "husky-a200")),
     responses((status = 200, body = Robot), (status = 404, body = Problem, content_type = "application/problem+json"))
 )]
-pub(crate) async fn read(Id(id): Id) -> Result<Json<Robot>, Problem> {
+pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<Robot>, Problem> {
+    if let Some(robot) = engine.robots().get(&id) {
+        return Ok(Json(robot));
+    }
     let found = builtin::by_name(&id).map_err(|error| {
         let mut problem = Problem::invalid_robot(&error, "");
         problem.errors.clear();

@@ -1,0 +1,160 @@
+/** Recordings that were dropped, and what reading each found. */
+import { useEffect, useState } from "preact/hooks";
+import { listRecordings, readRecording, type RecordingSummary, type ReadingReport } from "../api/recordings";
+import { problemOf } from "../api/problem";
+import { bytes, duration, plain, words } from "../format";
+import { DropZone } from "../widgets/drop_zone";
+import { ProblemCard } from "../widgets/problem_card";
+import { Progress } from "../widgets/progress";
+import { job, leave, problem, take, taken, takeStored, type Role, type Taken } from "./state";
+
+const ENDINGS = ".csv,.tsv,.parquet,.mcap,.bag";
+
+const POWER_FORMS: Record<string, string> = {
+  sides: "both sides",
+  battery: "the battery",
+  current_and_voltage: "current and voltage",
+  motor_currents: "motor currents",
+};
+
+const ROLES: { role: Role; label: string; about: string }[] = [
+  { role: "suspect", label: "Drop the suspect drives here", about: "CSV, Parquet, MCAP or ROS 1 bag, two minutes of driving at least" },
+  { role: "healthy", label: "Drop healthy drives here", about: "Optional: the same robot when all was well. Makes it far sharper" },
+];
+
+export function Recordings() {
+  return (
+    <div class="recordings">
+      {ROLES.map(({ role, label, about }) => (
+        <section key={role} aria-label={role === "suspect" ? "Suspect drives" : "Healthy drives"}>
+          <DropZone label={label} accept={ENDINGS} isMany take={(files) => take(files, role)}>
+            <span>{about}</span>
+          </DropZone>
+          <Stored role={role} />
+          {taken.value
+            .filter((one) => one.role === role)
+            .map((one) => (
+              <Card key={one.key} one={one} />
+            ))}
+        </section>
+      ))}
+    </div>
+  );
+}
+
+/** Recordings that the service has already. */
+function Stored({ role }: { role: Role }) {
+  const [all, setAll] = useState<RecordingSummary[]>([]);
+  useEffect(() => {
+    listRecordings().then(setAll, () => setAll([]));
+  }, [job.value, taken.value.length]);
+  const others = all.filter(({ id }) => !taken.value.some((one) => one.recording?.id === id));
+  if (others.length === 0) return null;
+  const choose = (id: string) => {
+    if (id)
+      readRecording(id).then(
+        (recording) => takeStored(recording, role),
+        (thrown) => (problem.value = problemOf(thrown)),
+      );
+  };
+  return (
+    <select class="stored" aria-label={`A stored recording as ${role}`} value="" onChange={(event) => choose(event.currentTarget.value)}>
+      <option value="">or a stored one…</option>
+      {others.map(({ id, rows, format, bytes: size }) => (
+        <option key={id} value={id}>
+          {format} · {rows.toLocaleString("en")} rows · {bytes(size)} · {id.slice(0, 6)}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+function Card({ one }: { one: Taken }) {
+  return (
+    <article class="recording">
+      <header>
+        <b>{one.name}</b>
+        <small>{bytes(one.bytes)}</small>
+        <button type="button" class="quiet" aria-label={`Leave ${one.name} out`} title="Leave it out" onClick={() => leave(one.key)}>
+          ×
+        </button>
+      </header>
+      {one.problem && <ProblemCard problem={one.problem} />}
+      {!one.problem && !one.recording && (
+        <Progress label={one.share < 1 ? "Sending" : "Reading"} share={one.share < 1 ? one.share : null} />
+      )}
+      {one.recording && <Reading report={one.recording.report} />}
+    </article>
+  );
+}
+
+function Reading({ report }: { report: ReadingReport }) {
+  const seconds = report.runs.reduce((sum, run) => sum + run.duration_s, 0);
+  const rate_hz = report.runs[0]?.rate_hz;
+  const warnings = [
+    ...report.suspicions.map((doubt) => ({ what: words(doubt.channel), why: doubt.statement })),
+    ...report.repairs.map(({ place, what }) => ({ what: place, why: what })),
+    ...report.ignored.map(({ name, reason }) => ({ what: name, why: reason })),
+    ...report.aside.map((name) => ({ what: name, why: "kept aside: its name says no known channel" })),
+  ];
+  return (
+    <>
+      <dl class="facts">
+        <Fact name="Rows" value={report.rows.toLocaleString("en")} />
+        <Fact name="Drives" value={String(report.runs.length)} />
+        <Fact name="Time" value={duration(seconds)} />
+        <Fact name="Rate" value={rate_hz ? `${plain(rate_hz)} Hz` : "–"} />
+        <Fact name="Power by" value={POWER_FORMS[report.power_form ?? ""] ?? "nothing"} />
+      </dl>
+      {warnings.length > 0 ? (
+        <ul class="warnings">
+          {warnings.map(({ what, why }, i) => (
+            <li key={i}>
+              <b>{what}</b> {why}
+            </li>
+          ))}
+        </ul>
+      ) : (
+        <p class="fine">Nothing suspicious.</p>
+      )}
+      <details>
+        <summary>{report.channels.length} channels</summary>
+        <div class="table-scroll">
+          <table>
+            <thead>
+              <tr>
+                <th scope="col">Channel</th>
+                <th scope="col">From</th>
+                <th scope="col">Least</th>
+                <th scope="col">Greatest</th>
+                <th scope="col">Gaps</th>
+              </tr>
+            </thead>
+            <tbody>
+              {report.channels.map(({ channel, from, unit, least, greatest, gaps }) => (
+                <tr key={channel}>
+                  <th scope="row">{words(channel)}</th>
+                  <td>
+                    {from} [{unit}]
+                  </td>
+                  <td>{plain(least)}</td>
+                  <td>{plain(greatest)}</td>
+                  <td>{gaps}</td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        </div>
+      </details>
+    </>
+  );
+}
+
+export function Fact({ name, value }: { name: string; value: string }) {
+  return (
+    <div>
+      <dt>{name}</dt>
+      <dd>{value}</dd>
+    </div>
+  );
+}

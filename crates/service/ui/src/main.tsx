@@ -1,0 +1,33 @@
+/** Puts the page together and starts it. */
+import { render } from "preact";
+import { App } from "./app";
+import { followJobs } from "./diagnose/state";
+import { keepLink, readLink } from "./plan/link";
+import { followMap, loadAll } from "./plan/load";
+import { followReach } from "./plan/reach";
+import { followQuestion } from "./plan/replan";
+import "uplot/dist/uPlot.min.css";
+import "./style/tokens.css";
+import "./style/base.css";
+import "./style/controls.css";
+import "./style/map.css";
+import "./style/answer.css";
+import "./style/plan.css";
+import "./style/robots.css";
+import "./style/diagnose.css";
+import "./style/report.css";
+
+readLink();
+followMap();
+followQuestion();
+followReach();
+followJobs();
+keepLink();
+addEventListener("hashchange", () => {
+  readLink();
+  void loadAll();
+});
+void loadAll();
+
+const page = document.getElementById("page");
+if (page) render(<App />, page);

@@ -1,0 +1,134 @@
+/** Mouse and touch on the map: place ends, drag them, turn them, pan, zoom, and point at paths. */
+import { OBJECTIVES } from "../api/plans";
+import * as state from "../plan/state";
+import { nearest } from "./along";
+import { handleAt } from "./draw";
+import { setEnd, settle, type End } from "./ends";
+import { panned, toMetres, toPixel, zoomed, type Point, type Size, type View } from "./view";
+
+/** What a gesture works on. */
+export interface Board {
+  element: HTMLElement;
+  size: () => Size;
+  view: () => View | null;
+  show: (view: View) => void;
+}
+
+type Doing =
+  { kind: "pan" } | { kind: "move"; end: End } | { kind: "turn"; end: End; isPlacing: boolean } | { kind: "pinch"; apart: number };
+
+/** Pixels within which something is hit; fingers are wider than pointers. */
+const reach = (event: PointerEvent) => (event.pointerType === "touch" ? 26 : 15);
+/** A pointer that goes further than this is dragging. */
+const DRAG_PX = 8;
+
+/** Listens until the signal ends. */
+export function listen(board: Board, signal: AbortSignal): void {
+  const { element } = board;
+  const fingers = new Map<number, Point>();
+  let doing: Doing | null = null;
+  let last: Point = { x: 0, y: 0 };
+
+  const pointOf = (event: MouseEvent): Point => {
+    const box = element.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  };
+  const on = <K extends keyof HTMLElementEventMap>(name: K, act: (event: HTMLElementEventMap[K]) => void) =>
+    element.addEventListener(name, act, { signal, passive: false });
+
+  on("pointerdown", (event) => {
+    const view = board.view();
+    if (!view || event.button > 1) return;
+    element.setPointerCapture(event.pointerId);
+    last = pointOf(event);
+    fingers.set(event.pointerId, last);
+    doing = fingers.size === 2 ? { kind: "pinch", apart: apart(fingers) } : begun(board, view, event, last);
+    if (doing.kind === "move") state.isDragging.value = true;
+  });
+
+  on("pointermove", (event) => {
+    const view = board.view();
+    const size = board.size();
+    const point = pointOf(event);
+    if (!view) return;
+    if (fingers.has(event.pointerId)) fingers.set(event.pointerId, point);
+    if (!doing) pointAt(view, size, point, reach(event));
+    else if (doing.kind === "pinch") doing.apart = pinch(board, view, fingers, doing.apart);
+    else if (doing.kind === "pan") board.show(panned(view, point.x - last.x, point.y - last.y));
+    else drag(view, size, point, doing);
+    last = point;
+  });
+
+  const end = (event: PointerEvent) => {
+    fingers.delete(event.pointerId);
+    if (doing?.kind === "move" || doing?.kind === "turn") settle(doing.end);
+    doing = null;
+    state.isDragging.value = false;
+  };
+  on("pointerup", end);
+  on("pointercancel", end);
+
+  on("wheel", (event) => {
+    const [view, map] = [board.view(), state.map.value];
+    if (!view || !map) return;
+    event.preventDefault();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+    board.show(zoomed(view, board.size(), pointOf(event), Math.exp(-0.0016 * lines * event.deltaY), map));
+  });
+}
+
+/** What a press begins: a heading's handle, an end, a placing, or a pan. */
+function begun(board: Board, view: View, event: PointerEvent, point: Point): Doing {
+  const size = board.size();
+  const near = (at: Point) => Math.hypot(at.x - point.x, at.y - point.y) <= reach(event);
+  const placing = state.tool.value;
+  for (const end of ["start", "goal"] as const) {
+    const place = state[end].value;
+    if (!place) continue;
+    if (place.heading_rad !== undefined && near(handleAt(view, size, place))) return { kind: "turn", end, isPlacing: false };
+    if (near(toPixel(view, size, place.x_m, place.y_m)) && (placing === "move" || placing === end)) return { kind: "move", end };
+  }
+  if (placing === "move" || event.button === 1) return { kind: "pan" };
+  setEnd(placing, toMetres(view, size, point));
+  return { kind: "turn", end: placing, isPlacing: true };
+}
+
+function drag(view: View, size: Size, point: Point, doing: Extract<Doing, { end: End }>): void {
+  const place = state[doing.end].value;
+  if (!place) return;
+  if (doing.kind === "move") {
+    setEnd(doing.end, { ...place, ...toMetres(view, size, point) });
+    return;
+  }
+  const from = toPixel(view, size, place.x_m, place.y_m);
+  if (doing.isPlacing && Math.hypot(point.x - from.x, point.y - from.y) < DRAG_PX) return;
+  state[doing.end].value = { ...place, heading_rad: Math.atan2(from.y - point.y, point.x - from.x) };
+}
+
+const apart = (fingers: Map<number, Point>) => {
+  const [a, b] = [...fingers.values()];
+  return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 1;
+};
+
+function pinch(board: Board, view: View, fingers: Map<number, Point>, before: number): number {
+  const [a, b] = [...fingers.values()];
+  const map = state.map.value;
+  if (!a || !b || !map) return before;
+  const now = apart(fingers);
+  board.show(zoomed(view, board.size(), { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 }, now / before, map));
+  return now;
+}
+
+/** Puts the robot on the path that the pointer is at, and that path in focus. */
+function pointAt(view: View, size: Size, point: Point, within: number): void {
+  const plans = state.comparison.value;
+  if (!plans) return;
+  const order = [state.focus.value, ...OBJECTIVES.filter((objective) => objective !== state.focus.value)];
+  for (const objective of order) {
+    const found = nearest(plans[objective].poses, view, size, point);
+    if (!found || found.off > within) continue;
+    state.focus.value = objective;
+    state.along_m.value = found.pose.distance_m;
+    return;
+  }
+}

@@ -1,0 +1,162 @@
+/** The map: ground below, paths and ends above, for mouse, fingers and keys. */
+import { effect, signal, useComputed } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { Cells } from "../api/maps";
+import * as state from "../plan/state";
+import { color, theme } from "../theme";
+import { poseAt } from "./along";
+import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
+import { listen } from "./gestures";
+import { cursor, KEYS, press } from "./keys";
+import { Legend } from "./legend";
+import { relief, scaleOf, slopesOf } from "./relief";
+import { ScaleBar } from "./scale_bar";
+import { fitted, toPixel, zoomed, type Size, type View } from "./view";
+
+export const view = signal<View | null>(null);
+const size = signal<Size>({ width: 0, height: 0 });
+
+/** The picture of the ground with what its colours mean. */
+const ground = signal<{ picture: HTMLCanvasElement; least: number; greatest: number } | null>(null);
+
+let drawn: { cells: Cells; slopes: ReturnType<typeof slopesOf> } | null = null;
+
+/** Draws the ground anew when the map or the layer changes. */
+effect(() => {
+  const [cells, layer] = [state.cells.value, state.layer.value];
+  if (!cells) {
+    ground.value = null;
+    return;
+  }
+  if (drawn?.cells !== cells) drawn = { cells, slopes: slopesOf(cells) };
+  const scale = scaleOf(cells, drawn.slopes, layer);
+  ground.value = { picture: relief(cells, drawn.slopes, layer, scale), ...scale };
+});
+
+/** The picture of the ground, for the view in three dimensions. */
+export const groundPicture = () => ground.value?.picture ?? null;
+
+function sized(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
+  const ratio = devicePixelRatio || 1;
+  const { width, height } = size.value;
+  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
+  const context = canvas.getContext("2d");
+  context?.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context?.clearRect(0, 0, width, height);
+  return context;
+}
+
+function drawGround(canvas: HTMLCanvasElement): void {
+  const [shown, cells, picture] = [view.value, state.cells.value, ground.value?.picture];
+  const context = sized(canvas);
+  if (!context || !shown || !cells || !picture) return;
+  const west = toPixel(shown, size.value, cells.x_m, cells.y_m + cells.rows * cells.cell_size_m);
+  const px = cells.cell_size_m * shown.px_per_m;
+  // Single cells are shown as they are once they are large enough to be seen.
+  context.imageSmoothingEnabled = px < 12;
+  context.imageSmoothingQuality = "high";
+  context.drawImage(picture, west.x, west.y, cells.columns * px, cells.rows * px);
+}
+
+function drawOver(canvas: HTMLCanvasElement): void {
+  const context = sized(canvas);
+  const [shown, plans] = [view.value, state.comparison.value];
+  void theme.value;
+  if (!context || !shown) return;
+  const scene: Scene = { context, view: shown, size: size.value, color };
+  drawContours(scene, state.contours.value);
+  if (plans) drawPaths(scene, plans, state.former.value, state.focus.value);
+  if (state.goal.value) drawEnd(scene, state.goal.value, "G");
+  if (state.start.value) drawEnd(scene, state.start.value, "S");
+  const pose = plans && state.along_m.value !== null ? poseAt(plans[state.focus.value].poses, state.along_m.value) : null;
+  if (pose) drawRobot(scene, pose);
+  if (cursor.value) drawCrosshair(scene, cursor.value);
+}
+
+/** Shows the whole of a map when another one is chosen. */
+function followFit(): () => void {
+  let fittedFor = "";
+  return effect(() => {
+    const [map, { width, height }] = [state.map.value, size.value];
+    if (!map || width === 0) return;
+    const key = `${map.id} ${Math.round(width / 40)} ${Math.round(height / 40)}`;
+    if (key === fittedFor) return;
+    fittedFor = key;
+    view.value = fitted(map, { width, height });
+  });
+}
+
+export function MapView() {
+  const frame = useRef<HTMLDivElement>(null);
+  const below = useRef<HTMLCanvasElement>(null);
+  const above = useRef<HTMLCanvasElement>(null);
+
+  useEffect(() => {
+    const [element, groundCanvas, overCanvas] = [frame.current, below.current, above.current];
+    if (!element || !groundCanvas || !overCanvas) return;
+    const ended = new AbortController();
+    const watcher = new ResizeObserver(() => (size.value = { width: element.clientWidth, height: element.clientHeight }));
+    watcher.observe(element);
+    listen({ element: overCanvas, size: () => size.value, view: () => view.value, show: (next) => (view.value = next) }, ended.signal);
+    const stops = [effect(() => drawGround(groundCanvas)), effect(() => drawOver(overCanvas)), followFit()];
+    return () => {
+      ended.abort();
+      watcher.disconnect();
+      for (const stop of stops) stop();
+    };
+  }, []);
+
+  const hint = useComputed(() => {
+    if (state.tool.value === "start") return "Click where the robot starts; drag to set its heading";
+    return state.tool.value === "goal" ? "Click where it is to go" : "";
+  });
+  const onKey = (event: KeyboardEvent) => {
+    if (view.value && press(event, view.value, size.value, (next) => (view.value = next))) event.preventDefault();
+  };
+  const zoom = (factor: number) => () => {
+    const [shown, map] = [view.value, state.map.value];
+    if (shown && map) view.value = zoomed(shown, size.value, { x: size.value.width / 2, y: size.value.height / 2 }, factor, map);
+  };
+  const fit = () => {
+    if (state.map.value) view.value = fitted(state.map.value, size.value);
+  };
+
+  return (
+    <div class="map" data-tool={state.tool.value}>
+      <div
+        ref={frame}
+        class="map-frame"
+        tabIndex={0}
+        role="application"
+        aria-roledescription="map"
+        aria-label="Map of the ground with the paths"
+        aria-describedby="map-keys"
+        onKeyDown={onKey}
+        onBlur={() => (cursor.value = null)}
+      >
+        <canvas ref={below} class="map-ground" aria-hidden="true" />
+        <canvas ref={above} class="map-over" aria-hidden="true" />
+      </div>
+      <p id="map-keys" class="map-keys">
+        {KEYS}
+      </p>
+      {hint.value && <p class="map-hint">{hint}</p>}
+      <div class="map-zoom" role="group" aria-label="Zoom">
+        <button type="button" aria-label="Zoom in" title="Zoom in" onClick={zoom(1.5)}>
+          +
+        </button>
+        <button type="button" aria-label="Zoom out" title="Zoom out" onClick={zoom(1 / 1.5)}>
+          −
+        </button>
+        <button type="button" aria-label="Show the whole map" title="Show the whole map" onClick={fit}>
+          ⤢
+        </button>
+      </div>
+      <div class="map-foot">
+        {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
+        {view.value && <ScaleBar view={view.value} />}
+      </div>
+    </div>
+  );
+}

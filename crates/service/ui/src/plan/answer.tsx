@@ -1,0 +1,213 @@
+/** The answer: one sentence, three paths side by side, and the charge that is left. */
+import type { Objective, Plan } from "../api/plans";
+import { OBJECTIVES } from "../api/plans";
+import { clock, energy, energyUnit, metres, percent, type EnergyUnit } from "../format";
+import { STYLE } from "../map/draw";
+import { ProblemCard } from "../widgets/problem_card";
+import { Progress } from "../widgets/progress";
+import { arrivalCharge } from "./charge";
+import { followsAnswer } from "./slow";
+import * as state from "./state";
+
+export function Answer() {
+  const plans = state.comparison.value;
+  if (state.problem.value) return <ProblemCard problem={state.problem.value} />;
+  if (!plans) return <NoAnswer />;
+  const unit = energyUnit(plans.distance.energy_j);
+  return (
+    <section
+      class="answer"
+      aria-label="Paths compared"
+      aria-busy={state.isPlanning.value}
+      data-slow={followsAnswer.value && !state.isDragging.value}
+    >
+      {followsAnswer.value && <progress class="answer-wait" aria-label="Planning" />}
+      <Headline />
+      <div class="answer-scroll">
+        <table>
+          <caption class="unseen">
+            Energy-minimal, shortest and fastest paths. Choose one to follow it on the map and in the charts.
+          </caption>
+          <thead>
+            <tr>
+              <th scope="col">Path</th>
+              <th scope="col">
+                Energy <small>{unit.name}</small>
+              </th>
+              <th scope="col">
+                Time <small>min</small>
+              </th>
+              <th scope="col">
+                Length <small>m</small>
+              </th>
+              <th scope="col">
+                Climb <small>m</small>
+              </th>
+            </tr>
+          </thead>
+          <tbody>
+            {OBJECTIVES.map((objective) => (
+              <Row key={objective} objective={objective} plan={plans[objective]} unit={unit} />
+            ))}
+            {state.former.value && <Figures name="former" plan={state.former.value} unit={unit} />}
+          </tbody>
+        </table>
+      </div>
+      <Charge plan={plans[state.focus.value]} />
+      <Proof />
+    </section>
+  );
+}
+
+function NoAnswer() {
+  const [start, goal] = [state.start.value, state.goal.value];
+  if (start && goal) {
+    return (
+      <section class="answer answer-none" aria-label="Paths compared" aria-busy={state.isPlanning.value}>
+        <Progress label="Planning" share={null} />
+      </section>
+    );
+  }
+  return (
+    <section class="answer answer-none" aria-label="Paths compared">
+      <p class="answer-big">Where to?</p>
+      <p>{start ? "Now click where it is to go." : "Click the map where the robot starts. Drag as you click to set its heading."}</p>
+    </section>
+  );
+}
+
+function Headline() {
+  const plans = state.comparison.value;
+  if (!plans) return null;
+  const { energy: best, distance: shortest } = plans;
+  const further_m = best.distance_m - shortest.distance_m;
+  const saved = plans.saving_fraction;
+  const detour = further_m > 0.5 ? `by driving ${metres(further_m)} further` : "at the same length";
+  const small = saved < 0.0005;
+  return (
+    <header class="answer-head">
+      <p class="answer-big">
+        <span class="number">{energy(best.energy_j)}</span>
+        {!small && <span class="answer-saving">{percent(saved)} less</span>}
+      </p>
+      <p>
+        {small
+          ? "The shortest path is also the energy-minimal one."
+          : `The energy-minimal path saves ${energy(shortest.energy_j - best.energy_j)} against the shortest, ${detour}.`}
+      </p>
+      <Correction now={best} />
+    </header>
+  );
+}
+
+/** What a correction of the robot has changed. */
+function Correction({ now }: { now: Plan }) {
+  const before = state.former.value;
+  if (!before) return null;
+  const more_j = now.energy_j - before.energy_j;
+  const size = `${energy(Math.abs(more_j))} (${percent(Math.abs(more_j / before.energy_j), 1)})`;
+  return (
+    <p class="correction">
+      With the corrected robot {size} {more_j < 0 ? "less" : "more"} than its file predicted before.
+    </p>
+  );
+}
+
+interface RowProps {
+  plan: Plan;
+  unit: EnergyUnit;
+}
+
+function Row({ objective, ...row }: RowProps & { objective: Objective }) {
+  return <Figures name={objective} isChosen={state.focus.value === objective} choose={() => (state.focus.value = objective)} {...row} />;
+}
+
+function Figures({ name, plan, unit, isChosen, choose }: RowProps & { name: keyof typeof STYLE; isChosen?: boolean; choose?: () => void }) {
+  const written = (value_j: number) => (value_j / unit.joules).toFixed(1);
+  const [low, high] = plan.energy_interval_j;
+  const label = (
+    <>
+      <Swatch name={name} />
+      {STYLE[name].name}
+    </>
+  );
+  return (
+    <tr data-chosen={isChosen} onClick={choose}>
+      <th scope="row">
+        {choose ? (
+          <button type="button" aria-pressed={isChosen}>
+            {label}
+          </button>
+        ) : (
+          <span class="row-name">{label}</span>
+        )}
+      </th>
+      <td>
+        <b>{written(plan.energy_j)}</b>
+        <small title="95 % interval, from what is not known of the robot exactly">
+          {written(low)} – {written(high)}
+        </small>
+      </td>
+      <td>{clock(plan.duration_s)}</td>
+      <td>{plan.distance_m.toFixed(plan.distance_m < 100 ? 1 : 0)}</td>
+      <td>{plan.climb_m.toFixed(plan.climb_m < 10 ? 1 : 0)}</td>
+    </tr>
+  );
+}
+
+/** The path's line as it is on the map. */
+export function Swatch({ name }: { name: keyof typeof STYLE }) {
+  const { color, dash } = STYLE[name];
+  return (
+    <svg class="swatch" viewBox="0 0 26 8" width="26" height="8" aria-hidden="true">
+      <line
+        x1="2"
+        y1="4"
+        x2="24"
+        y2="4"
+        stroke={`var(--${color})`}
+        stroke-width="3.5"
+        stroke-linecap="round"
+        stroke-dasharray={dash.map((length) => length * 0.7).join(" ") || undefined}
+      />
+    </svg>
+  );
+}
+
+function Charge({ plan }: { plan: Plan }) {
+  const robot = state.robot.value?.robot;
+  const left = robot && arrivalCharge(plan, robot, state.charge.value);
+  if (!left) return null;
+  const fine = left.least >= left.reserve;
+  const share = (charge: number) => `${100 * Math.max(0, charge)}%`;
+  const words = left.charge < 0 ? "The battery is empty before the goal." : fine ? "" : `Below the reserve of ${percent(left.reserve)}.`;
+  return (
+    <div class="charge" data-fine={fine}>
+      <span>Arrives with</span>
+      <b class="number">{percent(Math.max(left.charge, 0), 1)}</b>
+      <div
+        class="charge-bar"
+        role="img"
+        aria-label={`Charge at the goal between ${percent(left.least, 1)} and ${percent(left.greatest, 1)}, reserve ${percent(left.reserve)}`}
+      >
+        <i style={{ width: share(left.charge) }} />
+        <em style={{ left: share(left.reserve) }} />
+      </div>
+      {words && <small>{words}</small>}
+    </div>
+  );
+}
+
+/** What is proven of the energy-minimal path. */
+function Proof() {
+  const search = state.comparison.value?.energy.search;
+  if (!search) return null;
+  const isLeast = search.bound === null || search.bound <= 1.0005;
+  const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
+  const text = isLeast
+    ? "Proven: no path of the planner's lattice takes less."
+    : state.isDragging.value
+      ? `${near}, which follows.`
+      : `${near}.`;
+  return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
+}

@@ -1,0 +1,26 @@
+/** What is there before any map is. */
+import { DropZone } from "../widgets/drop_zone";
+import { addMap, addSample, sending } from "./load";
+
+export const MAP_ENDINGS = ".json,.asc,.txt,.tif,.tiff";
+
+export function FirstMap() {
+  return (
+    <div class="first-map">
+      <h2>Paths that cost the least energy</h2>
+      <p>
+        Give the ground, a start and a goal. joulepath finds the path that draws least from a skid-steered robot's battery, proves that none
+        is cheaper, and shows it beside the shortest and the fastest.
+      </p>
+      <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
+        <span>GeoTIFF in projected metres, ESRI ASCII grid (.asc), or a JSON grid</span>
+      </DropZone>
+      <p class="first-map-or">
+        <button type="button" class="primary" disabled={sending.value !== null} onClick={() => void addSample()}>
+          Open the sample map
+        </button>
+        <span>400 m × 400 m of Minnesota, from lidar</span>
+      </p>
+    </div>
+  );
+}

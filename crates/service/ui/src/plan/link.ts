@@ -1,0 +1,75 @@
+/** The question as part of the page's address, so that a link shows the same. */
+import { effect } from "@preact/signals";
+import type { Place } from "../api/plans";
+import { job } from "../diagnose/state";
+import { tab, type Tab, TABS } from "../tab";
+import * as state from "./state";
+
+const number = (text: string | null) => (text !== null && text !== "" && Number.isFinite(Number(text)) ? Number(text) : null);
+const rounded = (value: number, places = 3) => String(Number(value.toFixed(places)));
+
+function place(text: string | null): Place | null {
+  const [x_m, y_m, heading_rad] = (text ?? "").split(",").map(Number);
+  if (x_m === undefined || y_m === undefined || !Number.isFinite(x_m) || !Number.isFinite(y_m)) return null;
+  return heading_rad !== undefined && Number.isFinite(heading_rad) ? { x_m, y_m, heading_rad } : { x_m, y_m };
+}
+
+const written = ({ x_m, y_m, heading_rad }: Place) =>
+  [rounded(x_m), rounded(y_m), ...(heading_rad === undefined ? [] : [rounded(heading_rad, 4)])].join(",");
+
+/** Takes up what the address says. */
+export function readLink(): void {
+  const [name = "", query = ""] = location.hash.slice(1).split("?");
+  const said = new URLSearchParams(query);
+  tab.value = TABS.includes(name as Tab) ? (name as Tab) : "plan";
+  state.mapId.value = said.get("map") ?? state.mapId.value;
+  state.robotId.value = said.get("robot") ?? state.robotId.value;
+  state.formerId.value = said.get("former");
+  state.start.value = place(said.get("start")) ?? state.start.value;
+  state.goal.value = place(said.get("goal")) ?? state.goal.value;
+  state.speed_mps.value = number(said.get("speed_mps"));
+  state.payload_kg.value = number(said.get("payload_kg")) ?? 0;
+  state.charge.value = number(said.get("charge")) ?? 1;
+  state.surface.value = said.get("surface");
+  const layer = said.get("layer");
+  if (layer === "slope" || layer === "surface") state.layer.value = layer;
+  state.is3d.value = said.has("3d");
+  const reach = said.get("reach");
+  state.reach.value = reach === "outward" || reach === "out-and-back" ? reach : null;
+  if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
+  if (said.has("job")) job.value = { id: said.get("job") ?? "", state: "queued" };
+}
+
+function link(): string {
+  const said = new URLSearchParams();
+  const say = (name: string, value: string | null | undefined) => value && said.set(name, value);
+  say("map", state.mapId.value);
+  if (state.robotId.value !== "husky-a200") say("robot", state.robotId.value);
+  say("former", state.formerId.value);
+  say("start", state.start.value && written(state.start.value));
+  say("goal", state.goal.value && written(state.goal.value));
+  say("speed_mps", state.speed_mps.value !== null ? rounded(state.speed_mps.value) : null);
+  say("payload_kg", state.payload_kg.value ? rounded(state.payload_kg.value) : null);
+  say("charge", state.charge.value < 1 ? rounded(state.charge.value) : null);
+  say("surface", state.surface.value);
+  say("layer", state.layer.value === "elevation" ? null : state.layer.value);
+  if (state.is3d.value) said.set("3d", "");
+  say("reach", state.reach.value);
+  say("job", job.value?.id);
+  const query = said
+    .toString()
+    .replaceAll("%2C", ",")
+    .replace(/=(?=&|$)/g, "");
+  return `#${tab.value}${query ? `?${query}` : ""}`;
+}
+
+/** Begins to keep the address as the page is. */
+export function keepLink(): void {
+  let waiting: ReturnType<typeof setTimeout> | undefined;
+  effect(() => {
+    const now = link();
+    // Browsers refuse an address that changes with every step of a slider.
+    clearTimeout(waiting);
+    waiting = setTimeout(() => location.hash !== now && history.replaceState(null, "", now), 200);
+  });
+}

@@ -1,0 +1,75 @@
+/** Which map, how it is drawn, and what a click on it does. */
+import { metres } from "../format";
+import type { MapSummary } from "../api/maps";
+import type { ReachKind } from "../api/reachable";
+import { Choice } from "../widgets/choice";
+import { MAP_ENDINGS } from "./first_map";
+import { addMap, chooseMap } from "./load";
+import * as state from "./state";
+
+const title = ({ id, rows, columns, cell_size_m, elevation_range_m: [low, high] }: MapSummary) =>
+  `${metres(columns * cell_size_m)} × ${metres(rows * cell_size_m)}, ${metres(high - low)} relief · ${id.slice(0, 6)}`;
+
+export function MapBar() {
+  const hasSurfaces = (state.map.value?.surfaces.length ?? 0) > 0;
+  return (
+    <div class="map-bar">
+      <label class="field map-choice">
+        <span class="unseen">Map</span>
+        <select value={state.mapId.value ?? ""} onChange={(event) => chooseMap(event.currentTarget.value)}>
+          {state.maps.value?.map((map) => (
+            <option key={map.id} value={map.id}>
+              {title(map)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label class="button file">
+        <input
+          type="file"
+          accept={MAP_ENDINGS}
+          onChange={(event) => {
+            const file = event.currentTarget.files?.[0];
+            if (file) void addMap(file);
+            event.currentTarget.value = "";
+          }}
+        />
+        Add map…
+      </label>
+      <Choice
+        label="A click sets"
+        value={state.tool.value}
+        choose={(tool) => (state.tool.value = tool)}
+        options={[
+          { value: "start", name: "Start" },
+          { value: "goal", name: "Goal" },
+          { value: "move", name: "Move" },
+        ]}
+      />
+      <Choice
+        label="Layer"
+        value={state.layer.value}
+        choose={(layer) => (state.layer.value = layer)}
+        options={[
+          { value: "elevation", name: "Elevation" },
+          { value: "slope", name: "Slope" },
+          ...(hasSurfaces ? [{ value: "surface" as const, name: "Surface" }] : []),
+        ]}
+      />
+      {state.hasReach.value && (
+        <select
+          aria-label="Contours of energy"
+          value={state.reach.value ?? ""}
+          onChange={(event) => (state.reach.value = (event.currentTarget.value as ReachKind) || null)}
+        >
+          <option value="">No contours</option>
+          <option value="outward">Reach from start</option>
+          <option value="out-and-back">Reach and back</option>
+        </select>
+      )}
+      <button type="button" aria-pressed={state.is3d.value} onClick={() => (state.is3d.value = !state.is3d.value)}>
+        3-D
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,106 @@
+/** The robot and what the sliders change of it; every change is planned anew. */
+import { duration, metres, percent, words } from "../format";
+import { RobotSelect } from "../widgets/robot_select";
+import { Slider } from "../widgets/slider";
+import * as state from "./state";
+
+/** No robot is loaded with more than this share of its own mass here. */
+const MOST_PAYLOAD = 0.8;
+
+const digits = (value: number, places: number) => value.toFixed(places);
+
+export function Question() {
+  const known = state.robot.value;
+  if (!known) return null;
+  const { robot } = known;
+  const speed_mps = Math.min(state.speed_mps.value ?? state.usualSpeed(robot), robot.max_wheel_speed_mps);
+  const { battery } = robot;
+  return (
+    <section class="question" aria-label="Robot">
+      <RobotChoice />
+      <Slider
+        label="Speed"
+        value={speed_mps}
+        least={0.1 * robot.max_wheel_speed_mps}
+        greatest={robot.max_wheel_speed_mps}
+        step={0.01 * robot.max_wheel_speed_mps}
+        written={`${digits(speed_mps, 2)}\u202fm/s`}
+        change={(value) => (state.speed_mps.value = value)}
+      />
+      <Slider
+        label="Payload"
+        value={state.payload_kg.value}
+        least={0}
+        greatest={Math.round(MOST_PAYLOAD * robot.mass_kg)}
+        step={1}
+        written={`${digits(state.payload_kg.value, 0)}\u202fkg`}
+        change={(value) => (state.payload_kg.value = value)}
+      />
+      {battery && (
+        <Slider
+          label="Charge"
+          value={state.charge.value}
+          least={0.05}
+          greatest={1}
+          step={0.01}
+          written={`${percent(state.charge.value)} of ${battery.capacity_wh}\u202fWh`}
+          change={(value) => (state.charge.value = value)}
+        />
+      )}
+      <Ground />
+      <Along />
+    </section>
+  );
+}
+
+function RobotChoice() {
+  const choose = (id: string) => {
+    state.robotId.value = id;
+    state.formerId.value = null;
+    state.surface.value = null;
+  };
+  return <RobotSelect label="Robot" value={state.robotId.value} choose={choose} />;
+}
+
+function Ground() {
+  const robot = state.robot.value?.robot;
+  if (!robot) return null;
+  const isNamed = (state.map.value?.surfaces.length ?? 0) > 0;
+  return (
+    <label class="field">
+      <span>{isNamed ? "Ground the map leaves open" : "Ground"}</span>
+      <select
+        value={state.surface.value ?? robot.default_surface}
+        onChange={(event) => {
+          const name = event.currentTarget.value;
+          state.surface.value = name === robot.default_surface ? null : name;
+        }}
+      >
+        {Object.keys(robot.surfaces).map((name) => (
+          <option key={name} value={name}>
+            {words(name)}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** Where along the path the robot is shown: for keys and fingers, what pointing at the charts is for a mouse. */
+function Along() {
+  const plan = state.comparison.value?.[state.focus.value];
+  if (!plan) return null;
+  const at_m = Math.min(state.along_m.value ?? 0, plan.distance_m);
+  const t_s = plan.poses.find(({ distance_m }) => distance_m >= at_m)?.t_s ?? 0;
+  return (
+    <Slider
+      label="Along the path"
+      value={at_m}
+      least={0}
+      greatest={plan.distance_m}
+      step={plan.distance_m / 500}
+      written={`${metres(at_m)} · ${duration(t_s)}`}
+      change={(value) => (state.along_m.value = value)}
+    />
+  );
+}

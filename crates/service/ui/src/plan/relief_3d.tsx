@@ -1,0 +1,85 @@
+/** The view in three dimensions; what draws it is fetched when it is first wanted. */
+import { effect, signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { Progress } from "../widgets/progress";
+import { groundPicture } from "../map/map_view";
+import { poseAt } from "../map/along";
+import { color, theme } from "../theme";
+import * as state from "./state";
+
+const stretch = signal(2);
+const status = signal<"fetching" | "shown" | "impossible">("fetching");
+
+export function Relief3d() {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const element = place.current;
+    if (!element) return;
+    status.value = "fetching";
+    let isOver = false;
+    let clear = () => {};
+    import("../relief3d/scene").then(
+      ({ showRelief }) => {
+        if (isOver) return;
+        const shown = showRelief(element);
+        if (!shown) {
+          status.value = "impossible";
+          return;
+        }
+        status.value = "shown";
+        const stops = [
+          effect(() => {
+            void [state.layer.value, theme.value];
+            const [cells, picture] = [state.cells.value, groundPicture()];
+            if (cells && picture) shown.ground(cells, picture, stretch.value, color("relief-tint"));
+          }),
+          effect(() => {
+            void [theme.value, stretch.value, state.cells.value];
+            shown.paths(state.comparison.value, state.former.value, state.focus.value, color);
+          }),
+          effect(() => {
+            void stretch.value;
+            const plan = state.comparison.value?.[state.focus.value];
+            shown.robot(plan && state.along_m.value !== null ? poseAt(plan.poses, state.along_m.value) : null);
+          }),
+        ];
+        clear = () => {
+          for (const stop of stops) stop();
+          shown.end();
+        };
+      },
+      () => (status.value = "impossible"),
+    );
+    return () => {
+      isOver = true;
+      clear();
+    };
+  }, []);
+  return (
+    <div class="map relief-3d">
+      <div
+        ref={place}
+        class="map-frame"
+        role="img"
+        aria-label="The ground and the paths in three dimensions; drag to turn, scroll to zoom"
+      />
+      {status.value === "fetching" && <Progress label="Fetching the 3-D view" share={null} />}
+      {status.value === "impossible" && (
+        <p class="map-hint" role="alert">
+          This browser cannot draw in three dimensions (WebGL is off). The map shows the same from above.
+        </p>
+      )}
+      <label class="relief-stretch">
+        Heights × {stretch.value}
+        <input
+          type="range"
+          min={1}
+          max={6}
+          step={0.5}
+          value={stretch.value}
+          onInput={(event) => (stretch.value = event.currentTarget.valueAsNumber)}
+        />
+      </label>
+    </div>
+  );
+}

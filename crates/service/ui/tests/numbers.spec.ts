@@ -1,0 +1,74 @@
+import { eventsOf } from "../src/api/events";
+import { poseAt } from "../src/map/along";
+import { roundLength_m, toMetres, toPixel, zoomed } from "../src/map/view";
+import { energiesOf } from "../src/plan/reach";
+import { arrivalCharge } from "../src/plan/charge";
+import type { Plan, Pose } from "../src/api/plans";
+import type { Robot } from "../src/api/robots";
+import { changed, read } from "../src/robots/pointer";
+import { expect, test } from "./service";
+
+const robot = { battery: { capacity_wh: 100, nominal_voltage_v: 24, reserve_fraction: 0.2 } } as Robot;
+
+test("contours stand at round energies, and end at what the charge gives", () => {
+  expect(energiesOf(robot, 1, 52_000)).toEqual([10_000, 20_000, 30_000, 40_000, 50_000, 60_000]);
+  // 10 % above the reserve of 100 Wh are 36 kJ.
+  expect(energiesOf(robot, 0.3, 52_000).at(-1)).toBeCloseTo(36_000, 6);
+  expect(energiesOf(robot, 0.1, 52_000)).toEqual([]);
+});
+
+test("what arrives is the charge less the energy, with its interval", () => {
+  const left = arrivalCharge({ energy_j: 36_000, energy_interval_j: [18_000, 54_000] } as unknown as Plan, robot, 0.5)!;
+  expect([left.least, left.charge, left.greatest].map((charge) => Number(charge.toFixed(6)))).toEqual([0.35, 0.4, 0.45]);
+});
+
+test("a pose between two lies between them, and turns the short way", () => {
+  const pose = (distance_m: number, heading_rad: number) =>
+    ({ x_m: distance_m, y_m: 0, z_m: 0, t_s: 0, energy_j: 10 * distance_m, heading_rad, distance_m }) as Pose;
+  const between = poseAt([pose(0, 3), pose(2, -3)], 1)!;
+  expect([between.x_m, between.energy_j]).toEqual([1, 10]);
+  expect(Math.abs(between.heading_rad)).toBeCloseTo(Math.PI, 6);
+});
+
+test("zooming keeps the place under the pointer, and pixels and metres are inverse", () => {
+  const [view, size] = [
+    { x_m: 50, y_m: 20, px_per_m: 4 },
+    { width: 800, height: 600 },
+  ];
+  const map = { origin_m: [0, 0] as [number, number], columns: 200, rows: 100, cell_size_m: 1 };
+  const about = { x: 123, y: 456 };
+  const before = toMetres(view, size, about);
+  const after = toMetres(zoomed(view, size, about, 1.7, map), size, about);
+  expect(after.x_m).toBeCloseTo(before.x_m, 9);
+  expect(after.y_m).toBeCloseTo(before.y_m, 9);
+  expect(toPixel(view, size, before.x_m, before.y_m).x).toBeCloseTo(about.x, 9);
+  expect(roundLength_m(view, 110)).toBe(20);
+});
+
+test("a field is changed by its pointer and nothing else is", () => {
+  const before = { surfaces: { "wet/clay": { mu_roll: 0.1 } }, mechanisms: [{ parameters: { left_n: 1 } }] };
+  const after = changed(changed(before, "/surfaces/wet~1clay/mu_roll", 0.2), "/mechanisms/0/parameters/left_n", 3);
+  expect(read(after, "/surfaces/wet~1clay/mu_roll")).toBe(0.2);
+  expect(after.mechanisms).toEqual([{ parameters: { left_n: 3 } }]);
+  expect(before.surfaces["wet/clay"].mu_roll).toBe(0.1);
+  expect(changed(before, "/surfaces", undefined)).toEqual({ mechanisms: before.mechanisms });
+});
+
+test("events are read whole, however the stream is cut", async () => {
+  const text = 'event: progress\nid: 1\ndata: {"a":1}\n\n: alive\n\nid: 2\r\ndata: {\r\ndata: }\r\n\r\n';
+  for (const length of [1, 3, 7, 1000]) {
+    const bytes = new TextEncoder().encode(text);
+    const stream = new ReadableStream<Uint8Array>({
+      start(controller) {
+        for (let at = 0; at < bytes.length; at += length) controller.enqueue(bytes.slice(at, at + length));
+        controller.close();
+      },
+    });
+    const events = [];
+    for await (const event of eventsOf(stream)) events.push({ ...event });
+    expect(events).toEqual([
+      { id: "1", data: '{"a":1}' },
+      { id: "2", data: "{\n}" },
+    ]);
+  }
+});

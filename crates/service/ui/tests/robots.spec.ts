@@ -1,0 +1,45 @@
+import { expect, picture, test } from "./service";
+
+test("a parameter is changed, saved as a new robot, and planned with", async ({ page, service }, info) => {
+  await page.goto(`${service.url}/#robots`);
+  await expect(page.getByLabel("Mass", { exact: true }).first()).toHaveValue("90");
+  await picture(page, `robots-${info.project.name}`);
+  await page.getByLabel("Mass", { exact: true }).first().fill("112.5");
+  await page.getByLabel("Name").fill("heavy");
+  await page.getByRole("button", { name: "Save as new" }).click();
+  await expect(page.getByRole("button", { name: /heavy.*stored/ })).toBeVisible();
+  const { stored } = (await (await page.request.get(`${service.url}/v1/robots`)).json()) as { stored: { robot: { mass_kg: number } }[] };
+  expect(stored[0]!.robot.mass_kg).toBe(112.5);
+  await page.getByRole("button", { name: "Plan with it" }).click();
+  await expect.poll(() => page.url()).toContain("robot=");
+});
+
+test("a value outside its range is said at its field, before and by the service", async ({ page, service }) => {
+  await page.goto(`${service.url}/#robots`);
+  const mass = page.getByLabel("Mass", { exact: true }).first();
+  await mass.fill("900000");
+  await expect(mass).toHaveAttribute("aria-invalid", "true");
+  await expect(page.getByText("Must lie between 0.1 and 20000 kg")).toBeVisible();
+  await expect(page.getByRole("button", { name: "Save as new" })).toBeDisabled();
+  await mass.fill("90");
+  // Within the page's range, but outside the wheels: only the service knows.
+  const forward = page.getByLabel("Forward");
+  await forward.fill("2");
+  await page.getByRole("button", { name: "Save as new" }).click();
+  await expect(forward).toHaveAttribute("aria-invalid", "true");
+  await expect(page.getByText(/inside the wheels/).first()).toBeVisible();
+});
+
+test("a robot's file is taken up, and a wrong one refused", async ({ page, service }) => {
+  await page.goto(`${service.url}/#robots`);
+  const robot = (await (await page.request.get(`${service.url}/v1/robots/husky-a200`)).json()) as object;
+  const input = page.locator(".robot-list input[type=file]");
+  await input.setInputFiles({
+    name: "mine.json",
+    mimeType: "application/json",
+    buffer: Buffer.from(JSON.stringify({ ...robot, name: "mine" })),
+  });
+  await expect(page.getByRole("button", { name: /mine.*stored/ })).toBeVisible();
+  await input.setInputFiles({ name: "text.json", mimeType: "application/json", buffer: Buffer.from("not json") });
+  await expect(page.getByRole("alert")).toContainText("is not JSON");
+});
