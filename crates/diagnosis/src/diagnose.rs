@@ -299,7 +299,7 @@ fn finding(found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
             name: "from_s",
             value: applied.from_s,
             unit: "s",
-            interval_95: None,
+            interval_95: found.onset_95_s,
         });
         statement += &format!(", from about {:.0} s on", applied.from_s);
     }

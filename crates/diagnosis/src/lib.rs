@@ -24,6 +24,7 @@ mod next_drive;
 mod noise;
 mod nuisance;
 mod null;
+mod onset;
 mod page;
 mod parts;
 mod plain;

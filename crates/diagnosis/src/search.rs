@@ -10,6 +10,7 @@ use crate::{
     evidence::System,
     gates::best,
     null::Null,
+    onset::{self, Onset},
     polish::{Polished, polish},
     series::{Applied, Series},
     weigh::{Weighed, misfit, system},
@@ -26,6 +27,8 @@ pub struct Found {
     pub applied: Applied,
     /// Half widths of its values' 95 % intervals; `None` for those taken from a grid.
     pub half_widths: Vec<Option<f64>>,
+    /// 95 % interval of the time from which it acts, where it set in during the drives [s].
+    pub onset_95_s: Option<[f64; 2]>,
     /// Chance of as much, corrected for all that was tried.
     pub p_value: f64,
     /// Drop of the penalised likelihood, as of the Bayesian information criterion over blocks.
@@ -92,11 +95,17 @@ fn decide(
     by: &Baseline,
     null: &Null,
 ) -> Result<(Found, Baseline), Error> {
-    let fits: Vec<Polished> =
-        rivals.par_iter().map(|rival| polish(series, file, applied, rival)).collect::<Result<_, _>>()?;
-    let system = system(series, by);
-    let blocks = system.blocks();
+    let blocks = system(series, by).blocks();
     let discount = |rival: &Weighed| null.discount(rival.candidate.applied.mechanism.name(), blocks);
+    let onsets: Vec<Option<Onset>> = rivals
+        .par_iter()
+        .map(|rival| onset::refine(series, by, applied, rival, discount(rival)))
+        .collect::<Result<_, _>>()?;
+    let at_best = |i: usize| onsets[i].as_ref().map_or(&rivals[i], |onset| &onset.weighed);
+    let fits: Vec<Polished> = (0..rivals.len())
+        .into_par_iter()
+        .map(|i| polish(series, file, applied, at_best(i)))
+        .collect::<Result<_, _>>()?;
     let common = rivals.iter().map(discount).sum::<f64>() / rivals.len() as f64;
     let cost = |i: usize| {
         misfit(series, &fits[i].base, by) / common
@@ -108,13 +117,15 @@ fn decide(
         .filter(|i| *i != winner && costs[*i] < costs[winner] + AS_GOOD)
         .map(|i| rivals[i].candidate.applied.mechanism.name().to_owned())
         .collect();
-    let (rival, fit) = (&rivals[winner], fits.into_iter().nth(winner));
+    let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
+    let onset_95_s = onsets[winner].as_ref().map(|onset| onset.interval_s);
     let Some(Polished { base, applied, half_widths }) = fit else {
         unreachable!("the winner is one of the fits")
     };
     let found = Found {
         applied,
         half_widths,
+        onset_95_s,
         p_value: rival.p_value,
         delta_bic: rival.score,
         held_out_gain,
