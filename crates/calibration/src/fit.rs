@@ -187,7 +187,7 @@ impl Problem<'_> {
     ///
     /// There are two B: `Jᵀ R J` with R of [`Correlation`], which trusts the spread and the correlation assumed; and that of
     /// [`Problem::scatter_of_blocks`], which does not, but is itself uncertain where blocks are few: it makes an interval by Student's
-    /// t. Parameter by parameter the wider interval is taken, on the advice of Angrist & Pischke (2009), *Mostly Harmless
+    /// t. Parameter by parameter the larger sigma and the wider interval are taken, on the advice of Angrist & Pischke (2009), *Mostly Harmless
     /// Econometrics*, §8.1. A prior's row enters both with its own variance.
     fn covariance(&self, jacobian: &DMatrix<f64>, errors: &[f64]) -> (DMatrix<f64>, Vec<f64>) {
         let count = jacobian.ncols();
@@ -216,11 +216,11 @@ impl Problem<'_> {
         let mut student = vec![few; count];
         let stretch = DVector::from_fn(count, |i, _| {
             let (trusted, found) = (trusting[(i, i)].max(0.0).sqrt(), blockwise[(i, i)].max(0.0).sqrt());
-            if NORMAL_975 * trusted <= few * found {
-                return 1.0;
+            let sigma = trusted.max(found);
+            if sigma > 0.0 {
+                student[i] = (NORMAL_975 * trusted).max(few * found) / sigma;
             }
-            student[i] = NORMAL_975;
-            if found > 0.0 { trusted / found } else { 1.0 }
+            if found > 0.0 { sigma / found } else { 1.0 }
         });
         let covariance = DMatrix::from_fn(count, count, |i, j| blockwise[(i, j)] * stretch[i] * stretch[j]);
         (covariance, student)
