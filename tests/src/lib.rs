@@ -2,9 +2,14 @@
 
 #![allow(clippy::panic)]
 
+pub mod churn;
+pub mod folder_store;
+pub mod kills;
+pub mod s3;
+
 use std::{
     io::{BufRead, BufReader},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
 };
 
@@ -78,9 +83,35 @@ impl Server {
     /// # Panics
     /// When it does not start.
     pub fn start_with(arguments: &[&str]) -> Self {
+        Server::start_in(&[], arguments)
+    }
+
+    /// Starts a server over a folder, in which a killed service's jobs are taken up soon.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start_over(folder: &Path) -> Self {
+        Server::start_over_with(folder, &["--lease-s", "0.5"])
+    }
+
+    /// Starts a server over a folder with more arguments.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start_over_with(folder: &Path, arguments: &[&str]) -> Self {
+        let folder = folder.display().to_string();
+        Server::start_with(&[&["--store", folder.as_str()], arguments].concat())
+    }
+
+    /// Starts a server with more environment variables and arguments.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start_in(environment: &[(&str, &str)], arguments: &[&str]) -> Self {
         let mut child = Command::new(program())
             .args(["serve", "--bind", "127.0.0.1:0"])
             .args(arguments)
+            .envs(environment.iter().copied())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -150,6 +181,12 @@ impl Server {
         self.child.wait().unwrap_or_else(|error| panic!("the server's end was not seen: {error}"))
     }
 
+    /// Kills the server at once, as the system does when memory runs out.
+    pub fn kill(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+
     /// The most memory that the server has held [bytes], where the system tells (Linux).
     pub fn peak_memory_bytes(&self) -> Option<u64> {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
@@ -161,8 +198,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        self.kill();
     }
 }
 

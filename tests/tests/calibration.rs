@@ -228,6 +228,13 @@ fn a_cancelled_job_stays_cancelled_and_can_then_be_forgotten() {
     server.get(&path).problem(404, "unknown-job");
 }
 
+/// A request that differs from others by its robot, and so is another job.
+fn another(recording: &str, number: usize) -> Value {
+    let mut robot = serde_json::to_value(model::builtin::husky_a200()).unwrap();
+    robot["mass_kg"] = json!(80 + number);
+    json!({ "robot": robot, "recordings": [recording] })
+}
+
 /// The fit of so long a recording takes many times as long as reading it; a turn for the next job comes only when it has ended.
 #[test]
 fn a_fit_under_way_gives_up_its_turn_soon_after_it_is_called_off() {
@@ -235,10 +242,9 @@ fn a_fit_under_way_gives_up_its_turn_soon_after_it_is_called_off() {
     let long = server.post("/v1/recordings", "text/csv", drive_csv(40, 10_000).as_bytes());
     let long = long.json()["id"].as_str().unwrap().to_owned();
     let short = stored(&server);
-    let body = json!({ "robot": "husky-a200", "recordings": [long] });
     // As many as run side by side, so that the short one has to wait for one of them.
     let turns = std::thread::available_parallelism().map_or(1, usize::from);
-    let jobs: Vec<String> = (0..turns).map(|_| started(&server, &body)).collect();
+    let jobs: Vec<String> = (0..turns).map(|i| started(&server, &another(&long, i))).collect();
     let fitting = |event: &joulepath_tests::Event| event.data["progress"]["step"] == "fitting";
     let events = server.events(&format!("/v1/jobs/{}/events", jobs[0]), None);
     assert!(events.into_iter().any(|event| fitting(&event)), "it ended before it was called off");
@@ -256,13 +262,25 @@ fn a_fit_under_way_gives_up_its_turn_soon_after_it_is_called_off() {
 #[test]
 fn jobs_are_bounded_and_do_not_keep_plans_or_the_end_waiting() {
     let Held { mut server, recording, pipe: _, _folder } = held();
-    let body = json!({ "robot": "husky-a200", "recordings": [recording] });
-    let jobs: Vec<String> = (0..32).map(|_| started(&server, &body)).collect();
-    server.post_json("/v1/calibrate", &body).problem(503, "too-many-jobs");
+    let jobs: Vec<String> = (0..32).map(|i| started(&server, &another(&recording, i))).collect();
+    server.post_json("/v1/calibrate", &another(&recording, 32)).problem(503, "too-many-jobs");
+    assert_eq!(started(&server, &another(&recording, 31)), jobs[31], "the same job is not one more");
     assert_eq!(server.get(&format!("/v1/jobs/{}", jobs[31])).json()["state"], "queued");
     assert_eq!(server.delete(&format!("/v1/jobs/{}", jobs[31])).status, 200);
-    started(&server, &body);
+    started(&server, &another(&recording, 32));
     let events = server.events(&format!("/v1/jobs/{}/events", jobs[0]), None);
     assert!(server.terminate().success());
-    assert_eq!(events.last().unwrap().name, "cancelled", "who follows a job is told that the service ends");
+    let last = events.last().unwrap().data;
+    assert_eq!((&last["state"], &last["progress"]["step"]), (&json!("queued"), &json!("handed back")));
+}
+
+#[test]
+fn the_end_of_a_service_without_a_store_is_the_end_of_its_jobs() {
+    let mut server = Server::start();
+    let recording = server.post("/v1/recordings", "text/csv", drive_csv(8, 4000).as_bytes()).json();
+    let job = started(&server, &another(recording["id"].as_str().unwrap(), 0));
+    let events = server.events(&format!("/v1/jobs/{job}/events"), None);
+    assert!(server.terminate().success());
+    let last = events.last().unwrap().name;
+    assert!(["cancelled", "done"].contains(&last.as_str()), "{last}");
 }

@@ -1,8 +1,6 @@
 //! What all requests share: limits, maps, and the right to compute.
 
 use std::{
-    io,
-    path::Path,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -16,13 +14,16 @@ use tokio::{sync::Semaphore, task::JoinError};
 
 use crate::{
     job::Job,
+    job_records::JobRecords,
+    job_run::{Work, called_off},
     jobs::Jobs,
     limits::Limits,
+    maps::MapStore,
     planners::Planners,
     problem::{Problem, ProblemType},
     recordings::RecordingStore,
     robots::RobotStore,
-    store::MapStore,
+    store::{Store, StoreError},
 };
 
 /// The state behind the router; cheap to clone.
@@ -35,6 +36,8 @@ struct Shared {
     planners: Planners,
     recordings: RecordingStore,
     robots: RobotStore,
+    records: JobRecords,
+    store: Store,
     jobs: Jobs,
     turns: Arc<Semaphore>,
     /// Jobs take a turn here before they wait for one among all computations.
@@ -51,17 +54,21 @@ impl Drop for Asked {
 }
 
 impl Engine {
-    /// An engine without maps. Recordings and robots are kept in a folder; without one, as long as the engine lasts.
+    /// An engine over a store: a folder or `s3://BUCKET/PREFIX`, what is kept there being at hand; without one, a folder that
+    /// lasts as long as the engine. Not to be called where tasks run.
     ///
     /// # Errors
-    /// When the folder cannot be made.
-    pub fn new(limits: Limits, folder: Option<&Path>) -> io::Result<Self> {
+    /// When nothing can be kept there.
+    pub fn new(limits: Limits, store: Option<&str>) -> Result<Self, StoreError> {
+        let store = Store::open(store)?;
         Ok(Engine(Arc::new(Shared {
             limits,
-            maps: MapStore::default(),
+            maps: MapStore::new(&store, limits.kept_map_bytes),
             planners: Planners::default(),
-            recordings: RecordingStore::open(folder)?,
-            robots: RobotStore::open(folder)?,
+            recordings: RecordingStore::new(&store),
+            robots: RobotStore::new(&store),
+            records: JobRecords::new(&store),
+            store,
             jobs: Jobs::default(),
             turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
@@ -89,13 +96,22 @@ impl Engine {
         &self.0.robots
     }
 
+    /// What the store knows of jobs.
+    pub(crate) fn records(&self) -> &JobRecords {
+        &self.0.records
+    }
+
+    /// The jobs that this service works on.
     pub(crate) fn jobs(&self) -> &Jobs {
         &self.0.jobs
     }
 
-    /// Calls off all jobs, as when the service ends.
-    pub(crate) fn call_off_jobs(&self) {
-        self.jobs().call_off_all();
+    /// Whether what is sent can be kept at the moment.
+    ///
+    /// # Errors
+    /// When the store is out of reach or full.
+    pub async fn check_store(&self) -> Result<(), Problem> {
+        self.0.store.check().await
     }
 
     /// Runs a computation on a thread of its own, in turn; its patience ends when the request does.
@@ -125,41 +141,13 @@ impl Engine {
         outcome.unwrap_or_else(|failure| Err(fault(&failure)))
     }
 
-    /// Asks the disk, which may take its time, on a thread of its own.
-    pub(crate) async fn on_disk<T: Send + 'static>(
-        &self,
-        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
-    ) -> Result<T, Problem> {
-        tokio::task::spawn_blocking(work).await.unwrap_or_else(|failure| Err(fault(&failure)))
-    }
-
-    /// Starts work that outlasts its request. It takes its turn among jobs and among computations, tells the job how far
-    /// it is, and ends soon after the job is called off.
-    pub(crate) fn start(
-        &self,
-        kind: &'static str,
-        work: impl FnOnce(&Arc<Job>) -> Result<Value, Problem> + Send + 'static,
-    ) -> Result<Arc<Job>, Problem> {
-        let job = self.jobs().open(kind, self.limits().open_jobs, self.limits().kept_jobs)?;
-        let (engine, started) = (self.clone(), Arc::clone(&job));
-        tokio::spawn(async move {
-            let outcome = engine.run(&job, work).await;
-            job.end(outcome);
-        });
-        Ok(started)
-    }
-
-    async fn run(
-        &self,
-        job: &Arc<Job>,
-        work: impl FnOnce(&Arc<Job>) -> Result<Value, Problem> + Send + 'static,
-    ) -> Result<Value, Problem> {
+    /// Does a job's work, which takes its turn among jobs and among computations.
+    pub(crate) async fn run(&self, job: &Arc<Job>, work: Box<dyn Work>) -> Result<Value, Problem> {
         let turn = Arc::clone(&self.0.job_turns).acquire_owned().await.map_err(|_| stopping())?;
-        let running = Arc::clone(job);
-        let called_off = || Problem::new(ProblemType::Internal, "the job was called off");
+        let (engine, running) = (self.clone(), Arc::clone(job));
         self.work(move |_| {
             let _turn = turn;
-            if running.is_called_off() { Err(called_off()) } else { work(&running) }
+            if running.is_called_off() { Err(called_off()) } else { work.run(&engine, &running) }
         })
         .await
     }

@@ -9,15 +9,18 @@ use std::{
 };
 
 use recording::Watch;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use tokio::sync::watch;
+use tokio::sync::{Mutex, watch};
 use utoipa::ToSchema;
 
-use crate::problem::Problem;
+use crate::{
+    problem::Problem,
+    store::{Beat, Lease},
+};
 
 /// Where a job stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum JobState {
     /// It waits for its turn.
@@ -40,7 +43,7 @@ impl JobState {
 }
 
 /// What a job is busy with.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
     /// The step, in words.
     #[schema(example = "reading recording 1 of 2")]
@@ -54,29 +57,40 @@ pub struct Progress {
 pub(crate) struct Status {
     /// Counts the changes, so that a client that comes back knows what it has seen.
     pub(crate) sequence: u64,
+    /// How often the job has been taken up.
+    pub(crate) attempt: u64,
     pub(crate) state: JobState,
     pub(crate) progress: Progress,
     pub(crate) result: Option<Arc<Value>>,
     pub(crate) problem: Option<Problem>,
+    /// This service will say no more of it, though it has not ended.
+    pub(crate) handed_back: bool,
 }
 
-/// A job, shared between who works on it and who follows it.
+/// A job that this service works on, shared between who does and who follows it.
 #[derive(Debug)]
 pub(crate) struct Job {
+    /// Hash of what it is to do and with what.
     pub(crate) id: String,
     /// What it does, as `calibrate`.
-    pub(crate) kind: &'static str,
+    pub(crate) kind: String,
+    /// The right to work on it, held while it is written to the store; none once it was given up.
+    pub(crate) lease: Mutex<Option<Lease>>,
     called_off: AtomicBool,
     status: watch::Sender<Status>,
 }
 
 impl Job {
-    pub(crate) fn new(kind: &'static str) -> Self {
-        let progress = Progress { step: "waiting for its turn".into(), fraction: None };
-        let status = Status { sequence: 0, state: JobState::Queued, progress, result: None, problem: None };
+    /// A job that has been taken up, and whose followers have been told so much.
+    pub(crate) fn new(id: &str, kind: &str, lease: Lease, beat: Beat) -> Self {
+        let Beat { sequence, state, progress, .. } = beat;
+        let (result, problem, handed_back) = (None, None, false);
+        let attempt = lease.number;
+        let status = Status { sequence, attempt, state, progress, result, problem, handed_back };
         Job {
-            id: uuid::Uuid::new_v4().simple().to_string(),
-            kind,
+            id: id.to_owned(),
+            kind: kind.to_owned(),
+            lease: Mutex::new(Some(lease)),
             called_off: AtomicBool::new(false),
             status: watch::Sender::new(status),
         }
@@ -117,23 +131,31 @@ impl Job {
         self.change(|status| status.state = JobState::Cancelled)
     }
 
-    pub(crate) fn end(&self, outcome: Result<Value, Problem>) {
-        self.change(|status| match outcome {
-            Ok(result) => {
-                status.state = JobState::Done;
-                status.result = Some(Arc::new(result));
-            }
-            Err(problem) => {
-                status.state = JobState::Failed;
-                status.problem = Some(problem);
-            }
+    /// Ends it with what came of it.
+    pub(crate) fn end(&self, outcome: Result<Arc<Value>, Problem>) {
+        self.change(|status| status.end(outcome));
+    }
+
+    /// Stops the work and says no more of the job, which another service, or this one after its restart, does anew.
+    pub(crate) fn hand_back(&self) {
+        self.called_off.store(true, Ordering::Relaxed);
+        self.change(|status| {
+            status.state = JobState::Queued;
+            status.progress = Progress { step: "handed back".into(), fraction: None };
+            status.handed_back = true;
         });
     }
 
-    /// Changes the status, unless it is final. Returns whether it did.
+    /// What the holder of its lease writes down.
+    pub(crate) fn beat(&self, count: u64) -> Beat {
+        let Status { sequence, state, progress, handed_back, .. } = self.status();
+        Beat { count, released: handed_back, sequence, state, progress }
+    }
+
+    /// Changes the status, unless nothing more is said of the job. Returns whether it did.
     fn change(&self, change: impl FnOnce(&mut Status)) -> bool {
         self.status.send_if_modified(|status| {
-            if status.state.is_final() {
+            if status.is_last() {
                 return false;
             }
             change(status);
@@ -143,17 +165,42 @@ impl Job {
     }
 }
 
+impl Status {
+    /// Whether no other comes after it, here.
+    pub(crate) fn is_last(&self) -> bool {
+        self.state.is_final() || self.handed_back
+    }
+
+    /// Ends with what came of the job.
+    pub(crate) fn end(&mut self, outcome: Result<Arc<Value>, Problem>) {
+        match outcome {
+            Ok(result) => {
+                self.state = JobState::Done;
+                self.result = Some(result);
+            }
+            Err(problem) => {
+                self.state = JobState::Failed;
+                self.problem = Some(problem);
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn job() -> Job {
+        Job::new("0f", "test", Lease::first("0f"), Beat::first(0))
+    }
+
     #[test]
     fn a_job_that_was_called_off_stays_so_whatever_its_work_still_says() {
-        let job = Job::new("test");
+        let job = job();
         job.tell("working", Some(0.5));
         assert!(job.call_off() && job.is_called_off());
         job.tell("still working", None);
-        job.end(Ok(Value::Null));
+        job.end(Ok(Value::Null.into()));
         assert!(!job.call_off(), "it can be called off once");
         let status = job.status();
         assert_eq!((status.state, status.result), (JobState::Cancelled, None));
@@ -162,11 +209,22 @@ mod tests {
 
     #[test]
     fn every_change_has_a_number_of_its_own() {
-        let job = Job::new("test");
+        let job = job();
         let before = job.status().sequence;
         job.tell("a", None);
         job.tell("b", None);
-        job.end(Ok(Value::Null));
+        job.end(Ok(Value::Null.into()));
         assert_eq!(job.status().sequence, before + 3);
+    }
+
+    #[test]
+    fn a_job_that_was_handed_back_waits_again_and_its_lease_is_released() {
+        let job = job();
+        job.tell("working", Some(0.5));
+        job.hand_back();
+        job.end(Ok(Value::Null.into()));
+        let beat = job.beat(7);
+        assert!(beat.released && job.is_called_off());
+        assert_eq!((beat.state, beat.count, beat.sequence), (JobState::Queued, 7, 2));
     }
 }

@@ -1,7 +1,7 @@
-//! The jobs at hand: so many at most under way, so many kept after their end.
+//! The jobs that this service works on: so many at most.
 
 use std::{
-    collections::VecDeque,
+    collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
@@ -10,97 +10,80 @@ use crate::{
     problem::{Problem, ProblemType},
 };
 
-/// Jobs in the order in which they were started.
+/// Jobs by id. Those that have ended are in the store.
 #[derive(Debug, Default)]
 pub(crate) struct Jobs {
-    jobs: Mutex<VecDeque<Arc<Job>>>,
+    jobs: Mutex<BTreeMap<String, Arc<Job>>>,
 }
 
 impl Jobs {
-    /// Takes a job in, if so many are not under way already, and forgets the oldest that ended beyond so many.
-    pub(crate) fn open(
-        &self,
-        kind: &'static str,
-        most_open: usize,
-        most_kept: usize,
-    ) -> Result<Arc<Job>, Problem> {
-        let mut jobs = self.lock();
-        let open = jobs.iter().filter(|job| !job.status().state.is_final()).count();
-        if open >= most_open {
-            let detail =
-                format!("{open} jobs wait or run already: try again when one has ended, or cancel one");
-            return Err(Problem::new(ProblemType::TooManyJobs, detail));
+    /// Refuses one more when so many are under way already.
+    pub(crate) fn refuse_beyond(&self, most: usize) -> Result<(), Problem> {
+        let open = self.lock().len();
+        if open < most {
+            return Ok(());
         }
-        let job = Arc::new(Job::new(kind));
-        jobs.push_back(Arc::clone(&job));
-        let mut surplus = (jobs.len() - open - 1).saturating_sub(most_kept);
-        jobs.retain(|job| {
-            let forget = surplus > 0 && job.status().state.is_final();
-            surplus -= usize::from(forget);
-            !forget
-        });
-        Ok(job)
+        let detail = format!("{open} jobs wait or run already: try again when one has ended, or cancel one");
+        Err(Problem::new(ProblemType::TooManyJobs, detail))
     }
 
-    /// The job with an id.
-    pub(crate) fn get(&self, id: &str) -> Result<Arc<Job>, Problem> {
-        self.lock().iter().find(|job| job.id == id).cloned().ok_or_else(|| unknown(id))
+    /// Takes a job in, if no other of its id is under way and so many are not already.
+    pub(crate) fn add(&self, job: &Arc<Job>, most: usize) -> Result<(), Problem> {
+        self.refuse_beyond(most)?;
+        self.lock().insert(job.id.clone(), Arc::clone(job));
+        Ok(())
     }
 
-    /// Forgets a job.
-    pub(crate) fn forget(&self, id: &str) {
-        self.lock().retain(|job| job.id != id);
+    /// The job with an id, if this service works on it and has not handed it back.
+    pub(crate) fn get(&self, id: &str) -> Option<Arc<Job>> {
+        self.lock().get(id).filter(|job| !job.status().handed_back).cloned()
     }
 
-    /// Calls off whatever is under way.
-    pub(crate) fn call_off_all(&self) {
-        self.lock().iter().for_each(|job| {
-            job.call_off();
-        });
+    /// Forgets a job, unless another has taken its id since.
+    pub(crate) fn remove(&self, job: &Arc<Job>) {
+        let mut jobs = self.lock();
+        if jobs.get(&job.id).is_some_and(|held| Arc::ptr_eq(held, job)) {
+            jobs.remove(&job.id);
+        }
     }
 
-    fn lock(&self) -> MutexGuard<'_, VecDeque<Arc<Job>>> {
+    /// All of them.
+    pub(crate) fn all(&self) -> Vec<Arc<Job>> {
+        self.lock().values().cloned().collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<String, Arc<Job>>> {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-fn unknown(id: &str) -> Problem {
-    let shown: String = id.chars().take(64).collect();
-    let detail =
-        format!("there is no job `{shown}`: it was deleted, or ended so long ago that it was forgotten");
-    Problem::new(ProblemType::UnknownJob, detail)
-}
-
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
-
     use super::*;
+    use crate::store::{Beat, Lease};
+
+    fn job(id: &str) -> Arc<Job> {
+        Arc::new(Job::new(id, "test", Lease::first(id), Beat::first(0)))
+    }
 
     #[test]
     fn no_more_jobs_are_under_way_than_allowed() {
         let jobs = Jobs::default();
-        let first = jobs.open("test", 2, 8).unwrap();
-        jobs.open("test", 2, 8).unwrap();
-        assert_eq!(jobs.open("test", 2, 8).unwrap_err().kind, ProblemType::TooManyJobs);
-        first.end(Ok(Value::Null));
-        assert!(jobs.open("test", 2, 8).is_ok());
+        let first = job("a");
+        jobs.add(&first, 2).unwrap();
+        jobs.add(&job("b"), 2).unwrap();
+        assert_eq!(jobs.add(&job("c"), 2).unwrap_err().kind, ProblemType::TooManyJobs);
+        jobs.remove(&first);
+        assert!(jobs.add(&job("c"), 2).is_ok());
     }
 
     #[test]
-    fn the_oldest_jobs_that_ended_are_forgotten_and_none_that_is_under_way() {
+    fn who_ends_late_does_not_take_away_who_has_its_id_now() {
         let jobs = Jobs::default();
-        let running = jobs.open("test", 100, 2).unwrap();
-        let ended: Vec<Arc<Job>> = (0..4)
-            .map(|_| {
-                let job = jobs.open("test", 100, 2).unwrap();
-                job.end(Ok(Value::Null));
-                job
-            })
-            .collect();
-        jobs.open("test", 100, 2).unwrap();
-        let known: Vec<bool> = ended.iter().map(|job| jobs.get(&job.id).is_ok()).collect();
-        assert_eq!(known, [false, false, true, true]);
-        assert!(jobs.get(&running.id).is_ok());
+        let (cancelled, anew) = (job("a"), job("a"));
+        jobs.add(&cancelled, 8).unwrap();
+        jobs.add(&anew, 8).unwrap();
+        jobs.remove(&cancelled);
+        assert!(jobs.get("a").is_some_and(|held| Arc::ptr_eq(&held, &anew)));
     }
 }

@@ -15,6 +15,8 @@ pub struct Limits {
     pub matrix_entries: usize,
     /// Most cells over all stored maps. Default 200 million.
     pub stored_cells: usize,
+    /// Most bytes of stored maps that are kept in memory. Default 1 GiB.
+    pub kept_map_bytes: usize,
     /// Most bytes that planners keep between requests: costs of motions and fields of goals. Default 2 GiB.
     pub kept_bytes: usize,
     /// Computations that run at the same time; more wait. Default: one for each core.
@@ -27,8 +29,10 @@ pub struct Limits {
     pub open_jobs: usize,
     /// Jobs that run at the same time, of the computations that may. Default: one less than cores, but one.
     pub parallel_jobs: usize,
-    /// Jobs that ended and are kept for who asks later. Default 256.
+    /// Reports of jobs that ended and are kept for who asks later. Default 1000.
     pub kept_jobs: usize,
+    /// How long a service that works on a job may be silent before another takes the job up [s]. Default 15 s.
+    pub lease_time: Duration,
     /// Longest pause while a body is sent [s]. Default 30 s.
     pub body_pause: Duration,
     /// Longest wait for requests under way when the service is asked to end [s]. Default 10 s.
@@ -44,13 +48,15 @@ impl Default for Limits {
             plan_states: 32_000_000,
             matrix_entries: 2500,
             stored_cells: 200_000_000,
+            kept_map_bytes: 1 << 30,
             kept_bytes: 2 << 30,
             parallel_plans: cores,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,
             open_jobs: 32,
             parallel_jobs: (cores - 1).max(1),
-            kept_jobs: 256,
+            kept_jobs: 1000,
+            lease_time: Duration::from_secs(15),
             body_pause: Duration::from_secs(30),
             drain_time: Duration::from_secs(10),
         }

@@ -6,11 +6,14 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use planner::Place;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// How long a client is asked to wait where it is not known how long it takes [s].
+const RETRY_AFTER_S: &str = "5";
+
 /// The kinds of failure; programs may rely on these names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProblemType {
     /// The body is not JSON, or not the JSON that is needed.
@@ -63,6 +66,8 @@ pub enum ProblemType {
     TooLarge,
     /// The service holds as much as it may.
     StoreFull,
+    /// The store cannot be reached, or does not do what it is asked.
+    StoreUnavailable,
     /// As many jobs wait or run as may.
     TooManyJobs,
     /// A fault of the service.
@@ -70,7 +75,7 @@ pub enum ProblemType {
 }
 
 /// A problem document.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// Kind of failure.
     #[serde(rename = "type")]
@@ -82,12 +87,12 @@ pub struct Problem {
     /// What went wrong here, where, and how to mend it.
     pub detail: String,
     /// The fields at fault.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<FieldError>,
 }
 
 /// One field at fault.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct FieldError {
     /// JSON pointer into the request (RFC 6901).
     #[schema(example = "/start/x_m")]
@@ -122,7 +127,7 @@ impl ProblemType {
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
-            T::TooManyJobs => StatusCode::SERVICE_UNAVAILABLE,
+            T::StoreUnavailable | T::TooManyJobs => StatusCode::SERVICE_UNAVAILABLE,
             T::Internal => StatusCode::INTERNAL_SERVER_ERROR,
         }
     }
@@ -155,6 +160,7 @@ impl ProblemType {
             T::Timeout => "The search ran out of time",
             T::TooLarge => "Too large",
             T::StoreFull => "The store is full",
+            T::StoreUnavailable => "The store is out of reach",
             T::TooManyJobs => "Too many jobs",
             T::Internal => "Internal error",
         }
@@ -370,6 +376,9 @@ impl IntoResponse for Problem {
         response
             .headers_mut()
             .insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+        if status == StatusCode::SERVICE_UNAVAILABLE {
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
+        }
         response
     }
 }

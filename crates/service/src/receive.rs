@@ -1,4 +1,4 @@
-//! A body that goes to disk as it comes, with its hash, and never as a whole into memory.
+//! A body that goes to a file as it comes, with its hash, and never as a whole into memory.
 
 use axum::{
     body::Body,
@@ -6,13 +6,12 @@ use axum::{
 };
 use futures_util::StreamExt;
 use sha2::{Digest, Sha256};
-use tempfile::NamedTempFile;
 use tokio::io::{AsyncWriteExt, BufWriter};
 
 use crate::{
     Engine,
     problem::{Problem, ProblemType},
-    recordings::{ID_CHARACTERS, cannot},
+    store::{Spool, cannot, id_of},
 };
 
 /// Bytes that are collected before they are written.
@@ -20,22 +19,21 @@ const BUFFER_BYTES: usize = 1 << 20;
 
 /// What was received.
 pub(crate) struct Received {
-    pub(crate) file: NamedTempFile,
+    pub(crate) file: Spool,
     pub(crate) bytes: u64,
     /// Of the content.
     pub(crate) id: String,
 }
 
-/// Writes a body into the store's folder, refused once it exceeds the limits.
+/// Writes a body into a file for the store, refused once it exceeds the limits.
 pub(crate) async fn receive(engine: &Engine, headers: &HeaderMap, body: Body) -> Result<Received, Problem> {
     let room = Room::of(engine).await?;
     let declared =
         headers.get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok()).and_then(|v| v.parse().ok());
     room.refuse_beyond(declared.unwrap_or(0))?;
-    let own = engine.clone();
-    let file = engine.on_disk(move || own.recordings().receive()).await?;
-    let reopened = file.reopen().map_err(|error| cannot("write to", &error))?;
-    let mut writer = BufWriter::with_capacity(BUFFER_BYTES, tokio::fs::File::from_std(reopened));
+    let file = engine.recordings().receive()?;
+    let opened = file.writer().map_err(|error| cannot("write to", &error))?;
+    let mut writer = BufWriter::with_capacity(BUFFER_BYTES, tokio::fs::File::from_std(opened));
     let (mut hash, mut bytes) = (Sha256::new(), 0u64);
     let mut chunks = body.into_data_stream();
     while let Some(chunk) = chunks.next().await {
@@ -48,8 +46,7 @@ pub(crate) async fn receive(engine: &Engine, headers: &HeaderMap, body: Body) ->
         writer.write_all(&chunk).await.map_err(|error| cannot("write to", &error))?;
     }
     writer.flush().await.map_err(|error| cannot("write to", &error))?;
-    let id: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(Received { file, bytes, id: id.chars().take(ID_CHARACTERS).collect() })
+    Ok(Received { file, bytes, id: id_of(hash) })
 }
 
 /// How many bytes may still come.
@@ -60,8 +57,7 @@ struct Room {
 
 impl Room {
     async fn of(engine: &Engine) -> Result<Room, Problem> {
-        let own = engine.clone();
-        let held = engine.on_disk(move || own.recordings().bytes()).await?;
+        let held = engine.recordings().bytes().await?;
         let limits = engine.limits();
         Ok(Room { one: limits.recording_bytes, free: limits.stored_recording_bytes.saturating_sub(held) })
     }

@@ -1,90 +1,58 @@
-//! The robots that were stored: by content hash, each a file in a folder.
-
-use std::{
-    collections::BTreeMap,
-    fs, io,
-    path::{Path, PathBuf},
-    sync::{PoisonError, RwLock},
-};
+//! The robots that were stored, by content hash.
 
 use model::Robot;
 use sha2::{Digest, Sha256};
 
 use crate::{
     problem::{Problem, ProblemType},
-    recordings::cannot,
+    store::{Notes, Store, full, id_of},
 };
 
 /// Most robots at hand; one takes about a kilobyte.
 const MOST_ROBOTS: usize = 10_000;
 
-/// Robots by content hash, in memory and, where there is a folder, on disk.
+/// Robots by content hash, every default filled in.
 #[derive(Debug)]
 pub(crate) struct RobotStore {
-    robots: RwLock<BTreeMap<String, Robot>>,
-    folder: Option<PathBuf>,
+    robots: Notes<Robot>,
 }
 
 impl RobotStore {
-    /// The robots of a folder, which is made; without one, none, and they last as long as the service.
-    pub(crate) fn open(folder: Option<&Path>) -> io::Result<Self> {
-        let folder = folder.map(|folder| folder.join("robots"));
-        let mut robots = BTreeMap::new();
-        if let Some(folder) = &folder {
-            fs::create_dir_all(folder)?;
-            for path in fs::read_dir(folder)?.flatten().map(|entry| entry.path()) {
-                let is_robot = path.extension().is_some_and(|ending| ending == "json");
-                let robot = is_robot.then(|| fs::read_to_string(&path).ok()).flatten();
-                if let Some(robot) = robot.and_then(|text| Robot::from_json(&text).ok()) {
-                    robots.insert(id_of(&robot), robot);
-                }
-            }
-        }
-        Ok(RobotStore { robots: RwLock::new(robots), folder })
+    pub(crate) fn new(store: &Store) -> Self {
+        RobotStore { robots: Notes::new(store, "robots") }
     }
 
     /// Keeps a robot; the same robot twice is one. Returns its id and whether it is new.
-    pub(crate) fn insert(&self, robot: Robot) -> Result<(String, bool), Problem> {
-        let id = id_of(&robot);
-        let mut robots = self.robots.write().unwrap_or_else(PoisonError::into_inner);
-        if robots.contains_key(&id) {
+    pub(crate) async fn insert(&self, robot: &Robot) -> Result<(String, bool), Problem> {
+        let id = content_id(robot)?;
+        if self.robots.has(&id).await? {
             return Ok((id, false));
         }
-        if robots.len() >= MOST_ROBOTS {
+        if self.robots.entries().await?.len() >= MOST_ROBOTS {
             let detail =
                 format!("{MOST_ROBOTS} robots are stored: send the robot itself with the request instead");
-            return Err(Problem::new(ProblemType::StoreFull, detail));
+            return Err(full(detail));
         }
-        if let Some(folder) = &self.folder {
-            write(folder, &id, &robot).map_err(|error| cannot("write to", &error))?;
-        }
-        robots.insert(id.clone(), robot);
-        Ok((id, true))
+        let new = self.robots.create(&id, robot).await?;
+        Ok((id, new))
     }
 
     /// The robot with an id, if there is one.
-    pub(crate) fn get(&self, id: &str) -> Option<Robot> {
-        self.robots.read().unwrap_or_else(PoisonError::into_inner).get(id).cloned()
+    pub(crate) async fn get(&self, id: &str) -> Result<Option<Robot>, Problem> {
+        self.robots.get(id).await
     }
 
     /// All robots, in the order of their ids.
-    pub(crate) fn list(&self) -> Vec<(String, Robot)> {
-        let robots = self.robots.read().unwrap_or_else(PoisonError::into_inner);
-        robots.iter().map(|(id, robot)| (id.clone(), robot.clone())).collect()
+    pub(crate) async fn list(&self) -> Result<Vec<(String, Robot)>, Problem> {
+        let robots = self.robots.list().await?;
+        Ok(robots.into_iter().map(|(id, robot)| (id, Robot::clone(&robot))).collect())
     }
 }
 
-/// Writes the whole file or none.
-fn write(folder: &Path, id: &str, robot: &Robot) -> io::Result<()> {
-    let mut file = tempfile::Builder::new().prefix(".robot-").tempfile_in(folder)?;
-    serde_json::to_writer(&mut file, robot)?;
-    file.as_file().sync_all()?;
-    file.persist(folder.join(format!("{id}.json")))?;
-    Ok(())
-}
-
-/// Content hash of a robot, as 16 hexadecimal digits.
-fn id_of(robot: &Robot) -> String {
-    let json = serde_json::to_vec(robot).unwrap_or_default();
-    Sha256::digest(json).iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+/// The hash of a robot's JSON, which has every field in the same order.
+fn content_id(robot: &Robot) -> Result<String, Problem> {
+    let bytes = serde_json::to_vec(robot).map_err(|error| {
+        Problem::new(ProblemType::Internal, format!("the robot cannot be written: {error}"))
+    })?;
+    Ok(id_of(Sha256::new_with_prefix(bytes)))
 }

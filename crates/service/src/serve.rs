@@ -73,10 +73,11 @@ async fn run(
     let ending = engine.clone();
     let stop = async move {
         stop.await;
-        // Who follows a job is told, and leaves.
-        ending.call_off_jobs();
         let _ = draining.send(());
+        // Who follows a job is told, and leaves.
+        ending.hand_back_jobs().await;
     };
+    tokio::spawn(engine.clone().watch_jobs());
     let serving = axum::serve(listener, router(engine)).with_graceful_shutdown(stop);
     tokio::select! {
         outcome = serving.into_future() => outcome,

@@ -1,66 +1,27 @@
-//! The maps at hand.
+//! Where everything is kept that outlasts a request: objects by name, in a folder or in a bucket that speaks S3.
+//!
+//! An object is there as a whole or not at all, and what has been put is still there after the process was killed. Names are
+//! made here, of a kind and an id that was checked: nothing that a request says becomes a path.
 
-use std::{
-    collections::BTreeMap,
-    sync::{Arc, PoisonError, RwLock},
-};
+mod fault;
+mod folder;
+mod id;
+mod lease;
+mod notes;
+mod objects;
+mod pairs;
+mod place;
+mod spool;
+mod sweep;
 
-use terrain::Terrain;
+pub(crate) use fault::{cannot, full};
+pub(crate) use id::{id_of, is_id, shown};
+pub(crate) use lease::{Beat, Lease, Watched, leased};
+pub(crate) use notes::Notes;
+pub(crate) use objects::Store;
+pub(crate) use pairs::Pairs;
+pub use place::StoreError;
+pub(crate) use spool::Spool;
 
-use crate::{
-    problem::{Problem, ProblemType},
-    routes::maps::MapSummary,
-};
-
-/// Maps by content hash, in memory.
-#[derive(Debug, Default)]
-pub(crate) struct MapStore {
-    maps: RwLock<BTreeMap<String, Stored>>,
-}
-
-/// A map with what is told of it.
-#[derive(Clone, Debug)]
-pub(crate) struct Stored {
-    pub(crate) terrain: Arc<Terrain>,
-    pub(crate) summary: MapSummary,
-}
-
-impl MapStore {
-    /// Keeps a map; the same map twice is one. Returns whether it is new.
-    pub(crate) fn insert(&self, map: Stored, most_cells: usize) -> Result<bool, Problem> {
-        let mut maps = self.maps.write().unwrap_or_else(PoisonError::into_inner);
-        if maps.contains_key(&map.summary.id) {
-            return Ok(false);
-        }
-        let held: usize = maps.values().map(|map| map.terrain.grid.cells()).sum();
-        if held + map.terrain.grid.cells() > most_cells {
-            let detail = format!("{held} of {most_cells} cells are taken: delete a map first");
-            return Err(Problem::new(ProblemType::StoreFull, detail));
-        }
-        maps.insert(map.summary.id.clone(), map);
-        Ok(true)
-    }
-
-    /// The map with an id.
-    pub(crate) fn get(&self, id: &str) -> Result<Arc<Terrain>, Problem> {
-        let maps = self.maps.read().unwrap_or_else(PoisonError::into_inner);
-        maps.get(id).map(|map| Arc::clone(&map.terrain)).ok_or_else(|| unknown(id))
-    }
-
-    /// All maps in brief, in the order of their ids.
-    pub(crate) fn list(&self) -> Vec<MapSummary> {
-        let maps = self.maps.read().unwrap_or_else(PoisonError::into_inner);
-        maps.values().map(|map| map.summary.clone()).collect()
-    }
-
-    /// Forgets a map.
-    pub(crate) fn remove(&self, id: &str) -> Result<(), Problem> {
-        let mut maps = self.maps.write().unwrap_or_else(PoisonError::into_inner);
-        maps.remove(id).map(drop).ok_or_else(|| unknown(id))
-    }
-}
-
-fn unknown(id: &str) -> Problem {
-    let shown: String = id.chars().take(64).collect();
-    Problem::new(ProblemType::UnknownMap, format!("there is no map `{shown}`: POST it to /v1/maps first"))
-}
+/// What is kept: the first part of every object's name, and a folder where the store is one.
+pub(crate) const KINDS: [&str; 5] = ["maps", "robots", "recordings", "jobs", "reports"];

@@ -1,6 +1,7 @@
 //! Reading and writing map files.
 
 pub mod ascii;
+pub mod cells;
 pub mod geotiff;
 pub mod json;
 pub mod ros_map;

@@ -196,7 +196,7 @@ impl Terrain {
         Some(sum_m)
     }
 
-    /// Content hash of everything that a plan depends on, as 16 hexadecimal digits.
+    /// Content hash of everything that a plan depends on, as 32 hexadecimal digits: 128 bits of its SHA-256.
     pub fn content_id(&self) -> String {
         use sha2::{Digest, Sha256};
         let mut hash = Sha256::new();
@@ -222,7 +222,7 @@ impl Terrain {
                 hash.update([u8::from(o)]);
             }
         }
-        hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+        hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }
 

@@ -25,7 +25,7 @@ pub struct AlternativesRequest {
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
-    /// Name of a built-in robot, or a robot.
+    /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Where the robot stands.
     #[serde(deserialize_with = "object")]
@@ -111,6 +111,7 @@ pub struct AlternativesAnswer {
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "Start or goal unusable, no path, or limits that no path keeps", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json"),
         (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
     )
 )]

@@ -12,8 +12,8 @@ use axum::extract::State;
 use calibration::{Method, Options, lift};
 use model::Robot;
 use recording::{Map, Recording, Room, Watch};
-use serde::Deserialize;
-use serde_json::Value;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::{
@@ -24,6 +24,8 @@ use crate::{
     Engine,
     body::JsonBody,
     job::Job,
+    job_records::Description,
+    job_run,
     problem::{Problem, ProblemType},
     recordings::{Note, map_from},
 };
@@ -32,7 +34,7 @@ use crate::{
 pub(super) const MOST_RECORDINGS: usize = 1000;
 
 /// What to fit to what.
-#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrateRequest {
     /// Name of a built-in robot, id of a stored one, or a robot: what is known before.
@@ -59,23 +61,37 @@ pub struct CalibrateRequest {
     post, path = "/v1/calibrate", tag = "jobs",
     request_body = CalibrateRequest,
     responses(
-        (status = 202, description = "Started; `Location` is the job", body = JobAnswer, headers(("location" = String))),
+        (status = 202, description = "In the store, and started unless the same was asked before; `Location` is the job", body = JobAnswer, headers(("location" = String))),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such robot or recording", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "Too many jobs", body = Problem, content_type = "application/problem+json")
+        (status = 503, description = "Too many jobs, or the store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(request): JsonBody<CalibrateRequest>,
 ) -> Result<Accepted, Problem> {
-    let own = engine.clone();
-    let work = engine.on_disk(move || Work::prepare(&own, request)).await?;
-    let own = engine.clone();
-    let job = engine.start("calibrate", move |job| work.run(&own, job))?;
-    Ok(accepted(&job))
+    let (description, work) = prepared(&engine, request).await?;
+    Ok(accepted(engine.ask(&description, work).await?))
+}
+
+/// The work of a request that was accepted before.
+pub(super) async fn work(engine: &Engine, request: &Value) -> Result<Box<dyn job_run::Work>, Problem> {
+    prepared(engine, accepted_before(request)?).await.map(|(_, work)| work)
+}
+
+/// What a request stands for.
+async fn prepared(
+    engine: &Engine,
+    mut request: CalibrateRequest,
+) -> Result<(Description, Box<dyn job_run::Work>), Problem> {
+    request.robot.look_up(engine.robots()).await?;
+    let kept = to_value(&request)?;
+    let work = Work::prepare(engine, request).await?;
+    let description = Description::new("calibrate", kept, inputs(&work.notes));
+    Ok((description, Box::new(work)))
 }
 
 /// A calibration whose request was found right.
@@ -89,14 +105,13 @@ struct Work {
 
 impl Work {
     /// Refuses at once what can be known without reading a recording.
-    fn prepare(engine: &Engine, request: CalibrateRequest) -> Result<Work, Problem> {
-        let CalibrateRequest { mut robot, recordings, method, reference_surface, map, lift } = request;
+    async fn prepare(engine: &Engine, request: CalibrateRequest) -> Result<Work, Problem> {
+        let CalibrateRequest { robot, recordings, method, reference_surface, map, lift } = request;
         let count = recordings.len();
         if !(1..=MOST_RECORDINGS).contains(&count) {
             let detail = format!("{count} recordings are named, but it must be 1 to {MOST_RECORDINGS}");
             return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/recordings"));
         }
-        robot.look_up(engine.robots());
         let mut robot = robot.robot()?;
         if let Some(text) = lift {
             let lifted = lift::read(&text).and_then(|lifts| lift::apply(&robot, &lifts));
@@ -106,30 +121,54 @@ impl Work {
         }
         Ok(Work {
             robot,
-            notes: notes(engine, &recordings, "/recordings")?,
+            notes: notes(engine, &recordings, "/recordings").await?,
             map: map.as_ref().map(map_from).transpose()?,
             method,
             options: Options { reference_surface },
         })
     }
+}
 
-    fn run(self, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
+impl job_run::Work for Work {
+    fn run(self: Box<Self>, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
         let recording = read(engine, job, &self.notes, self.map.as_ref(), "/recordings")?;
         job.tell("fitting", None);
         let found = self.method.calibrate_watched(&self.robot, &recording, &self.options, &job.watch());
         let found = found.map_err(|error| Problem::no_calibration(&error))?;
-        serde_json::to_value(&found).map_err(|error| {
-            Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))
-        })
+        to_value(&found)
     }
 }
 
 /// What is known of the recordings of a request's field.
-pub(super) fn notes(engine: &Engine, ids: &[String], field: &str) -> Result<Vec<Note>, Problem> {
-    let note = |(i, id): (usize, &String)| {
-        engine.recordings().note(id).map_err(|problem| problem.at(format!("{field}/{i}")))
-    };
-    ids.iter().enumerate().map(note).collect()
+pub(super) async fn notes(engine: &Engine, ids: &[String], field: &str) -> Result<Vec<Note>, Problem> {
+    let mut notes = Vec::with_capacity(ids.len());
+    for (i, id) in ids.iter().enumerate() {
+        let note = engine.recordings().note(id).await;
+        notes.push(note.map_err(|problem| problem.at(format!("{field}/{i}")))?);
+    }
+    Ok(notes)
+}
+
+/// How recordings are read, which a request does not say and a result depends on.
+pub(super) fn inputs(notes: &[Note]) -> Value {
+    notes.iter().map(|note| json!({ "id": note.id, "name": note.name, "map": note.map })).collect()
+}
+
+/// A document as JSON.
+pub(super) fn to_value(document: &impl Serialize) -> Result<Value, Problem> {
+    serde_json::to_value(document).map_err(|error| {
+        Problem::new(ProblemType::Internal, format!("the document cannot be written: {error}"))
+    })
+}
+
+/// A request out of the store.
+pub(super) fn accepted_before<T: DeserializeOwned>(request: &Value) -> Result<T, Problem> {
+    T::deserialize(request).map_err(|error| {
+        Problem::new(
+            ProblemType::Internal,
+            format!("the job was asked of another version: {error}; ask again"),
+        )
+    })
 }
 
 /// Reads them behind one another, telling the job.

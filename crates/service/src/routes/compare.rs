@@ -33,7 +33,8 @@ pub struct CompareAnswer {
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "Start or goal unusable, or no path", body = Problem, content_type = "application/problem+json"),
-        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
+        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(

@@ -6,12 +6,12 @@ use axum::extract::State;
 use diagnosis::diagnose_watched;
 use model::Robot;
 use recording::Map;
-use serde::Deserialize;
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::{
-    calibrate::{MOST_RECORDINGS, notes, read},
+    calibrate::{MOST_RECORDINGS, accepted_before, inputs, notes, read, to_value},
     jobs::{Accepted, JobAnswer, accepted},
     robots::RobotChoice,
 };
@@ -19,6 +19,8 @@ use crate::{
     Engine,
     body::JsonBody,
     job::Job,
+    job_records::Description,
+    job_run,
     problem::{Problem, ProblemType},
     recordings::{Note, map_from},
 };
@@ -27,7 +29,7 @@ use crate::{
 const MOST_POINTS: usize = 4000;
 
 /// What to diagnose.
-#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiagnoseRequest {
     /// Name of a built-in robot, id of a stored one, or a robot.
@@ -51,23 +53,37 @@ pub struct DiagnoseRequest {
     post, path = "/v1/diagnose", tag = "jobs",
     request_body = DiagnoseRequest,
     responses(
-        (status = 202, description = "Started; `Location` is the job", body = JobAnswer, headers(("location" = String))),
+        (status = 202, description = "In the store, and started unless the same was asked before; `Location` is the job", body = JobAnswer, headers(("location" = String))),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such robot or recording", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "Too many jobs", body = Problem, content_type = "application/problem+json")
+        (status = 503, description = "Too many jobs, or the store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(request): JsonBody<DiagnoseRequest>,
 ) -> Result<Accepted, Problem> {
-    let own = engine.clone();
-    let work = engine.on_disk(move || Work::prepare(&own, request)).await?;
-    let own = engine.clone();
-    let job = engine.start("diagnose", move |job| work.run(&own, job))?;
-    Ok(accepted(&job))
+    let (description, work) = prepared(&engine, request).await?;
+    Ok(accepted(engine.ask(&description, work).await?))
+}
+
+/// The work of a request that was accepted before.
+pub(super) async fn work(engine: &Engine, request: &Value) -> Result<Box<dyn job_run::Work>, Problem> {
+    prepared(engine, accepted_before(request)?).await.map(|(_, work)| work)
+}
+
+/// What a request stands for.
+async fn prepared(
+    engine: &Engine,
+    mut request: DiagnoseRequest,
+) -> Result<(Description, Box<dyn job_run::Work>), Problem> {
+    request.robot.look_up(engine.robots()).await?;
+    let kept = to_value(&request)?;
+    let work = Work::prepare(engine, request).await?;
+    let inputs = json!({ "recordings": inputs(&work.suspect), "reference": inputs(&work.healthy) });
+    Ok((Description::new("diagnose", kept, inputs), Box::new(work)))
 }
 
 /// A diagnosis whose request was found right.
@@ -80,9 +96,8 @@ struct Work {
 
 impl Work {
     /// Refuses at once what can be known without reading a recording.
-    fn prepare(engine: &Engine, request: DiagnoseRequest) -> Result<Work, Problem> {
-        let DiagnoseRequest { mut robot, recordings, reference, map } = request;
-        robot.look_up(engine.robots());
+    async fn prepare(engine: &Engine, request: DiagnoseRequest) -> Result<Work, Problem> {
+        let DiagnoseRequest { robot, recordings, reference, map } = request;
         for (ids, least, field) in [(&recordings, 1, "/recordings"), (&reference, 0, "/reference")] {
             let count = ids.len();
             if !(least..=MOST_RECORDINGS).contains(&count) {
@@ -93,13 +108,15 @@ impl Work {
         }
         Ok(Work {
             robot: robot.robot()?,
-            suspect: notes(engine, &recordings, "/recordings")?,
-            healthy: notes(engine, &reference, "/reference")?,
+            suspect: notes(engine, &recordings, "/recordings").await?,
+            healthy: notes(engine, &reference, "/reference").await?,
             map: map.as_ref().map(map_from).transpose()?,
         })
     }
+}
 
-    fn run(self, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
+impl job_run::Work for Work {
+    fn run(self: Box<Self>, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
         let map = self.map.as_ref();
         let suspect = read(engine, job, &self.suspect, map, "/recordings")?;
         let healthy = match self.healthy[..] {
@@ -109,12 +126,9 @@ impl Work {
         let tell = |step: &str, share: f64| job.tell(step, Some(share));
         let found = diagnose_watched(&self.robot, &suspect, healthy.as_ref(), &tell, &job.watch());
         let found = found.map_err(|error| Problem::no_diagnosis(&error))?;
-        let unwritable = |error: serde_json::Error| {
-            Problem::new(ProblemType::Internal, format!("the result cannot be written: {error}"))
-        };
-        let mut answer = serde_json::to_value(&found).map_err(unwritable)?;
-        answer["robot"] = serde_json::to_value(&found.corrected_robot).map_err(unwritable)?;
-        answer["trace"] = serde_json::to_value(found.trace.thinned(MOST_POINTS)).map_err(unwritable)?;
+        let mut answer = to_value(&found)?;
+        answer["robot"] = to_value(&found.corrected_robot)?;
+        answer["trace"] = to_value(&found.trace.thinned(MOST_POINTS))?;
         Ok(answer)
     }
 }

@@ -1,6 +1,6 @@
 //! `/v1/jobs`: long work, followed and called off.
 
-use std::{convert::Infallible, sync::Arc};
+use std::{convert::Infallible, sync::Arc, time::Duration};
 
 use axum::{
     Json,
@@ -12,7 +12,7 @@ use axum::{
     },
 };
 use futures_util::{Stream, stream};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tokio::sync::watch;
 use utoipa::ToSchema;
@@ -20,29 +20,47 @@ use utoipa::ToSchema;
 use crate::{
     Engine,
     body::Id,
-    job::{Job, JobState, Progress, Status},
-    problem::Problem,
+    job::{JobState, Progress, Status},
+    job_records::{Description, Report},
+    job_run::Work,
+    problem::{Problem, ProblemType},
 };
 
 /// What starting a job answers: where to follow it, and how it is.
 pub(crate) type Accepted = (StatusCode, [(HeaderName, String); 1], Json<JobAnswer>);
 
 /// The answer to a request that has started a job.
-pub(crate) fn accepted(job: &Job) -> Accepted {
+pub(crate) fn accepted(job: JobAnswer) -> Accepted {
     let location = format!("/v1/jobs/{}", job.id);
-    (StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(JobAnswer::of(job, job.status())))
+    (StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(job))
+}
+
+/// The work that a description stands for.
+pub(crate) async fn work(engine: &Engine, description: &Description) -> Result<Box<dyn Work>, Problem> {
+    match description.kind.as_str() {
+        "calibrate" => super::calibrate::work(engine, &description.request).await,
+        "diagnose" => super::diagnose::work(engine, &description.request).await,
+        kind => {
+            let detail = format!("this service does no `{kind}`: a newer one asked for it");
+            Err(Problem::new(ProblemType::Internal, detail))
+        }
+    }
 }
 
 /// A job.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub struct JobAnswer {
-    /// Its id.
+    /// Hash of what it does and with what: the same job always has the same id.
+    #[schema(example = "5b7c1f0e9a3d4c2b8e6f7a1d0c9b8a7f")]
     pub id: String,
     /// What it does.
     #[schema(example = "calibrate")]
-    pub kind: &'static str,
+    pub kind: String,
     /// Where it stands.
     pub state: JobState,
+    /// How often it has been taken up: 1, and once more each time that the service that worked on it ended before it.
+    #[schema(example = 1)]
+    pub attempt: u64,
     /// What it is, or was last, busy with.
     pub progress: Progress,
     /// What it found, once it is done: of `calibrate`, what `POST /v1/calibrate` describes.
@@ -55,10 +73,10 @@ pub struct JobAnswer {
 }
 
 impl JobAnswer {
-    pub(crate) fn of(job: &Job, status: Status) -> Self {
-        let Status { state, progress, result, problem, .. } = status;
+    pub(crate) fn of(id: &str, kind: &str, status: Status) -> Self {
+        let Status { state, attempt, progress, result, problem, .. } = status;
         let result = result.as_deref().cloned();
-        JobAnswer { id: job.id.clone(), kind: job.kind, state, progress, result, problem }
+        JobAnswer { id: id.to_owned(), kind: kind.to_owned(), state, attempt, progress, result, problem }
     }
 }
 
@@ -66,12 +84,17 @@ impl JobAnswer {
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job")),
-    responses((status = 200, body = JobAnswer), (status = 404, body = Problem, content_type = "application/problem+json"))
+    responses(
+        (status = 200, body = JobAnswer),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
 )]
 pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<JobAnswer>, Problem> {
-    let job = engine.jobs().get(&id)?;
-    let status = job.status();
-    Ok(Json(JobAnswer::of(&job, status)))
+    if let Some(job) = engine.jobs().get(&id) {
+        return Ok(Json(JobAnswer::of(&job.id, &job.kind, job.status())));
+    }
+    Ok(Json(engine.records().look_up(&id).await?.job))
 }
 
 /// Cancel a job that waits or runs; forget one that has ended.
@@ -81,17 +104,15 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
     responses(
         (status = 200, description = "Cancelled", body = JobAnswer),
         (status = 204, description = "It had ended, and is forgotten"),
-        (status = 404, body = Problem, content_type = "application/problem+json")
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<Response, Problem> {
-    let job = engine.jobs().get(&id)?;
-    if job.call_off() {
-        let status = job.status();
-        return Ok(Json(JobAnswer::of(&job, status)).into_response());
-    }
-    engine.jobs().forget(&id);
-    Ok(StatusCode::NO_CONTENT.into_response())
+    Ok(match engine.call_off(&id).await? {
+        Some(job) => Json(job).into_response(),
+        None => StatusCode::NO_CONTENT.into_response(),
+    })
 }
 
 /// Follow a job by server-sent events: `progress`, then one of `done`, `failed` and `cancelled`, each with the job as
@@ -105,7 +126,8 @@ pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<R
     responses(
         (status = 200, description = "Events until the job ends", body = JobAnswer, content_type = "text/event-stream"),
         (status = 204, description = "The last event was seen already: there will be no more"),
-        (status = 404, body = Problem, content_type = "application/problem+json")
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn events(
@@ -113,26 +135,42 @@ pub(crate) async fn events(
     Id(id): Id,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = engine.jobs().get(&id)?;
     let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok()).and_then(|id| id.parse().ok());
-    let status = job.status();
+    let follower = Follower::of(&engine, &id, seen).await?;
+    let status = follower.changes.borrow().clone();
     if status.state.is_final() && seen == Some(status.sequence) {
         // A browser's event source comes back after every end; this status tells it to stay away.
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let follower = Follower { changes: job.follow(), job, seen };
     Ok(Sse::new(follower.events()).keep_alive(KeepAlive::default()).into_response())
 }
 
+/// How often a job is looked up that another service works on.
+const LOOK: Duration = Duration::from_secs(1);
+
 /// A client that follows a job.
 struct Follower {
-    job: Arc<Job>,
+    id: String,
+    kind: String,
     changes: watch::Receiver<Status>,
     /// The number of the last change that it was told.
     seen: Option<u64>,
 }
 
 impl Follower {
+    /// Follows a job, wherever it is worked on.
+    async fn of(engine: &Engine, id: &str, seen: Option<u64>) -> Result<Follower, Problem> {
+        if let Some(job) = engine.jobs().get(id) {
+            let changes = job.follow();
+            return Ok(Follower { id: job.id.clone(), kind: job.kind.clone(), changes, seen });
+        }
+        let known = engine.records().look_up(id).await?;
+        let (id, kind) = (known.job.id.clone(), known.job.kind.clone());
+        let (changed, changes) = watch::channel(status(known));
+        tokio::spawn(look_out(engine.clone(), id.clone(), changed));
+        Ok(Follower { id, kind, changes, seen })
+    }
+
     /// Every change that is still the latest when the client is ready for it, up to the last.
     fn events(self) -> impl Stream<Item = Result<Event, Infallible>> {
         stream::unfold(self, |mut follower| async {
@@ -144,12 +182,12 @@ impl Follower {
                 JobState::Cancelled => "cancelled",
             };
             let event = Event::default().event(event).id(status.sequence.to_string());
-            let event = event.json_data(JobAnswer::of(&follower.job, status)).ok()?;
+            let event = event.json_data(JobAnswer::of(&follower.id, &follower.kind, status)).ok()?;
             Some((Ok(event), follower))
         })
     }
 
-    /// The next status that the client has not seen; `None` after the final one.
+    /// The next status that the client has not seen; `None` after the last one.
     async fn next(&mut self) -> Option<Status> {
         loop {
             let status = self.changes.borrow_and_update().clone();
@@ -157,10 +195,31 @@ impl Follower {
                 self.seen = Some(status.sequence);
                 return Some(status);
             }
-            if status.state.is_final() {
+            if status.is_last() {
                 return None;
             }
             self.changes.changed().await.ok()?;
         }
     }
+}
+
+/// Looks a job up again and again, until it has ended, is forgotten, or nobody follows it any more.
+async fn look_out(engine: Engine, id: String, changed: watch::Sender<Status>) {
+    while !changed.borrow().is_last() {
+        tokio::select! {
+            () = changed.closed() => return,
+            () = tokio::time::sleep(LOOK) => {}
+        }
+        match engine.records().look_up(&id).await {
+            Ok(known) => drop(changed.send_replace(status(known))),
+            Err(problem) if problem.kind == ProblemType::StoreUnavailable => {}
+            Err(_) => return,
+        }
+    }
+}
+
+fn status(known: Report) -> Status {
+    let JobAnswer { state, attempt, progress, result, problem, .. } = known.job;
+    let result = result.map(Arc::new);
+    Status { sequence: known.sequence, attempt, state, progress, result, problem, handed_back: false }
 }

@@ -17,15 +17,15 @@ use crate::{
     accept::preferred,
     body::{Id, JsonBody, content_type, from_json, read as read_body},
     cells,
+    maps::Stored,
     problem::{Problem, ProblemType},
-    store::Stored,
 };
 
 /// A map in brief.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct MapSummary {
     /// Content hash: the same map always has the same id.
-    #[schema(example = "b1ae055dffb40c1e")]
+    #[schema(example = "b1ae055dffb40c1e6d70fd1ca9d5c3aa")]
     pub id: String,
     /// Number of rows.
     pub rows: usize,
@@ -86,7 +86,8 @@ impl MapSummary {
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 507, body = Problem, content_type = "application/problem+json")
+        (status = 507, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn create(
@@ -105,7 +106,7 @@ pub(crate) async fn create(
         })
         .await?;
     let summary = map.summary.clone();
-    let new = engine.maps().insert(map, engine.limits().stored_cells)?;
+    let new = engine.maps().insert(map, engine.limits().stored_cells).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
 }
 
@@ -150,9 +151,15 @@ pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Proble
 }
 
 /// Maps at hand.
-#[utoipa::path(get, path = "/v1/maps", tag = "maps", responses((status = 200, body = MapList)))]
-pub(crate) async fn list(State(engine): State<Engine>) -> Json<MapList> {
-    Json(MapList { maps: engine.maps().list() })
+#[utoipa::path(
+    get, path = "/v1/maps", tag = "maps",
+    responses(
+        (status = 200, body = MapList),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<MapList>, Problem> {
+    Ok(Json(MapList { maps: engine.maps().list().await? }))
 }
 
 /// How many cells to send.
@@ -174,7 +181,8 @@ pub struct CellsQuery {
     responses(
         (status = 200, description = "The map", content((MapFile = "application/json"), (Vec<u8> = "application/octet-stream"))),
         (status = 400, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json")
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn read(
@@ -184,7 +192,7 @@ pub(crate) async fn read(
     uri: Uri,
 ) -> Result<Response, Problem> {
     let CellsQuery { max_cells } = cells_query(&uri)?;
-    let map: Arc<Terrain> = engine.maps().get(&id)?;
+    let map: Arc<Terrain> = engine.maps().get(&id).await?;
     if preferred(&headers, &["application/json", "application/octet-stream"]) == "application/json" {
         return Ok(Json(MapFile::from(&*map)).into_response());
     }
@@ -216,7 +224,8 @@ fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
         (status = 404, body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 507, body = Problem, content_type = "application/problem+json")
+        (status = 507, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn change(
@@ -224,7 +233,7 @@ pub(crate) async fn change(
     Id(id): Id,
     JsonBody(patch): JsonBody<Patch>,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
-    let before = engine.maps().get(&id)?;
+    let before = engine.maps().get(&id).await?;
     let (map, changed) = engine
         .compute(move |_| {
             let (terrain, changed) =
@@ -235,7 +244,7 @@ pub(crate) async fn change(
         .await?;
     let summary = map.summary.clone();
     let terrain = Arc::clone(&map.terrain);
-    let new = engine.maps().insert(map, engine.limits().stored_cells)?;
+    let new = engine.maps().insert(map, engine.limits().stored_cells).await?;
     if new {
         engine.planners().patch(&id, &summary.id, &terrain, &changed);
     }
@@ -246,10 +255,14 @@ pub(crate) async fn change(
 #[utoipa::path(
     delete, path = "/v1/maps/{id}", tag = "maps",
     params(("id" = String, Path, description = "Content hash of the map")),
-    responses((status = 204, description = "Forgotten"), (status = 404, body = Problem, content_type = "application/problem+json"))
+    responses(
+        (status = 204, description = "Forgotten"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
 )]
 pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
-    engine.maps().remove(&id)?;
+    engine.maps().remove(&id).await?;
     engine.planners().forget(&id);
     Ok(StatusCode::NO_CONTENT)
 }

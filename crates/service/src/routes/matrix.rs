@@ -27,7 +27,7 @@ pub struct MatrixRequest {
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
-    /// Name of a built-in robot, or a robot.
+    /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Where paths start: the rows of the answer.
     #[schema(min_items = 1)]
@@ -88,6 +88,7 @@ pub struct UnreachableAnswer {
         (status = 413, description = "Too many entries, or too large a map", body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "A pose unusable", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json"),
         (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
     )
 )]

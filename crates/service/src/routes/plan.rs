@@ -250,7 +250,8 @@ fn one() -> f64 {
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "Start or goal unusable, no path, or limits that no path keeps", body = Problem, content_type = "application/problem+json"),
-        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
+        (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(
@@ -279,8 +280,8 @@ pub(crate) async fn with_planner<T: Send + 'static>(
     request: &mut PlanRequest,
     answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
-    request.robot.look_up(engine.robots());
-    let stored = choose_map(engine, request)?;
+    request.robot.look_up(engine.robots()).await?;
+    let stored = choose_map(engine, request).await?;
     let (inline, request) = (request.map.take(), request.clone());
     let own = engine.clone();
     engine
@@ -320,11 +321,11 @@ pub(crate) async fn with_planner<T: Send + 'static>(
         .await
 }
 
-fn choose_map(engine: &Engine, request: &PlanRequest) -> Result<Option<Arc<Terrain>>, Problem> {
+async fn choose_map(engine: &Engine, request: &PlanRequest) -> Result<Option<Arc<Terrain>>, Problem> {
     match (&request.map, &request.map_id) {
         (Some(_), None) => Ok(None),
         (None, Some(id)) => {
-            let found = engine.maps().get(id);
+            let found = engine.maps().get(id).await;
             found.map(Some).map_err(|problem| problem.at("/map_id"))
         }
         (Some(_), Some(_)) => {

@@ -28,7 +28,7 @@ pub struct RangeRequest {
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
-    /// Name of a built-in robot, or a robot; it needs a battery.
+    /// Name of a built-in robot, id of a stored one, or a robot; it needs a battery.
     pub robot: RobotChoice,
     /// Where the robot stands.
     #[serde(deserialize_with = "object")]
@@ -236,6 +236,7 @@ pub struct CarriesAnswer {
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "Start or goal unusable, or no path", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json"),
         (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
     )
 )]

@@ -33,7 +33,7 @@ pub struct ReachableRequest {
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
-    /// Name of a built-in robot, or a robot; charges need its battery.
+    /// Name of a built-in robot, id of a stored one, or a robot; charges need its battery.
     pub robot: RobotChoice,
     /// The place that ways start from or lead to. With a heading, the robot departs and arrives with it.
     #[serde(deserialize_with = "object")]
@@ -133,6 +133,7 @@ pub struct ContourProperties {
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
         (status = 422, description = "The place unusable", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json"),
         (status = 504, description = "Out of time", body = Problem, content_type = "application/problem+json")
     )
 )]

@@ -24,6 +24,7 @@ use crate::{
     problem::{Problem, ProblemType},
     receive::{Received, receive},
     recordings::{Note, map_from},
+    store::{Spool, cannot},
 };
 
 /// How a recording is to be read.
@@ -108,7 +109,8 @@ impl From<Note> for RecordingAnswer {
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 507, body = Problem, content_type = "application/problem+json")
+        (status = 507, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn create(
@@ -124,20 +126,15 @@ pub(crate) async fn create(
     let name = name.unwrap_or_else(|| "recording".into());
     let note =
         Note { id: received.id.clone(), format, bytes: received.bytes, name, map, report: Value::Null };
-    let own = engine.clone();
-    let (note, new) = engine.work(move |left| checked(&own, received, note, left)).await?;
+    let (note, received) = engine.work(move |left| checked(received, note, left)).await?;
+    let new = engine.recordings().keep(received, &note).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
 }
 
-/// Reads what was received and keeps it if it is a recording.
-fn checked(
-    engine: &Engine,
-    received: Received,
-    mut note: Note,
-    left: &Arc<AtomicBool>,
-) -> Result<(Note, bool), Problem> {
+/// Reads what was received, and notes what it is if it is a recording.
+fn checked(received: Received, mut note: Note, left: &Arc<AtomicBool>) -> Result<(Note, Spool), Problem> {
     let map = note.map.as_ref().map(map_from).transpose()?;
-    let file = received.file.reopen().map_err(|error| crate::recordings::cannot("read", &error))?;
+    let file = received.file.reader().map_err(|error| cannot("read from", &error))?;
     let left = Arc::clone(left);
     let watch: recording::Watch = Arc::new(move |_| {
         if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -148,8 +145,7 @@ fn checked(
     note.report = serde_json::to_value(&reading.report).map_err(|error| {
         Problem::new(ProblemType::Internal, format!("the report cannot be written: {error}"))
     })?;
-    let new = engine.recordings().keep(received.file, &note)?;
-    Ok((note, new))
+    Ok((note, received.file))
 }
 
 fn query(uri: &Uri) -> Result<ReadingQuery, Problem> {
@@ -178,10 +174,15 @@ fn format_of(kind: &str) -> Result<Format, Problem> {
 }
 
 /// Recordings at hand.
-#[utoipa::path(get, path = "/v1/recordings", tag = "recordings", responses((status = 200, body = RecordingList)))]
+#[utoipa::path(
+    get, path = "/v1/recordings", tag = "recordings",
+    responses(
+        (status = 200, body = RecordingList),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
 pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingList>, Problem> {
-    let own = engine.clone();
-    let notes = engine.on_disk(move || own.recordings().list()).await?;
+    let notes = engine.recordings().list().await?;
     Ok(Json(RecordingList { recordings: notes.iter().map(RecordingSummary::from).collect() }))
 }
 
@@ -189,22 +190,27 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingL
 #[utoipa::path(
     get, path = "/v1/recordings/{id}", tag = "recordings",
     params(("id" = String, Path, description = "Content hash of the recording")),
-    responses((status = 200, body = RecordingAnswer), (status = 404, body = Problem, content_type = "application/problem+json"))
+    responses(
+        (status = 200, body = RecordingAnswer),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
 )]
 pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<RecordingAnswer>, Problem> {
-    let own = engine.clone();
-    let note = engine.on_disk(move || own.recordings().note(&id)).await?;
-    Ok(Json(note.into()))
+    Ok(Json(engine.recordings().note(&id).await?.into()))
 }
 
 /// Forget a recording. Jobs that read it already finish.
 #[utoipa::path(
     delete, path = "/v1/recordings/{id}", tag = "recordings",
     params(("id" = String, Path, description = "Content hash of the recording")),
-    responses((status = 204, description = "Forgotten"), (status = 404, body = Problem, content_type = "application/problem+json"))
+    responses(
+        (status = 204, description = "Forgotten"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
 )]
 pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
-    let own = engine.clone();
-    engine.on_disk(move || own.recordings().remove(&id)).await?;
+    engine.recordings().remove(&id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -27,12 +27,13 @@ pub enum RobotChoice {
 
 impl RobotChoice {
     /// Puts a stored robot in the place of its id.
-    pub(crate) fn look_up(&mut self, stored: &RobotStore) {
+    pub(crate) async fn look_up(&mut self, stored: &RobotStore) -> Result<(), Problem> {
         if let RobotChoice::Name(id) = self
-            && let Some(robot) = stored.get(id)
+            && let Some(robot) = stored.get(id).await?
         {
             *self = RobotChoice::File(Box::new(RobotFile::from(robot)));
         }
+        Ok(())
     }
 
     /// The robot, checked.
@@ -85,7 +86,7 @@ pub struct RobotList {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct StoredRobot {
     /// Content hash: the same robot always has the same id.
-    #[schema(example = "9c1185a5c5e9fc54")]
+    #[schema(example = "9c1185a5c5e9fc54a0b1c2d3e4f56789")]
     pub id: String,
     /// The robot, every default filled in.
     pub robot: Robot,
@@ -101,7 +102,8 @@ pub struct StoredRobot {
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
-        (status = 507, body = Problem, content_type = "application/problem+json")
+        (status = 507, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn create(
@@ -109,29 +111,39 @@ pub(crate) async fn create(
     JsonBody(file): JsonBody<RobotFile>,
 ) -> Result<(StatusCode, Json<StoredRobot>), Problem> {
     let robot = Robot::try_from(file).map_err(|error| Problem::invalid_robot(&error, ""))?;
-    let (own, kept) = (engine.clone(), robot.clone());
-    let (id, new) = engine.on_disk(move || own.robots().insert(kept)).await?;
+    let (id, new) = engine.robots().insert(&robot).await?;
     let status = if new { StatusCode::CREATED } else { StatusCode::OK };
     Ok((status, Json(StoredRobot { id, robot })))
 }
 
 /// Robots that requests may name.
-#[utoipa::path(get, path = "/v1/robots", tag = "robots", responses((status = 200, body = RobotList)))]
-pub(crate) async fn list(State(engine): State<Engine>) -> Json<RobotList> {
+#[utoipa::path(
+    get, path = "/v1/robots", tag = "robots",
+    responses(
+        (status = 200, body = RobotList),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RobotList>, Problem> {
     let mut robots = builtin::all();
     robots.sort_by(|a, b| a.name.cmp(&b.name));
-    let stored = engine.robots().list().into_iter().map(|(id, robot)| StoredRobot { id, robot }).collect();
-    Json(RobotList { robots, stored })
+    let stored =
+        engine.robots().list().await?.into_iter().map(|(id, robot)| StoredRobot { id, robot }).collect();
+    Ok(Json(RobotList { robots, stored }))
 }
 
 /// One robot by its name or id.
 #[utoipa::path(
     get, path = "/v1/robots/{id}", tag = "robots",
     params(("id" = String, Path, description = "Name of a built-in robot or id of a stored one", example = "husky-a200")),
-    responses((status = 200, body = Robot), (status = 404, body = Problem, content_type = "application/problem+json"))
+    responses(
+        (status = 200, body = Robot),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
 )]
 pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<Robot>, Problem> {
-    if let Some(robot) = engine.robots().get(&id) {
+    if let Some(robot) = engine.robots().get(&id).await? {
         return Ok(Json(robot));
     }
     let found = builtin::by_name(&id).map_err(|error| {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::maps::MapSummary;
-use crate::Engine;
+use crate::{Engine, problem::Problem};
 
 /// The service and what it may be asked.
 #[derive(Debug, Serialize, ToSchema)]
@@ -32,10 +32,16 @@ pub struct LimitsAnswer {
 }
 
 /// Version, limits and maps at hand.
-#[utoipa::path(get, path = "/v1/status", tag = "service", responses((status = 200, body = Status)))]
-pub(crate) async fn handler(State(engine): State<Engine>) -> Json<Status> {
+#[utoipa::path(
+    get, path = "/v1/status", tag = "service",
+    responses(
+        (status = 200, body = Status),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn handler(State(engine): State<Engine>) -> Result<Json<Status>, Problem> {
     let limits = engine.limits();
-    Json(Status {
+    Ok(Json(Status {
         version: env!("CARGO_PKG_VERSION"),
         limits: LimitsAnswer {
             body_bytes: limits.body_bytes,
@@ -43,6 +49,6 @@ pub(crate) async fn handler(State(engine): State<Engine>) -> Json<Status> {
             map_cells: limits.map_cells(),
             matrix_entries: limits.matrix_entries,
         },
-        maps: engine.maps().list(),
-    })
+        maps: engine.maps().list().await?,
+    }))
 }

@@ -1,0 +1,90 @@
+//! Takes up jobs that nobody works on any more.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::{
+    Engine,
+    job::JobState,
+    job_records::Report,
+    problem::{Problem, ProblemType},
+    routes::{self, jobs::JobAnswer},
+    store::{Beat, Lease, Watched, leased},
+};
+
+/// How often the store is looked at while a lease lasts.
+const LOOKS_OF_A_LEASE: u32 = 2;
+
+impl Engine {
+    /// Looks at the store's open jobs, at once and then for as long as the service runs.
+    pub(crate) async fn watch_jobs(self) {
+        let mut looks = interval(self.limits().lease_time / LOOKS_OF_A_LEASE);
+        looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let (mut watched, mut strays) = (BTreeMap::new(), BTreeSet::new());
+        loop {
+            looks.tick().await;
+            // A store that is out of reach is looked at again.
+            let _ = self.look(&mut watched).await;
+            let _ = self.clear_strays(&mut strays).await;
+        }
+    }
+
+    /// Removes leases without a job, which a holder wrote while the job was ended elsewhere.
+    async fn clear_strays(&self, seen: &mut BTreeSet<String>) -> Result<(), Problem> {
+        let mut strays = leased(&self.records().store).await?;
+        let open = self.records().open().await?;
+        strays.retain(|id| !open.contains(id) && self.jobs().get(id).is_none());
+        for id in strays.intersection(seen) {
+            Lease::clear(&self.records().store, id).await?;
+        }
+        *seen = strays;
+        Ok(())
+    }
+
+    async fn look(&self, watched: &mut BTreeMap<String, Watched>) -> Result<(), Problem> {
+        let open = self.records().open().await?;
+        watched.retain(|id, _| open.contains(id));
+        for id in open {
+            if self.jobs().get(&id).is_some() {
+                continue;
+            }
+            if self.records().has_report(&id).await? {
+                // Its service was killed between the two.
+                self.records().close(&id).await?;
+                continue;
+            }
+            let (number, beat) = match Lease::latest(&self.records().store, &id).await? {
+                Some((number, beat)) => {
+                    let seen = watched.entry(id.clone()).or_insert_with(|| Watched::new(number, &beat));
+                    if !seen.has_ended(number, &beat, self.limits().lease_time) {
+                        continue;
+                    }
+                    (number, beat)
+                }
+                None => (0, Beat::first(0)),
+            };
+            if self.jobs().refuse_beyond(self.limits().open_jobs).is_err() {
+                return Ok(());
+            }
+            self.take_up_again(&id, number, beat.sequence).await?;
+        }
+        Ok(())
+    }
+
+    /// Takes up a job that was begun before, or says why that cannot be.
+    async fn take_up_again(&self, id: &str, after: u64, sequence: u64) -> Result<(), Problem> {
+        let Some(description) = self.records().description(id).await? else { return Ok(()) };
+        let kind = &description.kind;
+        tracing::info!(job = id, kind, attempt = after + 1, "takes up a job that nobody works on");
+        match routes::jobs::work(self, &description).await {
+            Ok(work) => self.take_up(id, kind, after, Beat::first(sequence + 1), work).await.map(drop),
+            Err(problem) if problem.kind == ProblemType::StoreUnavailable => Err(problem),
+            Err(problem) => {
+                let known = self.records().look_up(id).await?;
+                let job = JobAnswer { state: JobState::Failed, problem: Some(problem), ..known.job };
+                self.records().end(id, &Report { sequence: sequence + 1, job }).await
+            }
+        }
+    }
+}
