@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    job::Job,
+    job::{Job, JobState},
     problem::{Problem, ProblemType},
 };
 
@@ -45,6 +45,11 @@ impl Jobs {
     /// The job with an id.
     pub(crate) fn get(&self, id: &str) -> Result<Arc<Job>, Problem> {
         self.lock().iter().find(|job| job.id == id).cloned().ok_or_else(|| unknown(id))
+    }
+
+    /// The state of every job at hand.
+    pub(crate) fn states(&self) -> Vec<JobState> {
+        self.lock().iter().map(|job| job.status().state).collect()
     }
 
     /// Forgets a job.

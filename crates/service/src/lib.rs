@@ -5,15 +5,23 @@
 //! document and the same errors.
 
 mod accept;
+mod access;
+mod admission;
 mod body;
 mod cells;
+mod connections;
+mod describe;
 mod engine;
 mod geojson;
 mod job;
 mod jobs;
+mod layers;
 mod limits;
+mod memory;
+mod metrics;
 mod planners;
 mod problem;
+mod problem_type;
 mod receive;
 mod recordings;
 mod robots;
@@ -23,6 +31,7 @@ pub mod routes;
 mod serve;
 mod store;
 
+pub use access::{Access, Tokens, WeakToken};
 pub use engine::Engine;
 pub use limits::Limits;
 pub use planner::Patience;

@@ -17,8 +17,16 @@ pub struct Limits {
     pub stored_cells: usize,
     /// Most bytes that planners keep between requests: costs of motions and fields of goals. Default 2 GiB.
     pub kept_bytes: usize,
-    /// Computations that run at the same time; more wait. Default: one for each core.
+    /// Most bytes that requests under way may take together, as estimated. Default 4 GiB.
+    pub request_memory_bytes: u64,
+    /// Computations that run at the same time; more wait. Default: one for each core, but two, so that a job leaves room.
     pub parallel_plans: usize,
+    /// Requests that may wait to compute, however long it takes. Default: four for each that computes.
+    pub patient_plans: usize,
+    /// More may wait while none would wait longer than this [s]; others are refused at once. Default 0.15 s.
+    pub queue_time: Duration,
+    /// Requests that may wait to compute at most. Default 256.
+    pub queued_plans: usize,
     /// Largest recording [bytes]. Default 12 GiB.
     pub recording_bytes: u64,
     /// Most bytes over all stored recordings. Default 64 GiB.
@@ -29,9 +37,17 @@ pub struct Limits {
     pub parallel_jobs: usize,
     /// Jobs that ended and are kept for who asks later. Default 256.
     pub kept_jobs: usize,
-    /// Longest pause while a body is sent [s]. Default 30 s.
+    /// Connections that may be open; more are refused. Default 1024.
+    pub connections: usize,
+    /// Longest wait for the head of a request, and for the next one on a connection [s]. Default 30 s.
+    pub head_time: Duration,
+    /// Longest pause while a body is sent or an answer is taken [s]. Default 30 s.
     pub body_pause: Duration,
-    /// Longest wait for requests under way when the service is asked to end [s]. Default 10 s.
+    /// Least mean speed of a body that takes longer than a pause [bytes/s]. Default 4096.
+    pub body_bytes_per_s: u64,
+    /// How long the service goes on when it is asked to end, so that who asks `/readyz` learns of it [s]. Default 0 s.
+    pub unready_time: Duration,
+    /// Longest wait for requests under way after that [s]. Default 10 s.
     pub drain_time: Duration,
 }
 
@@ -45,13 +61,21 @@ impl Default for Limits {
             matrix_entries: 2500,
             stored_cells: 200_000_000,
             kept_bytes: 2 << 30,
-            parallel_plans: cores,
+            request_memory_bytes: 4 << 30,
+            parallel_plans: cores.max(2),
+            patient_plans: 4 * cores.max(2),
+            queue_time: Duration::from_millis(150),
+            queued_plans: 256,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,
             open_jobs: 32,
             parallel_jobs: (cores - 1).max(1),
             kept_jobs: 256,
+            connections: 1024,
+            head_time: Duration::from_secs(30),
             body_pause: Duration::from_secs(30),
+            body_bytes_per_s: 4096,
+            unready_time: Duration::ZERO,
             drain_time: Duration::from_secs(10),
         }
     }

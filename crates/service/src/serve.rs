@@ -8,15 +8,15 @@ use std::{
 
 use tokio::sync::oneshot;
 
-use crate::{Engine, router};
+use crate::{Access, Engine, connections::accept, router};
 
 /// Serves until the process is asked to end (interrupt or terminate), then finishes what is under way.
 ///
 /// # Errors
 /// When the listener or the runtime cannot be used.
-pub fn serve(listener: TcpListener, engine: Engine) -> io::Result<()> {
+pub fn serve(listener: TcpListener, engine: Engine, access: &Access) -> io::Result<()> {
     let runtime = runtime()?;
-    let outcome = runtime.block_on(run(listener, engine, asked_to_end()));
+    let outcome = runtime.block_on(run(listener, engine, access, asked_to_end()));
     // Computations that outlast the drain have no one to answer.
     runtime.shutdown_background();
     outcome
@@ -39,9 +39,10 @@ pub fn start(listener: TcpListener, engine: Engine) -> io::Result<Running> {
     let runtime = runtime()?;
     let (stop, stopped) = oneshot::channel();
     let thread = std::thread::spawn(move || {
-        let outcome = runtime.block_on(run(listener, engine, async {
+        let stopped = async {
             let _ = stopped.await;
-        }));
+        };
+        let outcome = runtime.block_on(run(listener, engine, &Access::default(), stopped));
         runtime.shutdown_background();
         outcome
     });
@@ -64,28 +65,26 @@ fn runtime() -> io::Result<tokio::runtime::Runtime> {
 async fn run(
     listener: TcpListener,
     engine: Engine,
-    stop: impl Future<Output = ()> + Send + 'static,
+    access: &Access,
+    stop: impl Future<Output = ()> + Send,
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let drain_time = engine.limits().drain_time;
-    let (draining, drained) = oneshot::channel();
-    let ending = engine.clone();
-    let stop = async move {
+    let routes = router(engine.clone(), access);
+    let stop = async {
         stop.await;
-        // Who follows a job is told, and leaves.
-        ending.call_off_jobs();
-        let _ = draining.send(());
+        tracing::info!("asked to end");
+        engine.announce_end();
+        tokio::time::sleep(engine.limits().unready_time).await;
     };
-    let serving = axum::serve(listener, router(engine)).with_graceful_shutdown(stop);
-    tokio::select! {
-        outcome = serving.into_future() => outcome,
-        // A client that stalls must not keep the service from ending.
-        () = async {
-            let _ = drained.await;
-            tokio::time::sleep(drain_time).await;
-        } => Ok(()),
+    let open = accept(listener, routes, &engine, stop).await;
+    // Who follows a job is told, and leaves.
+    engine.call_off_jobs();
+    // A client that stalls must not keep the service from ending.
+    if tokio::time::timeout(engine.limits().drain_time, open.shutdown()).await.is_err() {
+        tracing::warn!("requests under way were cut off");
     }
+    Ok(())
 }
 
 async fn asked_to_end() {
