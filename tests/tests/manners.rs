@@ -118,9 +118,9 @@ fn bodies_come_and_go_packed() {
 #[test]
 fn a_small_body_that_unpacks_to_a_huge_one_is_refused_before_it_takes_memory() {
     let server = Server::start_with(&["--body-bytes", "1000000"]);
-    // A gigabyte of blanks in a megabyte, packed piece by piece.
-    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
-    for _ in 0..1000 {
+    // As many blanks as fit into what is sent at once, so that the answer is read before the connection closes.
+    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    for _ in 0..60 {
         packed.write_all(&[b' '; 1_000_000]).unwrap();
     }
     let packed = packed.finish().unwrap();
@@ -130,7 +130,7 @@ fn a_small_body_that_unpacks_to_a_huge_one_is_refused_before_it_takes_memory() {
         server.ask("POST", path, &headers, &packed).problem(413, "too-large");
     }
     if let (Some(before), Some(after)) = (before, server.peak_memory_bytes()) {
-        assert!(after < before + 100_000_000, "{before} bytes, then {after}");
+        assert!(after < before + 30_000_000, "{before} bytes, then {after}");
     }
 }
 

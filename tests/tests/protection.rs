@@ -219,7 +219,7 @@ fn pages_of_other_origins_are_let_in_only_by_name() {
     let origin = "https://maps.example.org";
     let from = |server: &Server, origin: &str| {
         let headers = [("origin", origin), ("sec-fetch-site", "cross-site"), ("content-type", "text/plain")];
-        server.ask("POST", "/v1/maps", &headers, b"ncols 1\nnrows 1\ncellsize 1\n1")
+        server.ask("POST", "/v1/maps", &headers, b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1")
     };
     let closed = Server::start();
     from(&closed, origin).problem(403, "cross-origin");

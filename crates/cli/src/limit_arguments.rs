@@ -37,7 +37,7 @@ pub(crate) struct LimitArguments {
     #[arg(long, env = "JOULEPATH_PATIENT_PLANS", default_value_t = Limits::default().patient_plans)]
     patient_plans: usize,
     /// More may wait while none would wait longer than this; others are refused at once [s]
-    #[arg(long, env = "JOULEPATH_QUEUE_TIME_S", default_value = "0.15", value_parser = seconds)]
+    #[arg(long, env = "JOULEPATH_QUEUE_TIME_S", default_value = "0.1", value_parser = seconds)]
     queue_time_s: Duration,
     /// Requests that may wait to compute at most
     #[arg(long, env = "JOULEPATH_QUEUED_PLANS", default_value_t = Limits::default().queued_plans)]

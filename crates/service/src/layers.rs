@@ -55,13 +55,19 @@ pub(crate) fn layered(
     routes.layer(
         ServiceBuilder::new()
             .set_request_id(REQUEST_ID, MakeRequestUuid)
-            .layer(TraceLayer::new_for_http().make_span_with(log::span).on_response(log::answered))
+            .layer(
+                TraceLayer::new_for_http()
+                    .make_span_with(log::span)
+                    .on_response(log::answered)
+                    .on_failure(()),
+            )
             .propagate_request_id(REQUEST_ID)
             .layer(from_fn_with_state(metrics, measure::measure))
             .layer(CatchPanicLayer::custom(move |_: Box<dyn Any + Send>| {
                 panics.panics.inc();
                 panicked()
             }))
+            .layer(from_fn_with_state(Pace::from(engine.limits()), pace::paced))
             // What a better level saves of the wire takes longer to find than to send.
             .layer(CompressionLayer::new().quality(CompressionLevel::Fastest))
             .layer(cors(access))
@@ -69,7 +75,6 @@ pub(crate) fn layered(
             .layer(from_fn_with_state(Offers::of(description), negotiate::negotiate))
             .layer(from_fn(conditional::conditional))
             .layer(from_fn(encoding::refuse_unknown))
-            .layer(from_fn_with_state(Pace::from(engine.limits()), pace::paced))
             .layer(RequestDecompressionLayer::new())
             .map_request_body(Body::new),
     )

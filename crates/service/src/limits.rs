@@ -21,9 +21,9 @@ pub struct Limits {
     pub request_memory_bytes: u64,
     /// Computations that run at the same time; more wait. Default: one for each core, but two, so that a job leaves room.
     pub parallel_plans: usize,
-    /// Requests that may wait to compute, however long it takes. Default: four for each that computes.
+    /// Requests that may wait to compute, however long it takes. Default: sixteen for each that computes.
     pub patient_plans: usize,
-    /// More may wait while none would wait longer than this [s]; others are refused at once. Default 0.15 s.
+    /// More may wait while none would wait longer than this [s]; others are refused at once. Default 0.1 s.
     pub queue_time: Duration,
     /// Requests that may wait to compute at most. Default 256.
     pub queued_plans: usize,
@@ -63,8 +63,8 @@ impl Default for Limits {
             kept_bytes: 2 << 30,
             request_memory_bytes: 4 << 30,
             parallel_plans: cores.max(2),
-            patient_plans: 4 * cores.max(2),
-            queue_time: Duration::from_millis(150),
+            patient_plans: 16 * cores.max(2),
+            queue_time: Duration::from_millis(100),
             queued_plans: 256,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,

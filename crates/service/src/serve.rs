@@ -16,7 +16,7 @@ use crate::{Access, Engine, connections::accept, router};
 /// When the listener or the runtime cannot be used.
 pub fn serve(listener: TcpListener, engine: Engine, access: &Access) -> io::Result<()> {
     let runtime = runtime()?;
-    let outcome = runtime.block_on(run(listener, engine, access, asked_to_end()));
+    let outcome = runtime.block_on(async { run(listener, engine, access, asked_to_end()?).await });
     // Computations that outlast the drain have no one to answer.
     runtime.shutdown_background();
     outcome
@@ -87,21 +87,25 @@ async fn run(
     Ok(())
 }
 
-async fn asked_to_end() {
-    let interrupt = async {
+/// The end of the wait for an interrupt or a wish to end, of which none that comes from now on is missed.
+#[cfg(unix)]
+fn asked_to_end() -> io::Result<impl Future<Output = ()> + Send> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}
+
+#[cfg(not(unix))]
+fn asked_to_end() -> io::Result<impl Future<Output = ()> + Send> {
+    Ok(async {
         if tokio::signal::ctrl_c().await.is_err() {
             std::future::pending::<()>().await;
         }
-    };
-    #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        let Ok(mut terminate) = signal(SignalKind::terminate()) else { return interrupt.await };
-        tokio::select! {
-            () = interrupt => {}
-            _ = terminate.recv() => {}
-        }
-    }
-    #[cfg(not(unix))]
-    interrupt.await;
+    })
 }

@@ -7,15 +7,15 @@ use std::{
 };
 
 use axum::{
-    body::{Body, Bytes, HttpBody},
+    body::{Body, Bytes, HttpBody, to_bytes},
     extract::{Request, State},
     middleware::Next,
-    response::Response,
+    response::{IntoResponse, Response},
 };
 use http_body::{Frame, SizeHint};
 use tokio::time::{Instant, Sleep, sleep_until};
 
-use crate::Limits;
+use crate::{Limits, body::broken};
 
 /// How slowly a body may come.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +47,24 @@ impl std::fmt::Display for TooSlow {
 
 impl std::error::Error for TooSlow {}
 
+/// A body of so many bytes is taken whole before anything is answered: closing a connection with some of it unread would take
+/// the answer with it.
+const SHORT_BYTES: u64 = 32 << 10;
+
 /// Breaks off bodies that come too slowly.
 pub(crate) async fn paced(State(pace): State<Pace>, request: Request, next: Next) -> Response {
-    let request =
-        request.map(|body| if body.is_end_stream() { body } else { Body::new(PacedBody::new(body, pace)) });
-    next.run(request).await
+    if request.body().is_end_stream() {
+        return next.run(request).await;
+    }
+    let request = request.map(|body| Body::new(PacedBody::new(body, pace)));
+    if request.body().size_hint().upper().is_none_or(|most| most > SHORT_BYTES) {
+        return next.run(request).await;
+    }
+    let (parts, body) = request.into_parts();
+    match to_bytes(body, usize::MAX).await {
+        Ok(bytes) => next.run(Request::from_parts(parts, Body::from(bytes))).await,
+        Err(error) => broken(&error).into_response(),
+    }
 }
 
 /// A body with a clock beside it.
@@ -109,7 +122,6 @@ impl HttpBody for PacedBody {
 
 #[cfg(test)]
 mod tests {
-    use axum::body::to_bytes;
     use futures_util::stream;
 
     use super::*;
