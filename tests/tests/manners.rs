@@ -57,7 +57,7 @@ fn a_form_that_is_not_offered_is_refused_with_those_that_are() {
     let geojson =
         server.ask("POST", "/v1/plan", &[json, ("accept", "application/geo+json")], body.as_bytes());
     assert_eq!((geojson.status, &geojson.content_type[..]), (200, "application/geo+json"));
-    assert_eq!(geojson.header("vary").contains("accept"), true);
+    assert!(geojson.header("vary").contains("accept"), "{:?}", geojson.headers);
     for path in ["/v1/maps", "/v1/robots", "/healthz", "/metrics", "/v1/status"] {
         assert_eq!(server.ask("GET", path, &[("accept", "image/png")], b"").status, 406, "{path}");
         assert_eq!(server.ask("GET", path, &[("accept", "*/*")], b"").status, 200, "{path}");

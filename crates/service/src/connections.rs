@@ -51,7 +51,7 @@ pub(crate) async fn accept(
         };
         let Ok(place) = Arc::clone(&places).try_acquire_owned() else {
             engine.metrics().shed.get_or_create(&ShedLabels { reason: "connections" }).inc();
-            refuse(stream);
+            refuse(&stream);
             continue;
         };
         let Ok(io) = prepared(stream, limits.body_pause) else { continue };
@@ -77,7 +77,7 @@ fn prepared(stream: TcpStream, pause: Duration) -> io::Result<TimeoutStream<TcpS
 }
 
 /// Tells a client without waiting for it.
-fn refuse(stream: TcpStream) {
+fn refuse(stream: &TcpStream) {
     let _ = stream.try_write(FULL);
 }
 

@@ -154,7 +154,7 @@ mod tests {
         let limits = Limits { parallel_plans: 1, ..Limits::default() };
         let engine = Engine::new(limits, None).unwrap();
         for _ in 0..3 {
-            let nothing: Option<()> = std::hint::black_box(None);
+            let nothing: Option<u8> = std::hint::black_box(None);
             let outcome = engine.compute(move |_| Ok(nothing.unwrap())).await;
             assert_eq!(outcome.unwrap_err().kind, ProblemType::Internal);
         }
