@@ -22,7 +22,7 @@ use serde_json::Value;
 pub fn program() -> PathBuf {
     let mut path = std::env::current_exe().unwrap_or_default();
     path.pop();
-    if path.ends_with("deps") {
+    if path.ends_with("deps") || path.ends_with("examples") {
         path.pop();
     }
     path.push("joulepath");
@@ -83,7 +83,7 @@ impl Server {
     /// # Panics
     /// When it does not start.
     pub fn start_with(arguments: &[&str]) -> Self {
-        Server::start_in(&[], arguments)
+        Server::start_in("127.0.0.1:0", arguments, &[])
     }
 
     /// Starts a server over a folder, in which a killed service's jobs are taken up soon.
@@ -103,13 +103,21 @@ impl Server {
         Server::start_with(&[&["--store", folder.as_str()], arguments].concat())
     }
 
-    /// Starts a server with more environment variables and arguments.
+    /// Starts a server at an address, with more arguments.
     ///
     /// # Panics
     /// When it does not start.
-    pub fn start_in(environment: &[(&str, &str)], arguments: &[&str]) -> Self {
+    pub fn start_at(bind: &str, arguments: &[&str]) -> Self {
+        Server::start_in(bind, arguments, &[])
+    }
+
+    /// Starts a server at an address, with more arguments and variables of the environment.
+    ///
+    /// # Panics
+    /// When it does not start.
+    pub fn start_in(bind: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
         let mut child = Command::new(program())
-            .args(["serve", "--bind", "127.0.0.1:0"])
+            .args(["serve", "--bind", bind])
             .args(arguments)
             .envs(environment.iter().copied())
             .stdout(Stdio::piped())
@@ -119,7 +127,7 @@ impl Server {
         let stdout = child.stdout.take().unwrap_or_else(|| panic!("the server's output was not kept"));
         let mut line = String::new();
         let read = BufReader::new(stdout).read_line(&mut line);
-        let url = line.trim().strip_prefix("listening on ").map(str::to_owned);
+        let url = line.trim().strip_prefix("listening on ").map(|url| url.replace("0.0.0.0", "127.0.0.1"));
         let url = url.unwrap_or_else(|| panic!("the server said {line:?} ({read:?})"));
         Server { child, url }
     }
@@ -145,6 +153,29 @@ impl Server {
     pub fn patch_json(&self, path: &str, body: &Value) -> Answer {
         let request = agent().patch(format!("{}{path}", self.url)).content_type("application/json");
         Answer::from(request.send(body.to_string().as_bytes()))
+    }
+
+    /// Sends any request.
+    ///
+    /// # Panics
+    /// When it cannot be put together, or the server does not answer.
+    pub fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
+        let mut request = ureq::http::Request::builder().method(method).uri(format!("{}{path}", self.url));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let request = request.body(body).unwrap_or_else(|error| panic!("{method} {path}: {error}"));
+        Answer::from(agent().run(request))
+    }
+
+    /// The value of a line of `/metrics`, as `joulepath_shed_total{reason="queue"}`; 0 where there is none yet.
+    ///
+    /// # Panics
+    /// When it is no number.
+    pub fn metric(&self, name: &str) -> f64 {
+        let text = self.get("/metrics").text;
+        let value = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        value.map_or(0.0, |value| value.parse().unwrap_or_else(|_| panic!("{name} is {value}")))
     }
 
     /// Gets a path.
@@ -176,8 +207,24 @@ impl Server {
     /// # Panics
     /// When it cannot be asked.
     pub fn terminate(&mut self) -> std::process::ExitStatus {
+        self.ask_to_end();
+        self.wait()
+    }
+
+    /// Asks the server to end.
+    ///
+    /// # Panics
+    /// When it cannot be asked.
+    pub fn ask_to_end(&self) {
         let asked = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status();
         assert!(asked.is_ok_and(|status| status.success()), "the server could not be asked to end");
+    }
+
+    /// Waits until the server has ended.
+    ///
+    /// # Panics
+    /// When that cannot be seen.
+    pub fn wait(&mut self) -> std::process::ExitStatus {
         self.child.wait().unwrap_or_else(|error| panic!("the server's end was not seen: {error}"))
     }
 
@@ -253,11 +300,20 @@ pub struct Answer {
     pub request_id: Option<String>,
     /// Where what was made is found.
     pub location: Option<String>,
+    /// All headers.
+    pub headers: Vec<(String, String)>,
+    /// The body as it came.
+    pub body: Vec<u8>,
     /// The body as text.
     pub text: String,
 }
 
 impl Answer {
+    /// A header's value, empty where there is none.
+    pub fn header(&self, name: &str) -> &str {
+        self.headers.iter().find(|(other, _)| other == name).map_or("", |(_, value)| value)
+    }
+
     /// The body as JSON.
     ///
     /// # Panics
@@ -283,17 +339,20 @@ impl Answer {
 
     fn from(result: Result<ureq::http::Response<ureq::Body>, ureq::Error>) -> Self {
         let mut response = result.unwrap_or_else(|error| panic!("the server did not answer: {error}"));
-        let header =
-            |name: &str| response.headers().get(name).and_then(|v| v.to_str().ok()).map(str::to_owned);
+        let text = |value: &ureq::http::HeaderValue| String::from_utf8_lossy(value.as_bytes()).into_owned();
+        let headers: Vec<(String, String)> =
+            response.headers().iter().map(|(name, value)| (name.to_string(), text(value))).collect();
+        let header = |name: &str| headers.iter().find(|(other, _)| other == name).map(|(_, v)| v.clone());
         let (content_type, request_id) = (header("content-type").unwrap_or_default(), header("x-request-id"));
         let location = header("location");
         let status = response.status().as_u16();
-        let body = response.body_mut().with_config().limit(256 << 20).read_to_string();
-        let text = body.unwrap_or_else(|error| panic!("the answer broke off: {error}"));
-        Answer { status, content_type, request_id, location, text }
+        let body = response.body_mut().with_config().limit(256 << 20).read_to_vec();
+        let body = body.unwrap_or_else(|error| panic!("the answer broke off: {error}"));
+        let text = String::from_utf8_lossy(&body).into_owned();
+        Answer { status, content_type, request_id, location, headers, body, text }
     }
 }
 
 fn agent() -> ureq::Agent {
-    ureq::Agent::config_builder().http_status_as_error(false).build().into()
+    ureq::Agent::config_builder().http_status_as_error(false).allow_non_standard_methods(true).build().into()
 }

@@ -60,7 +60,7 @@ impl S3 {
             ("AWS_SECRET_ACCESS_KEY", "test"),
         ];
         let store = format!("s3://{BUCKET}/some/prefix");
-        Server::start_in(&environment, &["--store", &store, "--lease-s", "5"])
+        Server::start_in("127.0.0.1:0", &["--store", &store, "--lease-s", "5"], &environment)
     }
 
     /// Ends it, so that services find their store out of reach.

@@ -2,7 +2,9 @@
 
 mod arguments;
 mod commands;
+mod config;
 mod failure;
+mod limit_arguments;
 mod picture;
 mod progress;
 mod reach_picture;
@@ -56,29 +58,32 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    // clap ends the process itself: 2 on wrong arguments, 0 after help.
-    let outcome = match Arguments::parse().command {
-        Command::Plan(arguments) => commands::plan::run(&arguments),
-        Command::Compare(arguments) => commands::compare::run(&arguments),
-        Command::Alternatives(arguments) => commands::alternatives::run(&arguments),
-        Command::Matrix(arguments) => commands::matrix::run(&arguments),
-        Command::Reachable(arguments) => commands::reachable::run(&arguments),
-        Command::Range(arguments) => commands::range::run(&arguments),
-        Command::Mission(arguments) => commands::mission::run(&arguments),
-        Command::Predict(arguments) => commands::predict::run(&arguments),
-        Command::Calibrate(arguments) => commands::calibrate::run(&arguments),
-        Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
-        Command::Simulate(arguments) => commands::simulate::run(&arguments),
-        Command::Prove(arguments) => commands::prove::run(&arguments),
-        Command::Bench(arguments) => commands::bench::run(&arguments),
-        Command::Serve(arguments) => commands::serve::run(&arguments),
-        Command::Demo(arguments) => commands::demo::run(&arguments),
-    };
+    let outcome = config::parse().and_then(|arguments| run(&arguments.command));
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("joulepath: {error:#}");
             failure::exit_code(&error)
         }
+    }
+}
+
+fn run(command: &Command) -> anyhow::Result<()> {
+    match command {
+        Command::Plan(arguments) => commands::plan::run(arguments),
+        Command::Compare(arguments) => commands::compare::run(arguments),
+        Command::Alternatives(arguments) => commands::alternatives::run(arguments),
+        Command::Matrix(arguments) => commands::matrix::run(arguments),
+        Command::Reachable(arguments) => commands::reachable::run(arguments),
+        Command::Range(arguments) => commands::range::run(arguments),
+        Command::Mission(arguments) => commands::mission::run(arguments),
+        Command::Predict(arguments) => commands::predict::run(arguments),
+        Command::Calibrate(arguments) => commands::calibrate::run(arguments),
+        Command::Diagnose(arguments) => commands::diagnose::run(arguments),
+        Command::Simulate(arguments) => commands::simulate::run(arguments),
+        Command::Prove(arguments) => commands::prove::run(arguments),
+        Command::Bench(arguments) => commands::bench::run(arguments),
+        Command::Serve(arguments) => commands::serve::run(arguments),
+        Command::Demo(arguments) => commands::demo::run(arguments),
     }
 }

@@ -35,14 +35,25 @@ struct Entry {
     exact: Option<Arc<ExactField>>,
 }
 
+impl Entry {
+    fn bytes(&self) -> usize {
+        self.field.as_ref().map_or(0, |field| field.bytes())
+            + self.exact.as_ref().map_or(0, |exact| exact.bytes())
+    }
+}
+
 /// The goals asked for last, the latest at the end.
 #[derive(Default)]
 pub(crate) struct FieldCache {
     entries: Mutex<Vec<Entry>>,
 }
 
-/// Goals that are remembered.
+/// Goals that are remembered, whatever they take.
 const ENTRIES: usize = 8;
+/// More are remembered while all together take no more bytes, as the fields of 64 goals on a map of 1000 × 1000 cells do,
+const MOST_BYTES: usize = 256 << 20;
+/// and while they are soon looked through.
+const MOST_ENTRIES: usize = 256;
 /// Up to so many cells a goal that is asked for from a second start gets a field over the whole map: the table that this
 /// takes is a gigabyte and a third.
 const MOST_CELLS_COVERED: usize = 1 << 22;
@@ -86,10 +97,7 @@ impl FieldCache {
 
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        let bytes = |entry: &Entry| {
-            entry.field.as_ref().map_or(0, |f| f.bytes()) + entry.exact.as_ref().map_or(0, |e| e.bytes())
-        };
-        self.lock().iter().map(bytes).sum()
+        self.lock().iter().map(Entry::bytes).sum()
     }
 
     /// What is known of a goal, which becomes the latest.
@@ -113,8 +121,9 @@ impl FieldCache {
         let mut entry = known.unwrap_or(Entry { key, towards: None, field: None, exact: None });
         change(&mut entry);
         entries.push(entry);
-        if entries.len() > ENTRIES {
-            entries.remove(0);
+        let mut held: usize = entries.iter().map(Entry::bytes).sum();
+        while entries.len() > ENTRIES && (held > MOST_BYTES || entries.len() > MOST_ENTRIES) {
+            held -= entries.remove(0).bytes();
         }
     }
 

@@ -15,6 +15,7 @@ use serde_path_to_error::Segment;
 
 use crate::{
     Engine,
+    layers::TOO_SLOW,
     problem::{Problem, ProblemType, escaped},
 };
 
@@ -34,7 +35,7 @@ impl<T: DeserializeOwned + Send + 'static> FromRequest<Engine> for JsonBody<T> {
             ));
         }
         let bytes = read(request, engine).await?;
-        engine.compute(move |_| from_json(&bytes)).await.map(JsonBody)
+        engine.read(bytes.len(), move || from_json(&bytes)).await.map(JsonBody)
     }
 }
 
@@ -57,16 +58,32 @@ pub(crate) async fn read(request: Request, engine: &Engine) -> Result<Bytes, Pro
     if declared.and_then(|v| v.parse::<usize>().ok()).is_some_and(|length| length > limit) {
         return Err(too_large());
     }
-    to_bytes(request.into_body(), limit).await.map_err(|error| {
-        let mut source: Option<&dyn std::error::Error> = Some(&error);
-        while let Some(cause) = source {
-            if cause.to_string().contains("length limit") {
-                return too_large();
-            }
-            source = cause.source();
-        }
-        Problem::new(ProblemType::InvalidRequest, format!("the body ended early: {error}"))
+    let declared = declared.and_then(|v| v.parse().ok());
+    // What does not say how long it is may become as long as it may be.
+    let _reserved = engine.admission().reserve(declared.unwrap_or(limit as u64))?;
+    to_bytes(request.into_body(), limit).await.map_err(|error| match broken(&error) {
+        problem if problem.kind == ProblemType::TooLarge => too_large(),
+        problem => problem,
     })
+}
+
+/// Why a body did not arrive.
+pub(crate) fn broken(error: &axum::Error) -> Problem {
+    let mut source: Option<&dyn std::error::Error> = Some(error);
+    while let Some(cause) = source {
+        let said = cause.to_string();
+        if said.contains("length limit") {
+            return Problem::new(ProblemType::TooLarge, "the body is too large");
+        }
+        if said.contains(TOO_SLOW) {
+            return Problem::new(
+                ProblemType::TooSlow,
+                "the body came too slowly: send it again, over a better line",
+            );
+        }
+        source = cause.source();
+    }
+    Problem::new(ProblemType::InvalidRequest, format!("the body ended early or cannot be unpacked: {error}"))
 }
 
 /// Parses a JSON object and names the place of a mistake.

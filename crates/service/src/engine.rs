@@ -13,12 +13,14 @@ use serde_json::Value;
 use tokio::{sync::Semaphore, task::JoinError};
 
 use crate::{
-    job::Job,
+    admission::{Admission, Turn},
+    job::{Job, JobState},
     job_records::JobRecords,
     job_run::{Work, called_off},
     jobs::Jobs,
     limits::Limits,
     maps::MapStore,
+    metrics::{Metrics, StateLabels},
     planners::Planners,
     problem::{Problem, ProblemType},
     recordings::RecordingStore,
@@ -39,7 +41,12 @@ struct Shared {
     records: JobRecords,
     store: Store,
     jobs: Jobs,
-    turns: Arc<Semaphore>,
+    admission: Arc<Admission>,
+    /// Documents are read here, so that no question waits behind long ones.
+    readers: Semaphore,
+    metrics: Metrics,
+    /// Whether the service has been asked to end.
+    ending: AtomicBool,
     /// Jobs take a turn here before they wait for one among all computations.
     job_turns: Arc<Semaphore>,
 }
@@ -61,6 +68,7 @@ impl Engine {
     /// When nothing can be kept there.
     pub fn new(limits: Limits, store: Option<&str>) -> Result<Self, StoreError> {
         let store = Store::open(store)?;
+        let metrics = Metrics::new();
         Ok(Engine(Arc::new(Shared {
             limits,
             maps: MapStore::new(&store, limits.kept_map_bytes),
@@ -70,7 +78,10 @@ impl Engine {
             records: JobRecords::new(&store),
             store,
             jobs: Jobs::default(),
-            turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
+            admission: Arc::new(Admission::new(&limits, &metrics)),
+            readers: Semaphore::new(limits.parallel_plans.max(1)),
+            metrics,
+            ending: AtomicBool::new(false),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
         })))
     }
@@ -114,13 +125,74 @@ impl Engine {
         self.0.store.check().await
     }
 
-    /// Runs a computation on a thread of its own, in turn; its patience ends when the request does.
+    pub(crate) fn admission(&self) -> &Admission {
+        &self.0.admission
+    }
+
+    pub(crate) fn metrics(&self) -> &Metrics {
+        &self.0.metrics
+    }
+
+    /// Lets `/readyz` say that the service is about to end.
+    pub(crate) fn announce_end(&self) {
+        self.0.ending.store(true, Ordering::Relaxed);
+    }
+
+    pub(crate) fn is_ending(&self) -> bool {
+        self.0.ending.load(Ordering::Relaxed)
+    }
+
+    /// What is counted, as text.
+    pub(crate) fn counts(&self) -> String {
+        self.admission().tell();
+        let metrics = self.metrics();
+        metrics.kept_bytes.set(i64::try_from(self.planners().bytes()).unwrap_or(i64::MAX));
+        let states = self.jobs().states();
+        for (state, name) in JobState::ALL {
+            let count = states.iter().filter(|other| **other == state).count();
+            metrics.jobs.get_or_create(&StateLabels { state: name }).set(count as i64);
+        }
+        metrics.text()
+    }
+
+    /// Runs a computation on a thread of its own, in turn, or refuses it where that would take too long; its patience ends
+    /// when the request does.
     pub(crate) async fn compute<T: Send + 'static>(
         &self,
         work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
+        self.compute_within(0, work).await
+    }
+
+    /// The same within memory that the computation has to itself.
+    pub(crate) async fn compute_within<T: Send + 'static>(
+        &self,
+        bytes: u64,
+        work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let turn = self.0.admission.soon().await?;
+        let reserved = self.admission().reserve(bytes)?;
         let deadline = Instant::now() + self.limits().plan_time;
-        self.work(move |left| work(&Patience::until_or(deadline, Arc::clone(left)))).await
+        self.work_in(turn, move |left| {
+            let _reserved = reserved;
+            work(&Patience::until_or(deadline, Arc::clone(left)))
+        })
+        .await
+    }
+
+    /// Reads a document: at once where it is short, otherwise on a thread of its own.
+    pub(crate) async fn read<T: Send + 'static>(
+        &self,
+        bytes: usize,
+        read: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        /// Read in less than a millisecond, which others on the same thread can wait for.
+        const SHORT_BYTES: usize = 32 << 10;
+        if bytes <= SHORT_BYTES {
+            return read();
+        }
+        let _turn = self.0.readers.acquire().await;
+        self.on_disk(read).await
     }
 
     /// Runs work on a thread of its own, in turn, for as long as it takes; it is told when the request ends.
@@ -128,7 +200,15 @@ impl Engine {
         &self,
         work: impl FnOnce(&Arc<AtomicBool>) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        let turn = Arc::clone(&self.0.turns).acquire_owned().await.map_err(|_| stopping())?;
+        let turn = self.0.admission.some_time().await?;
+        self.work_in(turn, work).await
+    }
+
+    async fn work_in<T: Send + 'static>(
+        &self,
+        turn: Turn,
+        work: impl FnOnce(&Arc<AtomicBool>) -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
         let cancelled = Arc::new(AtomicBool::new(false));
         let asked = Asked(Arc::clone(&cancelled));
         let running = tokio::task::spawn_blocking(move || {
@@ -138,7 +218,21 @@ impl Engine {
         });
         let outcome = running.await;
         drop(asked);
-        outcome.unwrap_or_else(|failure| Err(fault(&failure)))
+        outcome.unwrap_or_else(|failure| Err(self.fault(&failure)))
+    }
+
+    /// Asks the disk, which may take its time, on a thread of its own.
+    pub(crate) async fn on_disk<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        tokio::task::spawn_blocking(work).await.unwrap_or_else(|failure| Err(self.fault(&failure)))
+    }
+
+    fn fault(&self, failure: &JoinError) -> Problem {
+        self.metrics().panics.inc();
+        tracing::error!(%failure, "a computation did not finish");
+        Problem::new(ProblemType::Internal, "the computation failed; the fault has been logged")
     }
 
     /// Does a job's work, which takes its turn among jobs and among computations.
@@ -154,10 +248,5 @@ impl Engine {
 }
 
 fn stopping() -> Problem {
-    Problem::new(ProblemType::Internal, "the service is stopping")
-}
-
-fn fault(failure: &JoinError) -> Problem {
-    tracing::error!(%failure, "a computation did not finish");
-    Problem::new(ProblemType::Internal, "the computation failed; the fault has been logged")
+    Problem::new(ProblemType::NotReady, "the service is stopping")
 }

@@ -36,6 +36,15 @@ pub enum JobState {
 }
 
 impl JobState {
+    /// All states by the names that they are told by.
+    pub(crate) const ALL: [(JobState, &str); 5] = [
+        (JobState::Queued, "queued"),
+        (JobState::Running, "running"),
+        (JobState::Done, "done"),
+        (JobState::Failed, "failed"),
+        (JobState::Cancelled, "cancelled"),
+    ];
+
     /// Whether nothing more will happen.
     pub fn is_final(self) -> bool {
         matches!(self, JobState::Done | JobState::Failed | JobState::Cancelled)

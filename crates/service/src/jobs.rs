@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    job::Job,
+    job::{Job, JobState},
     problem::{Problem, ProblemType},
 };
 
@@ -37,6 +37,11 @@ impl Jobs {
     /// The job with an id, if this service works on it and has not handed it back.
     pub(crate) fn get(&self, id: &str) -> Option<Arc<Job>> {
         self.lock().get(id).filter(|job| !job.status().handed_back).cloned()
+    }
+
+    /// The state of every job at hand.
+    pub(crate) fn states(&self) -> Vec<JobState> {
+        self.all().iter().map(|job| job.status().state).collect()
     }
 
     /// Forgets a job, unless another has taken its id since.

@@ -5,8 +5,12 @@
 //! document and the same errors.
 
 mod accept;
+mod access;
+mod admission;
 mod body;
 mod cells;
+mod connections;
+mod describe;
 mod engine;
 mod geojson;
 mod job;
@@ -14,10 +18,14 @@ mod job_records;
 mod job_run;
 mod job_watch;
 mod jobs;
+mod layers;
 mod limits;
 mod maps;
+mod memory;
+mod metrics;
 mod planners;
 mod problem;
+mod problem_type;
 mod receive;
 mod recordings;
 mod robots;
@@ -27,6 +35,7 @@ pub mod routes;
 mod serve;
 mod store;
 
+pub use access::{Access, Tokens, WeakToken};
 pub use engine::Engine;
 pub use limits::Limits;
 pub use planner::Patience;

@@ -19,8 +19,16 @@ pub struct Limits {
     pub kept_map_bytes: usize,
     /// Most bytes that planners keep between requests: costs of motions and fields of goals. Default 2 GiB.
     pub kept_bytes: usize,
-    /// Computations that run at the same time; more wait. Default: one for each core.
+    /// Most bytes that requests under way may take together, as estimated. Default 4 GiB.
+    pub request_memory_bytes: u64,
+    /// Computations that run at the same time; more wait. Default: one for each core, but two, so that a job leaves room.
     pub parallel_plans: usize,
+    /// Requests that may wait to compute, however long it takes. Default: sixteen for each that computes.
+    pub patient_plans: usize,
+    /// More may wait while none would wait longer than this [s]; others are refused at once. Default 0.1 s.
+    pub queue_time: Duration,
+    /// Requests that may wait to compute at most. Default 256.
+    pub queued_plans: usize,
     /// Largest recording [bytes]. Default 12 GiB.
     pub recording_bytes: u64,
     /// Most bytes over all stored recordings. Default 64 GiB.
@@ -33,9 +41,17 @@ pub struct Limits {
     pub kept_jobs: usize,
     /// How long a service that works on a job may be silent before another takes the job up [s]. Default 15 s.
     pub lease_time: Duration,
-    /// Longest pause while a body is sent [s]. Default 30 s.
+    /// Connections that may be open; more are refused. Default 1024.
+    pub connections: usize,
+    /// Longest wait for the head of a request, and for the next one on a connection [s]. Default 30 s.
+    pub head_time: Duration,
+    /// Longest pause while a body is sent or an answer is taken [s]. Default 30 s.
     pub body_pause: Duration,
-    /// Longest wait for requests under way when the service is asked to end [s]. Default 10 s.
+    /// Least mean speed of a body that takes longer than a pause [bytes/s]. Default 4096.
+    pub body_bytes_per_s: u64,
+    /// How long the service goes on when it is asked to end, so that who asks `/readyz` learns of it [s]. Default 0 s.
+    pub unready_time: Duration,
+    /// Longest wait for requests under way after that [s]. Default 10 s.
     pub drain_time: Duration,
 }
 
@@ -50,14 +66,22 @@ impl Default for Limits {
             stored_cells: 200_000_000,
             kept_map_bytes: 1 << 30,
             kept_bytes: 2 << 30,
-            parallel_plans: cores,
+            request_memory_bytes: 4 << 30,
+            parallel_plans: cores.max(2),
+            patient_plans: 16 * cores.max(2),
+            queue_time: Duration::from_millis(100),
+            queued_plans: 256,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,
             open_jobs: 32,
             parallel_jobs: (cores - 1).max(1),
             kept_jobs: 1000,
             lease_time: Duration::from_secs(15),
+            connections: 1024,
+            head_time: Duration::from_secs(30),
             body_pause: Duration::from_secs(30),
+            body_bytes_per_s: 4096,
+            unready_time: Duration::ZERO,
             drain_time: Duration::from_secs(10),
         }
     }

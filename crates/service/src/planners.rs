@@ -21,26 +21,36 @@ pub(crate) struct Planners {
 }
 
 impl Planners {
-    /// The planner for a stored map, made if it is not at hand.
+    /// The planner for a stored map, made if it is not at hand, and whether it was.
     pub(crate) fn get(
         &self,
         map_id: &str,
         terrain: &Terrain,
         robot: &Robot,
         settings: Settings,
-    ) -> Result<Arc<Planner>, planner::Error> {
+    ) -> Result<(Arc<Planner>, bool), planner::Error> {
         let key = Key { map_id: map_id.to_owned(), robot: RobotFile::from(robot.clone()), settings };
         let mut kept = self.lock();
         if let Some(at) = kept.iter().position(|(other, _)| *other == key) {
             let found = kept.remove(at);
             let planner = Arc::clone(&found.1);
             kept.push(found);
-            return Ok(planner);
+            return Ok((planner, true));
         }
         drop(kept);
         let planner = Arc::new(Planner::new(terrain, robot, settings)?);
         self.lock().push((key, Arc::clone(&planner)));
-        Ok(planner)
+        Ok((planner, false))
+    }
+
+    /// Whether there is a planner for a stored map, whatever the robot and settings.
+    pub(crate) fn knows(&self, map_id: &str) -> bool {
+        self.lock().iter().any(|(key, _)| key.map_id == map_id)
+    }
+
+    /// Bytes that all planners hold.
+    pub(crate) fn bytes(&self) -> usize {
+        self.lock().iter().map(|(_, planner)| planner.bytes()).sum()
     }
 
     /// Makes planners for a map that differs from another in some cells only, out of those of the other.

@@ -1,5 +1,7 @@
 //! Every failure as one shape: an RFC 9457 problem document.
 
+use std::time::Duration;
+
 use axum::{
     Json,
     http::{HeaderValue, StatusCode, header},
@@ -9,70 +11,7 @@ use planner::Place;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// How long a client is asked to wait where it is not known how long it takes [s].
-const RETRY_AFTER_S: &str = "5";
-
-/// The kinds of failure; programs may rely on these names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ProblemType {
-    /// The body is not JSON, or not the JSON that is needed.
-    InvalidRequest,
-    /// The map cannot be used as it is.
-    InvalidMap,
-    /// The robot cannot be used as it is.
-    InvalidRobot,
-    /// The recording cannot be read.
-    InvalidRecording,
-    /// A content type that this path does not take.
-    UnsupportedMediaType,
-    /// No such path.
-    NotFound,
-    /// No map with this id.
-    UnknownMap,
-    /// No robot of this name.
-    UnknownRobot,
-    /// No recording with this id.
-    UnknownRecording,
-    /// No job with this id.
-    UnknownJob,
-    /// The path does not take this method.
-    MethodNotAllowed,
-    /// A surface that the robot or the recording does not know.
-    UnknownSurface,
-    /// The recording can be read, but does not hold what is needed.
-    InsufficientRecording,
-    /// The start lies off the map.
-    StartOutsideMap,
-    /// The goal lies off the map.
-    GoalOutsideMap,
-    /// The robot cannot stand at the start.
-    StartBlocked,
-    /// The robot cannot stand at the goal.
-    GoalBlocked,
-    /// No way leads from the start to the goal.
-    NoPath,
-    /// A pose of a list lies off the map.
-    WaypointOutsideMap,
-    /// The robot cannot stand at a pose of a list.
-    WaypointBlocked,
-    /// No path keeps all the limits asked for.
-    LimitsContradict,
-    /// A deadline that no plan can keep.
-    DeadlineTooShort,
-    /// The search stopped at its deadline.
-    Timeout,
-    /// The body or the map exceeds a limit.
-    TooLarge,
-    /// The service holds as much as it may.
-    StoreFull,
-    /// The store cannot be reached, or does not do what it is asked.
-    StoreUnavailable,
-    /// As many jobs wait or run as may.
-    TooManyJobs,
-    /// A fault of the service.
-    Internal,
-}
+pub use crate::problem_type::ProblemType;
 
 /// A problem document.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -89,6 +28,9 @@ pub struct Problem {
     /// The fields at fault.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<FieldError>,
+    /// When to try again, as the header `Retry-After` says it [s].
+    #[serde(skip)]
+    pub retry_after_s: Option<u64>,
 }
 
 /// One field at fault.
@@ -101,72 +43,6 @@ pub struct FieldError {
     pub detail: String,
 }
 
-impl ProblemType {
-    fn status(self) -> StatusCode {
-        use ProblemType as T;
-        match self {
-            T::InvalidRequest | T::InvalidMap | T::InvalidRobot | T::InvalidRecording => {
-                StatusCode::BAD_REQUEST
-            }
-            T::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            T::NotFound | T::UnknownMap | T::UnknownRobot | T::UnknownRecording | T::UnknownJob => {
-                StatusCode::NOT_FOUND
-            }
-            T::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
-            T::UnknownSurface
-            | T::InsufficientRecording
-            | T::StartOutsideMap
-            | T::GoalOutsideMap
-            | T::StartBlocked
-            | T::GoalBlocked
-            | T::NoPath
-            | T::WaypointOutsideMap
-            | T::WaypointBlocked
-            | T::LimitsContradict
-            | T::DeadlineTooShort => StatusCode::UNPROCESSABLE_ENTITY,
-            T::Timeout => StatusCode::GATEWAY_TIMEOUT,
-            T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
-            T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
-            T::StoreUnavailable | T::TooManyJobs => StatusCode::SERVICE_UNAVAILABLE,
-            T::Internal => StatusCode::INTERNAL_SERVER_ERROR,
-        }
-    }
-
-    fn title(self) -> &'static str {
-        use ProblemType as T;
-        match self {
-            T::InvalidRequest => "The request cannot be read",
-            T::InvalidMap => "The map cannot be used",
-            T::InvalidRobot => "The robot cannot be used",
-            T::InvalidRecording => "The recording cannot be read",
-            T::UnsupportedMediaType => "Content type not supported",
-            T::NotFound => "No such path",
-            T::UnknownMap => "No such map",
-            T::UnknownRobot => "No such robot",
-            T::UnknownRecording => "No such recording",
-            T::UnknownJob => "No such job",
-            T::MethodNotAllowed => "Method not allowed",
-            T::UnknownSurface => "A surface is unknown",
-            T::InsufficientRecording => "The recording does not suffice",
-            T::StartOutsideMap => "The start lies outside the map",
-            T::GoalOutsideMap => "The goal lies outside the map",
-            T::StartBlocked => "The robot cannot stand at the start",
-            T::GoalBlocked => "The robot cannot stand at the goal",
-            T::NoPath => "There is no path",
-            T::WaypointOutsideMap => "A pose lies outside the map",
-            T::WaypointBlocked => "The robot cannot stand at a pose",
-            T::LimitsContradict => "No path keeps the limits",
-            T::DeadlineTooShort => "The deadline is too short",
-            T::Timeout => "The search ran out of time",
-            T::TooLarge => "Too large",
-            T::StoreFull => "The store is full",
-            T::StoreUnavailable => "The store is out of reach",
-            T::TooManyJobs => "Too many jobs",
-            T::Internal => "Internal error",
-        }
-    }
-}
-
 impl Problem {
     /// A problem of a kind.
     pub fn new(kind: ProblemType, detail: impl Into<String>) -> Self {
@@ -176,7 +52,15 @@ impl Problem {
             status: kind.status().as_u16(),
             detail: detail.into(),
             errors: Vec::new(),
+            retry_after_s: (kind.status() == StatusCode::SERVICE_UNAVAILABLE).then_some(1),
         }
+    }
+
+    /// Says when to try again.
+    #[must_use]
+    pub(crate) fn retry_after(mut self, wait: Duration) -> Self {
+        self.retry_after_s = Some(wait.as_secs_f64().ceil().max(1.0) as u64);
+        self
     }
 
     /// Names the field at fault by its JSON pointer.
@@ -372,12 +256,15 @@ pub(crate) fn escaped(name: &str) -> String {
 impl IntoResponse for Problem {
     fn into_response(self) -> Response {
         let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let retry_after_s = self.retry_after_s;
         let mut response = (status, Json(self)).into_response();
-        response
-            .headers_mut()
-            .insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
-        if status == StatusCode::SERVICE_UNAVAILABLE {
-            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER_S));
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+        if let Some(seconds) = retry_after_s {
+            headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        if status == StatusCode::UNAUTHORIZED {
+            headers.insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
         }
         response
     }

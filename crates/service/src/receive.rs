@@ -10,6 +10,7 @@ use tokio::io::{AsyncWriteExt, BufWriter};
 
 use crate::{
     Engine,
+    body::broken,
     problem::{Problem, ProblemType},
     store::{Spool, cannot, id_of},
 };
@@ -37,9 +38,7 @@ pub(crate) async fn receive(engine: &Engine, headers: &HeaderMap, body: Body) ->
     let (mut hash, mut bytes) = (Sha256::new(), 0u64);
     let mut chunks = body.into_data_stream();
     while let Some(chunk) = chunks.next().await {
-        let chunk = chunk.map_err(|error| {
-            Problem::new(ProblemType::InvalidRequest, format!("the body ended early: {error}; send it again"))
-        })?;
+        let chunk = chunk.map_err(|error| broken(&error))?;
         bytes += chunk.len() as u64;
         room.refuse_beyond(bytes)?;
         hash.update(&chunk);

@@ -1,31 +1,24 @@
 //! The whole table of routes.
 
-use std::any::Any;
-
 use axum::{
     Router,
-    http::{HeaderName, Request},
-    response::{IntoResponse, Response},
+    body::Body,
+    http::{Request, header},
+    middleware::from_fn_with_state,
     routing::get,
 };
-use tower::ServiceBuilder;
-use tower_http::{
-    ServiceBuilderExt,
-    catch_panic::CatchPanicLayer,
-    request_id::MakeRequestUuid,
-    timeout::RequestBodyTimeoutLayer,
-    trace::{DefaultMakeSpan, DefaultOnResponse, TraceLayer},
-};
-use tracing::Level;
 use utoipa::OpenApi;
 use utoipa_axum::{router::OpenApiRouter, routes};
+use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use crate::{
-    Engine,
+    Access, Engine,
+    describe::with_layers,
+    layers::{layered, needs_token},
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, mission, page, plan, range,
-        reachable, recordings, robots, status,
+        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, metrics, mission, page, plan,
+        range, reachable, recordings, robots, status,
     },
 };
 
@@ -47,7 +40,8 @@ use crate::{
 )]
 struct Description;
 
-fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
+/// Paths that ask for a token where there are any.
+fn guarded() -> OpenApiRouter<Engine> {
     OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(plan::handler))
         .routes(routes!(compare::handler))
@@ -66,49 +60,56 @@ fn described() -> (Router<Engine>, utoipa::openapi::OpenApi) {
         .routes(routes!(diagnose::handler))
         .routes(routes!(jobs::read, jobs::remove))
         .routes(routes!(jobs::events))
-        .routes(routes!(health::healthz))
         .routes(routes!(status::handler))
-        .split_for_parts()
+}
+
+/// Paths that tell nothing of what the service holds.
+fn open() -> OpenApiRouter<Engine> {
+    OpenApiRouter::new().routes(routes!(health::healthz)).routes(routes!(health::readyz))
+}
+
+/// The routes of the description, each asking for a token where it has to.
+fn described(access: &Access) -> (Router<Engine>, utoipa::openapi::OpenApi) {
+    let guard = || from_fn_with_state(access.tokens.clone(), needs_token);
+    let counts = OpenApiRouter::new().routes(routes!(metrics::handler));
+    let (mut guarded, mut open) = (guarded(), open());
+    if access.open_metrics {
+        open = open.merge(counts);
+    } else {
+        guarded = guarded.merge(counts);
+    }
+    let secured: Vec<String> = match access.tokens.is_empty() {
+        true => Vec::new(),
+        false => guarded.get_openapi().paths.paths.keys().cloned().collect(),
+    };
+    let (routes, description) = guarded.route_layer(guard()).merge(open).split_for_parts();
+    (routes, with_layers(description, |path| secured.iter().any(|other| other == path)))
 }
 
 /// The OpenAPI description of the service.
 pub fn openapi() -> utoipa::openapi::OpenApi {
-    described().1
+    described(&Access::default()).1
 }
 
 /// The service as a router.
-pub fn router(engine: Engine) -> Router {
-    let (routes, description) = described();
+pub fn router(engine: Engine, access: &Access) -> Router {
+    let (routes, description) = described(access);
     let document = description.to_pretty_json().unwrap_or_default();
-    let body_pause = engine.limits().body_pause;
-    let request_id = HeaderName::from_static("x-request-id");
-    routes
+    let reference = SwaggerUi::new("/docs").config(Config::from("/openapi.json"));
+    let routes = routes
         .merge(page::routes())
-        .route("/openapi.json", get(|| async move { ([("content-type", "application/json")], document) }))
-        .fallback(|request: Request<axum::body::Body>| async move {
+        .merge(reference)
+        .route(
+            "/openapi.json",
+            get(|| async move { ([(header::CONTENT_TYPE, "application/json")], document) }),
+        )
+        .fallback(|request: Request<Body>| async move {
             let detail = format!("{} leads nowhere; /openapi.json lists the paths", request.uri().path());
             Problem::new(ProblemType::NotFound, detail)
         })
-        .method_not_allowed_fallback(|request: Request<axum::body::Body>| async move {
+        .method_not_allowed_fallback(|request: Request<Body>| async move {
             let detail = format!("{} does not take {}", request.uri().path(), request.method());
             Problem::new(ProblemType::MethodNotAllowed, detail)
-        })
-        .layer(
-            ServiceBuilder::new()
-                .set_request_id(request_id.clone(), MakeRequestUuid)
-                .layer(
-                    TraceLayer::new_for_http()
-                        .make_span_with(DefaultMakeSpan::new().level(Level::INFO))
-                        .on_response(DefaultOnResponse::new().level(Level::INFO)),
-                )
-                .propagate_request_id(request_id)
-                .layer(CatchPanicLayer::custom(panicked))
-                .layer(RequestBodyTimeoutLayer::new(body_pause)),
-        )
-        .with_state(engine)
-}
-
-fn panicked(_: Box<dyn Any + Send>) -> Response {
-    Problem::new(ProblemType::Internal, "the request hit a fault of the service, which has been logged")
-        .into_response()
+        });
+    layered(routes, &engine, access, &description).with_state(engine)
 }

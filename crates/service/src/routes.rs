@@ -8,6 +8,7 @@ pub mod health;
 pub mod jobs;
 pub mod maps;
 pub mod matrix;
+pub(crate) mod metrics;
 pub mod mission;
 pub(crate) mod page;
 pub mod plan;

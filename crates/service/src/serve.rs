@@ -8,15 +8,15 @@ use std::{
 
 use tokio::sync::oneshot;
 
-use crate::{Engine, router};
+use crate::{Access, Engine, connections::accept, router};
 
 /// Serves until the process is asked to end (interrupt or terminate), then finishes what is under way.
 ///
 /// # Errors
 /// When the listener or the runtime cannot be used.
-pub fn serve(listener: TcpListener, engine: Engine) -> io::Result<()> {
+pub fn serve(listener: TcpListener, engine: Engine, access: &Access) -> io::Result<()> {
     let runtime = runtime()?;
-    let outcome = runtime.block_on(run(listener, engine, asked_to_end()));
+    let outcome = runtime.block_on(async { run(listener, engine, access, asked_to_end()?).await });
     // Computations that outlast the drain have no one to answer.
     runtime.shutdown_background();
     outcome
@@ -39,9 +39,10 @@ pub fn start(listener: TcpListener, engine: Engine) -> io::Result<Running> {
     let runtime = runtime()?;
     let (stop, stopped) = oneshot::channel();
     let thread = std::thread::spawn(move || {
-        let outcome = runtime.block_on(run(listener, engine, async {
+        let stopped = async {
             let _ = stopped.await;
-        }));
+        };
+        let outcome = runtime.block_on(run(listener, engine, &Access::default(), stopped));
         runtime.shutdown_background();
         outcome
     });
@@ -64,46 +65,48 @@ fn runtime() -> io::Result<tokio::runtime::Runtime> {
 async fn run(
     listener: TcpListener,
     engine: Engine,
-    stop: impl Future<Output = ()> + Send + 'static,
+    access: &Access,
+    stop: impl Future<Output = ()> + Send,
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    let drain_time = engine.limits().drain_time;
-    let (draining, drained) = oneshot::channel();
-    let ending = engine.clone();
-    let stop = async move {
+    let routes = router(engine.clone(), access);
+    let stop = async {
         stop.await;
-        let _ = draining.send(());
-        // Who follows a job is told, and leaves.
-        ending.hand_back_jobs().await;
+        tracing::info!("asked to end");
+        engine.announce_end();
+        tokio::time::sleep(engine.limits().unready_time).await;
     };
     tokio::spawn(engine.clone().watch_jobs());
-    let serving = axum::serve(listener, router(engine)).with_graceful_shutdown(stop);
-    tokio::select! {
-        outcome = serving.into_future() => outcome,
-        // A client that stalls must not keep the service from ending.
-        () = async {
-            let _ = drained.await;
-            tokio::time::sleep(drain_time).await;
-        } => Ok(()),
+    let open = accept(listener, routes, &engine, stop).await;
+    // Who follows a job is told, and leaves.
+    engine.hand_back_jobs().await;
+    // A client that stalls must not keep the service from ending.
+    if tokio::time::timeout(engine.limits().drain_time, open.shutdown()).await.is_err() {
+        tracing::warn!("requests under way were cut off");
     }
+    Ok(())
 }
 
-async fn asked_to_end() {
-    let interrupt = async {
+/// The end of the wait for an interrupt or a wish to end, of which none that comes from now on is missed.
+#[cfg(unix)]
+fn asked_to_end() -> io::Result<impl Future<Output = ()> + Send> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}
+
+#[cfg(not(unix))]
+fn asked_to_end() -> io::Result<impl Future<Output = ()> + Send> {
+    Ok(async {
         if tokio::signal::ctrl_c().await.is_err() {
             std::future::pending::<()>().await;
         }
-    };
-    #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        let Ok(mut terminate) = signal(SignalKind::terminate()) else { return interrupt.await };
-        tokio::select! {
-            () = interrupt => {}
-            _ = terminate.recv() => {}
-        }
-    }
-    #[cfg(not(unix))]
-    interrupt.await;
+    })
 }

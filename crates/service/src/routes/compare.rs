@@ -41,7 +41,10 @@ pub(crate) async fn handler(
     State(engine): State<Engine>,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Json<CompareAnswer>, Problem> {
-    with_planner(&engine, &mut request, answer).await.map(Json)
+    let found = with_planner(&engine, &mut request, answer).await?;
+    let expanded = [&found.energy, &found.distance, &found.time].map(|path| path.search.expanded);
+    engine.metrics().expansions.inc_by(expanded.iter().sum());
+    Ok(Json(found))
 }
 
 /// Answers a request; its own map is not looked at.

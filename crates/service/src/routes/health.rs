@@ -1,10 +1,15 @@
-//! `GET /healthz`.
+//! `GET /healthz` and `GET /readyz`.
 
-use axum::Json;
+use axum::{Json, extract::State};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The service is alive.
+use crate::{
+    Engine,
+    problem::{Problem, ProblemType},
+};
+
+/// The service is alive, or ready.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Health {
     /// Always `ok`.
@@ -13,8 +18,30 @@ pub struct Health {
     pub version: &'static str,
 }
 
-/// Is the service alive?
+impl Health {
+    fn ok() -> Json<Health> {
+        Json(Health { status: "ok", version: env!("CARGO_PKG_VERSION") })
+    }
+}
+
+/// Is the service alive? It is until it has ended, however much there is to do.
 #[utoipa::path(get, path = "/healthz", tag = "service", responses((status = 200, body = Health)))]
 pub(crate) async fn healthz() -> Json<Health> {
-    Json(Health { status: "ok", version: env!("CARGO_PKG_VERSION") })
+    Health::ok()
+}
+
+/// Should the service be asked? Not once it has been told to end, nor while its store is out of reach.
+#[utoipa::path(
+    get, path = "/readyz", tag = "service",
+    responses(
+        (status = 200, body = Health),
+        (status = 503, description = "It is about to end, or its store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn readyz(State(engine): State<Engine>) -> Result<Json<Health>, Problem> {
+    if engine.is_ending() {
+        return Err(Problem::new(ProblemType::NotReady, "the service is about to end: ask another replica"));
+    }
+    engine.check_store().await?;
+    Ok(Health::ok())
 }

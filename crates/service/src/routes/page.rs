@@ -9,7 +9,6 @@ use axum::{
     routing::get,
 };
 use rust_embed::{EmbeddedFile, RustEmbed};
-use tower_http::compression::CompressionLayer;
 
 use crate::{
     Engine,
@@ -37,7 +36,6 @@ pub(crate) fn routes() -> Router<Engine> {
             get(async |Path(name): Path<String>, headers: HeaderMap| file(&format!("page/{name}"), &headers)),
         )
         .route("/sample-map.tif", get(async || ([(header::CONTENT_TYPE, "image/tiff")], SAMPLE_MAP)))
-        .layer(CompressionLayer::new())
 }
 
 /// One file, or word that the client has it already.

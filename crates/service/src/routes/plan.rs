@@ -27,6 +27,8 @@ use crate::{
     accept::preferred,
     body::{JsonBody, object, optional_object},
     geojson,
+    memory::estimated_bytes,
+    metrics::CacheLabels,
     problem::{Problem, ProblemType},
     route_file,
 };
@@ -262,6 +264,7 @@ pub(crate) async fn handler(
     let form =
         preferred(&headers, &["application/json", "application/geo+json", "text/csv", "application/gpx+xml"]);
     let found = with_planner(&engine, &mut request, answer).await?;
+    engine.metrics().expansions.inc_by(found.search.expanded);
     let body = match form {
         "application/geo+json" => Json(geojson::path(&found)).into_response(),
         "text/csv" => route_file::csv(&found).into_response(),
@@ -284,8 +287,9 @@ pub(crate) async fn with_planner<T: Send + 'static>(
     let stored = choose_map(engine, request).await?;
     let (inline, request) = (request.map.take(), request.clone());
     let own = engine.clone();
+    let bytes = estimated_bytes(engine, request.map_id.as_deref(), stored.as_deref(), inline.as_ref());
     engine
-        .compute(move |patience| {
+        .compute_within(bytes, move |patience| {
             let most_cells = own.limits().map_cells();
             let large = |terrain: &Terrain| {
                 refuse_too_large(terrain, most_cells).map_err(|problem| problem.at("/map"))
@@ -466,7 +470,10 @@ impl PlanRequest {
     fn planner_of(&self, engine: &Engine, map_id: &str, terrain: &Terrain) -> Result<Arc<Planner>, Problem> {
         let robot = self.limited_robot()?;
         let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot));
-        planner.map_err(|e| Problem::no_plan(&e))
+        let (planner, at_hand) = planner.map_err(|e| Problem::no_plan(&e))?;
+        let outcome = if at_hand { "hit" } else { "miss" };
+        engine.metrics().planners.get_or_create(&CacheLabels { outcome }).inc();
+        Ok(planner)
     }
 
     fn settings(&self, robot: &Robot) -> Settings {

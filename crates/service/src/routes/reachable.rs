@@ -127,7 +127,11 @@ pub struct ContourProperties {
     post, path = "/v1/reachable", tag = "plan",
     request_body = ReachableRequest,
     responses(
-        (status = 200, description = "The contours as GeoJSON; the least energy of every cell as a GeoTIFF when `Accept` asks for image/tiff", body = ReachableAnswer, content_type = "application/geo+json"),
+        (status = 200, description = "The contours as GeoJSON; the least energy of every cell as a GeoTIFF when `Accept` asks for image/tiff", content(
+            (ReachableAnswer = "application/geo+json"),
+            (ReachableAnswer = "application/json"),
+            (Vec<u8> = "image/tiff")
+        )),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
@@ -142,15 +146,15 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<ReachableRequest>,
 ) -> Result<Response, Problem> {
-    let as_raster =
-        preferred(&headers, &["application/geo+json", "application/json", "image/tiff"]) == "image/tiff";
+    let form = preferred(&headers, &["application/geo+json", "application/json", "image/tiff"]);
+    let as_raster = form == "image/tiff";
     let mut plan = request.plan();
     with_planner(&engine, &mut plan, move |planner, _, patience| {
         let found = Found::of(planner, &request, patience)?;
         if as_raster {
             return Ok(([(header::CONTENT_TYPE, "image/tiff")], found.raster()?).into_response());
         }
-        Ok(([(header::CONTENT_TYPE, "application/geo+json")], Json(found.contours())).into_response())
+        Ok(([(header::CONTENT_TYPE, form)], Json(found.contours())).into_response())
     })
     .await
 }

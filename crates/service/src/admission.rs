@@ -1,0 +1,251 @@
+//! Who may compute: so many at a time, so many waiting for so long, and no more memory than there is.
+
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+
+use crate::{
+    Limits,
+    metrics::{Metrics, ShedLabels, StateLabels},
+    problem::{Problem, ProblemType},
+};
+
+/// Memory is given out in pieces of so many bytes, because what is taken at once is counted in 32 bits.
+const PIECE_BYTES: u64 = 1 << 16;
+/// Share of the latest computation in the mean of how long one takes.
+const LATEST_SHARE: f64 = 0.1;
+
+/// Turns and memory for computations.
+pub(crate) struct Admission {
+    turns: Arc<Semaphore>,
+    memory: Arc<Semaphore>,
+    limits: Limits,
+    waiting: AtomicUsize,
+    /// Mean time that a computation took of late [s].
+    mean_s: Mutex<f64>,
+    metrics: Metrics,
+}
+
+/// The right to compute until it is dropped.
+pub(crate) struct Turn {
+    admission: Arc<Admission>,
+    /// When it began, if its time is to count for those who wait.
+    began: Option<Instant>,
+    _turn: OwnedSemaphorePermit,
+}
+
+/// The right to memory until it is dropped.
+pub(crate) struct Reserved {
+    bytes: i64,
+    metrics: Metrics,
+    _pieces: OwnedSemaphorePermit,
+}
+
+impl Admission {
+    pub(crate) fn new(limits: &Limits, metrics: &Metrics) -> Self {
+        Admission {
+            turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
+            memory: Arc::new(Semaphore::new(pieces(limits.request_memory_bytes) as usize)),
+            limits: *limits,
+            waiting: AtomicUsize::new(0),
+            mean_s: Mutex::new(0.0),
+            metrics: metrics.clone(),
+        }
+    }
+
+    /// A turn for a request that is to be answered soon; refused at once where it could not be.
+    pub(crate) async fn soon(self: &Arc<Self>) -> Result<Turn, Problem> {
+        if let Ok(turn) = Arc::clone(&self.turns).try_acquire_owned() {
+            return Ok(self.turn(turn, Some(Instant::now())));
+        }
+        let ahead = self.waiting.load(Ordering::Relaxed);
+        let wait = self.projected_wait(ahead + 1);
+        let is_crowded = ahead >= self.limits.queued_plans;
+        if is_crowded || (ahead >= self.limits.patient_plans && wait > self.limits.queue_time) {
+            self.metrics.shed.get_or_create(&ShedLabels { reason: "queue" }).inc();
+            let detail = format!(
+                "{ahead} requests wait already, for about {:.1} s: try again then",
+                wait.as_secs_f64()
+            );
+            return Err(Problem::new(ProblemType::Overloaded, detail).retry_after(wait));
+        }
+        self.acquire(true).await
+    }
+
+    /// A turn for work that nobody waits for.
+    pub(crate) async fn some_time(self: &Arc<Self>) -> Result<Turn, Problem> {
+        self.acquire(false).await
+    }
+
+    async fn acquire(self: &Arc<Self>, counts: bool) -> Result<Turn, Problem> {
+        let _waiting = counts.then(|| Waiting::begin(self));
+        let turn = Arc::clone(&self.turns).acquire_owned().await.map_err(|_| stopping())?;
+        Ok(self.turn(turn, counts.then(Instant::now)))
+    }
+
+    fn turn(self: &Arc<Self>, turn: OwnedSemaphorePermit, began: Option<Instant>) -> Turn {
+        self.running().inc();
+        Turn { admission: Arc::clone(self), began, _turn: turn }
+    }
+
+    fn running(&self) -> impl std::ops::Deref<Target = prometheus_client::metrics::gauge::Gauge> + '_ {
+        self.metrics.computations.get_or_create(&StateLabels { state: "running" })
+    }
+
+    /// How long the last of so many would wait, if all take as long as of late.
+    fn projected_wait(&self, waiting: usize) -> Duration {
+        let mean_s = *self.mean_s.lock().unwrap_or_else(PoisonError::into_inner);
+        Duration::from_secs_f64(mean_s * waiting as f64 / self.limits.parallel_plans.max(1) as f64)
+    }
+
+    fn took(&self, time: Duration) {
+        let mut mean_s = self.mean_s.lock().unwrap_or_else(PoisonError::into_inner);
+        *mean_s += LATEST_SHARE * (time.as_secs_f64() - *mean_s);
+    }
+
+    /// Memory for a request, as estimated; refused at once where others have it.
+    pub(crate) fn reserve(&self, bytes: u64) -> Result<Reserved, Problem> {
+        let most = self.limits.request_memory_bytes;
+        if bytes > most {
+            let detail = format!(
+                "the request would take about {} MB, more than the {} MB that requests may: send a smaller map, or store it first",
+                bytes / 1_000_000,
+                most / 1_000_000
+            );
+            return Err(Problem::new(ProblemType::TooLarge, detail));
+        }
+        let wanted = u32::try_from(pieces(bytes)).unwrap_or(u32::MAX);
+        let pieces = Arc::clone(&self.memory).try_acquire_many_owned(wanted).map_err(|_| {
+            self.metrics.shed.get_or_create(&ShedLabels { reason: "memory" }).inc();
+            let detail =
+                "requests under way have the memory that this one needs: try again when they are done";
+            Problem::new(ProblemType::Overloaded, detail)
+        })?;
+        let bytes = i64::try_from(bytes).unwrap_or(i64::MAX);
+        self.metrics.reserved_bytes.inc_by(bytes);
+        Ok(Reserved { bytes, metrics: self.metrics.clone(), _pieces: pieces })
+    }
+
+    /// Brings what is counted elsewhere up to date.
+    pub(crate) fn tell(&self) {
+        let waiting = self.waiting.load(Ordering::Relaxed);
+        let state = |state| self.metrics.computations.get_or_create(&StateLabels { state });
+        state("waiting").set(i64::try_from(waiting).unwrap_or(i64::MAX));
+        drop(self.running());
+        self.metrics.projected_wait_s.set(self.projected_wait(waiting).as_secs_f64());
+    }
+}
+
+/// Counts one who waits, also where it leaves before its turn.
+struct Waiting<'a>(&'a AtomicUsize);
+
+impl<'a> Waiting<'a> {
+    fn begin(admission: &'a Admission) -> Self {
+        admission.waiting.fetch_add(1, Ordering::Relaxed);
+        Waiting(&admission.waiting)
+    }
+}
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        self.admission.running().dec();
+        if let Some(began) = self.began {
+            self.admission.took(began.elapsed());
+        }
+    }
+}
+
+impl Drop for Reserved {
+    fn drop(&mut self) {
+        self.metrics.reserved_bytes.dec_by(self.bytes);
+    }
+}
+
+fn pieces(bytes: u64) -> u64 {
+    bytes.div_ceil(PIECE_BYTES)
+}
+
+fn stopping() -> Problem {
+    Problem::new(ProblemType::NotReady, "the service is stopping")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn admission(limits: Limits) -> Arc<Admission> {
+        Arc::new(Admission::new(&limits, &Metrics::new()))
+    }
+
+    fn narrow() -> Limits {
+        let (parallel_plans, patient_plans, queued_plans) = (1, 2, 4);
+        Limits { parallel_plans, patient_plans, queued_plans, ..Limits::default() }
+    }
+
+    #[tokio::test]
+    async fn who_would_wait_too_long_is_refused_at_once_and_told_when_to_come_back() {
+        let admission = admission(narrow());
+        *admission.mean_s.lock().unwrap() = 2.0;
+        let turn = admission.soon().await.unwrap();
+        let queue: Vec<_> = (0..2)
+            .map(|_| {
+                let admission = Arc::clone(&admission);
+                tokio::spawn(async move { admission.soon().await.map(drop) })
+            })
+            .collect();
+        while admission.waiting.load(Ordering::Relaxed) < 2 {
+            tokio::task::yield_now().await;
+        }
+        let refused = admission.soon().await.err().unwrap();
+        assert_eq!((refused.kind, refused.retry_after_s), (ProblemType::Overloaded, Some(6)));
+        drop(turn);
+        for waiting in queue {
+            assert!(waiting.await.unwrap().is_ok());
+        }
+        assert!(admission.soon().await.is_ok(), "nobody waits any more");
+    }
+
+    #[tokio::test]
+    async fn where_computations_are_quick_more_may_wait_up_to_a_limit() {
+        let admission = admission(narrow());
+        let _turn = admission.soon().await.unwrap();
+        let queue: Vec<_> = (0..4)
+            .map(|_| {
+                let admission = Arc::clone(&admission);
+                tokio::spawn(async move { admission.soon().await.map(drop) })
+            })
+            .collect();
+        while admission.waiting.load(Ordering::Relaxed) < 4 {
+            tokio::task::yield_now().await;
+        }
+        assert!(admission.soon().await.is_err());
+        queue.iter().for_each(tokio::task::JoinHandle::abort);
+        for left in queue {
+            assert!(left.await.is_err());
+        }
+        assert_eq!(admission.waiting.load(Ordering::Relaxed), 0, "who leaves does not wait");
+    }
+
+    #[test]
+    fn memory_is_given_out_once_and_given_back() {
+        let admission = admission(Limits { request_memory_bytes: 10_000_000, ..Limits::default() });
+        assert_eq!(admission.reserve(11_000_000).err().unwrap().kind, ProblemType::TooLarge);
+        let most = admission.reserve(9_000_000).unwrap();
+        assert_eq!(admission.reserve(2_000_000).err().unwrap().kind, ProblemType::Overloaded);
+        drop(most);
+        assert!(admission.reserve(2_000_000).is_ok());
+        assert_eq!(admission.metrics.reserved_bytes.get(), 0);
+    }
+}

@@ -1,0 +1,36 @@
+//! What a request will take in memory, before it is begun.
+
+use terrain::{MapFile, Terrain};
+
+use crate::Engine;
+
+/// Costs of all motions from a cell and the least of them, where a search comes by: `planner` measures 1.5 GB for 2048² cells.
+const TABLE_BYTES_PER_CELL: u64 = 360;
+/// Labels and queue of a search at most: `joulepath bench` measures 4 to 9 bytes for each of a cell's sixteen states.
+const SEARCH_BYTES_PER_CELL: u64 = 16 * 9;
+/// The least costs to a goal, four bytes a cell, and what making them takes.
+const FIELD_BYTES_PER_CELL: u64 = 8;
+/// A map in a request: heights as they are read, and the terrain that they become.
+const INLINE_BYTES_PER_CELL: u64 = 16 + 8;
+
+/// Bytes that a plan may take beyond what is kept already, should it go all over the map.
+pub(crate) fn estimated_bytes(
+    engine: &Engine,
+    map_id: Option<&str>,
+    stored: Option<&Terrain>,
+    inline: Option<&MapFile>,
+) -> u64 {
+    let own = SEARCH_BYTES_PER_CELL + FIELD_BYTES_PER_CELL;
+    match (stored, inline) {
+        (Some(terrain), _) => {
+            let at_hand = map_id.is_some_and(|id| engine.planners().knows(id));
+            let table = if at_hand { 0 } else { TABLE_BYTES_PER_CELL };
+            terrain.grid.cells() as u64 * (own + table)
+        }
+        (None, Some(map)) => {
+            let cells: usize = map.elevation_m.iter().map(Vec::len).sum();
+            cells as u64 * (own + TABLE_BYTES_PER_CELL + INLINE_BYTES_PER_CELL)
+        }
+        (None, None) => 0,
+    }
+}
