@@ -154,7 +154,7 @@ fn mutate(request: &mut Request, random: &mut Pcg64) -> Vec<(&'static str, Strin
         5..7 => mutate_bytes(&mut request.body, random),
         7 => {
             request.method =
-                ["GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS", "BREW"].choose(random).unwrap()
+                ["GET", "POST", "PUT", "PATCH", "DELETE", "HEAD", "OPTIONS", "BREW"].choose(random).unwrap();
         }
         8 => {
             let odd =
