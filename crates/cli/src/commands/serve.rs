@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Let anybody ask who reaches the address, without a token
     #[arg(long, env = "JOULEPATH_INSECURE_OPEN", value_parser = FalseyValueParser::new())]
     insecure_open: bool,
-    /// Origin whose pages may ask, as https://maps.example.org; may be given several times [default: none]
+    /// Origin whose pages may ask, as `https://maps.example.org`; may be given several times [default: none]
     #[arg(long, env = "JOULEPATH_CORS_ORIGIN", value_delimiter = ',')]
     cors_origin: Vec<String>,
     /// Form of the log on stderr
