@@ -285,18 +285,18 @@ impl Fit {
 
     /// The recording says more about the parameter than was known before.
     ///
-    /// An interval wider than [`LEAST_GAIN`] of the prior's, or one that spans the whole range of the parameter, says nothing; a value
+    /// A sigma above [`LEAST_GAIN`] of the prior's, or one that spans the whole range of the parameter, says nothing; a value
     /// outside the prior's own 95 % interval contradicts it, which says something all the same.
     pub fn determined(&self, index: usize) -> bool {
         let parameter = &self.parameters[index];
         let range = parameter.bounds[1] - parameter.bounds[0];
         let [mean, before] = parameter.prior.unwrap_or([self.values[index], range]);
         let contradicts = (self.values[index] - mean).abs() > NORMAL_975 * before;
-        !parameter.held && (self.half_width(index) < LEAST_GAIN * NORMAL_975 * before || contradicts)
+        !parameter.held && (self.sigma(index) < LEAST_GAIN * before || contradicts)
     }
 }
 
-/// An interval wider than this share of the prior's counts as no gain: the recording then holds less than 0.6 of the
+/// A posterior sigma above this share of the prior's counts as no gain: the recording then holds less than 0.6 of the
 /// information that the prior does (1/0.8² − 1).
 pub const LEAST_GAIN: f64 = 0.8;
 
