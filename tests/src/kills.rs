@@ -181,7 +181,7 @@ impl Client<'_> {
     fn job(&mut self) -> Option<()> {
         // Each another robot, and so another job.
         let mass_kg = self.random.random_range(50.0..100.0);
-        let mut robot = serde_json::to_value(model::builtin::husky_a200()).unwrap_or_default();
+        let (_, mut robot) = ask(agent().get(format!("{}/v1/robots/husky-a200", self.url)).call())?;
         robot["mass_kg"] = json!(mass_kg);
         let body = json!({ "robot": robot, "recordings": [self.recording] }).to_string();
         let asked =

@@ -24,7 +24,7 @@ use crate::{
 const AFTER_FAILURE: Duration = Duration::from_millis(100);
 /// What a client is told that comes to a full house.
 const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nretry-after: 1\r\nconnection: close\r\n\
-content-type: application/problem+json\r\ncontent-length: 122\r\n\r\n\
+content-type: application/problem+json\r\ncontent-length: 123\r\n\r\n\
 {\"type\":\"overloaded\",\"title\":\"Too much to do\",\"status\":503,\"detail\":\"too many connections are open: try again in a second\"}";
 
 /// Takes connections until it is told to stop; returns those that are still open.

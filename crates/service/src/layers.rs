@@ -124,6 +124,11 @@ mod tests {
     use super::*;
     use crate::{Limits, openapi};
 
+    /// An engine opens its store on a thread of its own.
+    async fn engine(limits: Limits) -> Engine {
+        tokio::task::spawn_blocking(move || Engine::new(limits, None)).await.unwrap().unwrap()
+    }
+
     async fn faulty() -> StatusCode {
         let nothing: Option<StatusCode> = std::hint::black_box(None);
         nothing.unwrap()
@@ -131,7 +136,7 @@ mod tests {
 
     #[tokio::test]
     async fn a_fault_is_a_problem_document_and_counted_and_the_next_request_is_answered() {
-        let engine = Engine::new(Limits::default(), None).unwrap();
+        let engine = engine(Limits::default()).await;
         let routes = Router::new().route("/faulty", get(faulty)).route("/sound", get(|| async { "sound" }));
         let routes = layered(routes, &engine, &Access::default(), &openapi()).with_state(engine.clone());
         let ask = |path: &str| {
@@ -152,7 +157,7 @@ mod tests {
     #[tokio::test]
     async fn a_fault_of_a_computation_is_counted_and_its_turn_given_back() {
         let limits = Limits { parallel_plans: 1, ..Limits::default() };
-        let engine = Engine::new(limits, None).unwrap();
+        let engine = engine(limits).await;
         for _ in 0..3 {
             let nothing: Option<u8> = std::hint::black_box(None);
             let outcome = engine.compute(move |_| Ok(nothing.unwrap())).await;
