@@ -200,7 +200,13 @@ fn runs_that_tell_nothing_are_named_and_a_few_rows_leave_what_was_known_before()
     let arguments = ["calibrate", "--recording", "few.csv", "--out", "robot.json", "--json"];
     let found = document(&joulepath(folder.path(), &arguments));
     let parameters = found["parameters"].as_array().unwrap();
-    assert!(parameters.iter().all(|parameter| parameter["determined"] == false), "{found}");
+    // Five rows at one speed may tell of a standing load, of which next to nothing was known, and of nothing else; even then its
+    // interval holds what was known.
+    let is_known_before = |parameter: &Value| {
+        parameter["determined"] == false
+            || parameter["name"] == "drive_electronics_w" && parameter["interval_95"][0] == 0.0
+    };
+    assert!(parameters.iter().all(is_known_before), "{found}");
     std::fs::write(
         folder.path().join("flood.csv"),
         drive_csv(2, 100).replace(",0.", ",nan").replace(",0,", ",nan,"),
