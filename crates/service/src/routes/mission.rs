@@ -246,7 +246,6 @@ pub(crate) async fn handler(
 impl MissionRequest {
     /// What of it concerns the planner; takes the map out.
     pub fn plan(&mut self) -> PlanRequest {
-        let goal = GoalPose { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: None, tolerance_m: 0.0 };
         PlanRequest {
             map: self.map.take(),
             map_id: self.map_id.clone(),
@@ -254,7 +253,7 @@ impl MissionRequest {
             reverse: self.reverse,
             timeout_s: self.timeout_s,
             snap_radius_m: self.snap_radius_m,
-            ..PlanRequest::plain(self.robot.clone(), self.start, goal)
+            ..PlanRequest::plain(self.robot.clone(), self.start, GoalPose::at(self.start))
         }
     }
 

@@ -253,8 +253,7 @@ pub(crate) async fn handler(
 impl RangeRequest {
     /// What of it concerns the planner; takes the map out.
     pub fn plan(&mut self) -> PlanRequest {
-        let nowhere =
-            GoalPose { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: None, tolerance_m: 0.0 };
+        let goal = self.goal.unwrap_or_else(|| GoalPose::at(self.start));
         PlanRequest {
             map: self.map.take(),
             map_id: self.map_id.clone(),
@@ -262,7 +261,7 @@ impl RangeRequest {
             reverse: self.reverse,
             timeout_s: self.timeout_s,
             snap_radius_m: self.snap_radius_m,
-            ..PlanRequest::plain(self.robot.clone(), self.start, self.goal.unwrap_or(nowhere))
+            ..PlanRequest::plain(self.robot.clone(), self.start, goal)
         }
     }
 }

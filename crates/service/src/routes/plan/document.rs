@@ -1,0 +1,163 @@
+//! What a path comes back as: totals, poses, how the search ended.
+
+use std::time::Duration;
+
+use planner::{Plan, Pose, Snap};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A path with its predicted energy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct PlanAnswer {
+    /// Energy drawn from the battery [J].
+    pub energy_j: f64,
+    /// Central 95 % interval of it, from the robot's parameter uncertainty [J].
+    #[schema(min_items = 2, max_items = 2)]
+    pub energy_interval_j: [f64; 2],
+    /// Time [s].
+    pub duration_s: f64,
+    /// Length along the ground [m].
+    pub distance_m: f64,
+    /// Height gained on the way up [m].
+    pub climb_m: f64,
+    /// Height lost on the way down [m].
+    pub descent_m: f64,
+    /// Energy that flowed back into the battery [J].
+    pub recovered_j: f64,
+    /// The path, pose by pose.
+    pub poses: Vec<PoseAnswer>,
+    /// Energy of the refined path; absent where none was asked for [J].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined_energy_j: Option<f64>,
+    /// The same way between the same ends with shortcuts and freely placed arcs, driven by the same model within the same
+    /// limits, and never worse; absent where none was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined: Option<RefinedAnswer>,
+    /// How far start and goal were moved to the lattice.
+    pub snapped: Snapped,
+    /// What the search did.
+    pub search: SearchAnswer,
+}
+
+/// A path that leaves the lattice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct RefinedAnswer {
+    /// Time [s].
+    pub duration_s: f64,
+    /// Length along the ground [m].
+    pub distance_m: f64,
+    /// The path, pose by pose.
+    pub poses: Vec<PoseAnswer>,
+}
+
+/// A pose along the path, with what the path has cost up to it. Power, pitch, roll and radius are those of the
+/// stretch that ends here; the first pose stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct PoseAnswer {
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+    pub heading_rad: f64,
+    pub t_s: f64,
+    pub distance_m: f64,
+    pub energy_j: f64,
+    pub power_w: f64,
+    pub pitch_rad: f64,
+    pub roll_rad: f64,
+    /// Positive with the centre on the left; null when straight, 0 on the spot [m].
+    pub radius_m: Option<f64>,
+}
+
+/// How far both ends were moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct Snapped {
+    pub start: SnapAnswer,
+    pub goal: SnapAnswer,
+}
+
+/// How far an end was moved to a cell centre and one of sixteen headings.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[allow(missing_docs)]
+pub struct SnapAnswer {
+    pub distance_m: f64,
+    pub turn_rad: f64,
+}
+
+/// What the search did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SearchAnswer {
+    /// States expanded.
+    pub expanded: u64,
+    /// Time for preparing and searching [ms].
+    pub duration_ms: f64,
+    /// Whether the path is proven to be the best of the lattice.
+    pub optimal: bool,
+    /// Proven: the path has at most so many times the least of its objective that the lattice allows; 1 when it is the
+    /// least, null where the least may be a gain, which no factor bounds.
+    pub bound: Option<f64>,
+    /// By how much the path may exceed the least of its objective; in J, m or s.
+    pub excess_at_most: f64,
+    /// Whether time ran out before the bound asked for was proven.
+    pub timed_out: bool,
+}
+
+impl From<&Plan> for PlanAnswer {
+    fn from(plan: &Plan) -> Self {
+        let total = &plan.route.total;
+        PlanAnswer {
+            energy_j: total.energy_j,
+            energy_interval_j: plan.energy_interval_j,
+            duration_s: total.duration_s,
+            distance_m: total.length_m,
+            climb_m: total.climb_m,
+            descent_m: total.descent_m,
+            recovered_j: total.recovered_j,
+            poses: plan.route.poses.iter().map(PoseAnswer::from).collect(),
+            refined_energy_j: plan.refined.as_ref().map(|route| route.total.energy_j),
+            refined: plan.refined.as_ref().map(|route| RefinedAnswer {
+                duration_s: route.total.duration_s,
+                distance_m: route.total.length_m,
+                poses: route.poses.iter().map(PoseAnswer::from).collect(),
+            }),
+            snapped: Snapped { start: (&plan.start_snap).into(), goal: (&plan.goal_snap).into() },
+            search: SearchAnswer {
+                expanded: plan.search.expanded,
+                duration_ms: milliseconds(plan.search.duration),
+                optimal: plan.search.is_optimal(),
+                bound: plan.search.bound,
+                excess_at_most: plan.search.excess,
+                timed_out: plan.search.timed_out,
+            },
+        }
+    }
+}
+
+impl From<&Pose> for PoseAnswer {
+    fn from(p: &Pose) -> Self {
+        PoseAnswer {
+            x_m: p.x_m,
+            y_m: p.y_m,
+            z_m: p.z_m,
+            heading_rad: p.heading_rad,
+            t_s: p.t_s,
+            distance_m: p.distance_m,
+            energy_j: p.energy_j,
+            power_w: p.power_w,
+            pitch_rad: p.pitch_rad,
+            roll_rad: p.roll_rad,
+            radius_m: p.radius_m,
+        }
+    }
+}
+
+impl From<&Snap> for SnapAnswer {
+    fn from(snap: &Snap) -> Self {
+        SnapAnswer { distance_m: snap.distance_m, turn_rad: snap.turn_rad }
+    }
+}
+
+fn milliseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
