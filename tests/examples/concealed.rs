@@ -1,79 +1,114 @@
-//! Cases that conceal an effect, diagnosed: `cargo run --profile ci -p joulepath-tests --example concealed -- SHARE SEEDS`.
+//! Cases that conceal an effect, diagnosed, for development; the score that counts is `joulepath prove`'s, on seeds never used here.
+//!
+//! `cargo run --profile ci -p joulepath-tests --example concealed -- SHARE FIRST_SEED SEEDS [KIND...]`
 
 #![allow(clippy::unwrap_used)]
 
-use diagnosis::{Series, search};
+use std::{collections::BTreeMap, path::Path, time::Instant};
+
+use diagnosis::{Diagnosis, Verdict, diagnose};
 use model::Robot;
 use recording::{Recording, read_paths};
 use world::{Case, CaseKind, Drive, EffectName, Family, RobotFile, World, simulate};
 
+/// Cases of one family: all, not `consistent`, and with the truth alone or beside one other.
+#[derive(Default)]
+struct Count {
+    cases: u32,
+    noticed: u32,
+    named: u32,
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let mut number = |default: f64| arguments.next().and_then(|a| a.parse().ok()).unwrap_or(default);
-    let (share, seeds) = (number(0.06), number(1.0) as u64);
-    let only = arguments.next();
+    let (share, first, seeds) = (number(0.06), number(1.0) as u64, number(1.0) as u64);
+    let only: Vec<String> = arguments.collect();
     let folder = tempfile::tempdir().unwrap();
     let text = serde_json::to_string(&model::builtin::husky_a200()).unwrap();
     let (file, robot) = (RobotFile::from_json(&text).unwrap(), Robot::from_json(&text).unwrap());
     let mut kinds = vec![CaseKind::Healthy, CaseKind::Decoy];
     kinds.extend(EffectName::all().map(CaseKind::One));
+    kinds.retain(|kind| only.is_empty() || only.iter().any(|only| format!("{kind:?}").contains(only)));
+    let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
     for kind in kinds {
-        let name = format!("{kind:?}");
-        if only.as_ref().is_some_and(|only| !name.contains(only)) {
-            continue;
-        }
-        for seed in 1..=seeds {
-            let began = std::time::Instant::now();
+        for seed in first..first + seeds {
             let case = match Case::draw(seed, kind, share, &file) {
                 Ok(case) => case,
                 Err(error) => {
-                    println!("{name} {seed}: {error}");
+                    println!("{kind:?} {seed}: {error}");
                     continue;
                 }
             };
-            let drawn_s = began.elapsed().as_secs_f64();
-            let read = |world: &World, drive: &Drive, name: &str| -> Recording {
-                let path = folder.path().join(name);
-                simulate(world, &file, drive)
-                    .unwrap()
-                    .write_csv(std::fs::File::create(&path).unwrap())
-                    .unwrap();
-                read_paths(&[path], None).unwrap().0
-            };
-            let suspect = read(&case.world, &case.drive, "suspect.csv");
-            let healthy = read(&case.reference_world, &case.reference_drive, "healthy.csv");
-            let began = std::time::Instant::now();
-            if matches!(kind, CaseKind::One(effect) if effect.family() == Family::Unlisted) {
-                let found = diagnosis::diagnose(&robot, &suspect, Some(&healthy), &|_, _| {}).unwrap();
-                println!(
-                    "{name} {seed}: {} ({:.1} s) {:.2} W -> {:.2} W, floor {:.2} W, explainable {:.2?}",
-                    found.sentence,
-                    began.elapsed().as_secs_f64(),
-                    found.baseline.held_out_rmse_w,
-                    found.corrected.held_out_rmse_w,
-                    found.baseline.noise_floor_w,
-                    found.explainable,
-                );
-                continue;
-            }
-            let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
-            let found = search(&series, &robot, Some(&healthy), &|_, _| {}).unwrap();
-            let named: Vec<String> = found
-                .found
-                .iter()
-                .map(|f| {
-                    format!(
-                        "{:?} bic {:.0} gain {:.2} also {:?}",
-                        f.applied, f.delta_bic, f.held_out_gain, f.indistinguishable_from
-                    )
-                })
-                .collect();
-            println!(
-                "{name} {seed}: {} ({drawn_s:.1} + {:.1} s) from {:?}",
-                if named.is_empty() { "nothing".into() } else { named.join("; ") },
-                began.elapsed().as_secs_f64(),
-                case.world.effects.iter().map(|e| (e.strength, e.onset_s)).collect::<Vec<_>>(),
-            );
+            let suspect = record(folder.path(), &case.world, &file, &case.drive);
+            let healthy = record(folder.path(), &case.reference_world, &file, &case.reference_drive);
+            let began = Instant::now();
+            let found = diagnose(&robot, &suspect, Some(&healthy), &|_, _| {}).unwrap();
+            say(kind, seed, &case, &found, began);
+            let count = counts.entry(family(kind)).or_default();
+            count.cases += 1;
+            count.noticed += u32::from(found.verdict != Verdict::Consistent);
+            count.named += u32::from(is_named(kind, &found));
         }
     }
+    for (family, Count { cases, noticed, named }) in counts {
+        println!("{family}: {noticed} of {cases} noticed, {named} named in a set of at most two");
+    }
+}
+
+fn record(folder: &Path, world: &World, file: &RobotFile, drive: &Drive) -> Recording {
+    let path = folder.join("drive.csv");
+    simulate(world, file, drive).unwrap().write_csv(std::fs::File::create(&path).unwrap()).unwrap();
+    read_paths(&[path], None).unwrap().0
+}
+
+fn family(kind: CaseKind) -> &'static str {
+    match kind {
+        CaseKind::Healthy => "healthy",
+        CaseKind::Decoy => "decoy",
+        CaseKind::One(effect) if effect.family() == Family::Unlisted => "outside the list",
+        _ => "listed",
+    }
+}
+
+fn is_named(kind: CaseKind, found: &Diagnosis) -> bool {
+    let CaseKind::One(effect) = kind else { return found.findings.is_empty() };
+    let truth = serde_json::to_value(effect).unwrap();
+    let first = found.findings.first();
+    first.is_some_and(|f| {
+        f.indistinguishable_from.len() < 2
+            && (f.mechanism == truth || f.indistinguishable_from.iter().any(|name| *name == truth))
+    })
+}
+
+fn say(kind: CaseKind, seed: u64, case: &Case, found: &Diagnosis, began: Instant) {
+    let findings: Vec<String> = found
+        .findings
+        .iter()
+        .map(|f| {
+            let values: Vec<String> =
+                f.parameters.iter().map(|p| format!("{:.3} {}", p.value, p.unit)).collect();
+            format!(
+                "{} [{}] bic {:.0} gain {:.3} also {:?}",
+                f.mechanism,
+                values.join(", "),
+                f.evidence.delta_bic,
+                f.evidence.held_out_gain,
+                f.indistinguishable_from
+            )
+        })
+        .collect();
+    println!(
+        "{}{kind:?} {seed} {:?} {:?}: {:?} {} | explainable {:.3?}, floor {:.2} W, {:.2} -> {:.2} W, {:.1} s",
+        if is_named(kind, found) { "+" } else { "-" },
+        case.drive.kind,
+        case.world.effects.iter().map(|e| (e.strength, e.onset_s)).collect::<Vec<_>>(),
+        found.verdict,
+        findings.join("; "),
+        found.explainable,
+        found.baseline.noise_floor_w,
+        found.baseline.held_out_rmse_w,
+        found.corrected.held_out_rmse_w,
+        began.elapsed().as_secs_f64(),
+    );
 }

@@ -79,7 +79,8 @@ fn fitted(
 }
 
 fn whitened(series: &Series, base: &Baseline, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    columns.iter().map(|c| base.noise.whiten(c, &base.predicted_w, &series.averages)).collect()
+    let white = base.whitening(series);
+    columns.iter().map(|c| white.of(c)).collect()
 }
 
 /// Standard errors that an effect needs to be noticed: some four for the correction for all that is tried, and one more for

@@ -5,8 +5,10 @@ use rayon::prelude::*;
 
 use crate::{
     Error,
+    discrepancy::{Discrepancy, Whitened},
     knobs::Knob,
-    noise::Noise,
+    noise::{Noise, Whitening},
+    nuisance,
     series::{Applied, Series},
 };
 
@@ -25,7 +27,10 @@ pub(crate) struct Baseline {
     /// Change of predictions with half a row of delay of power behind speeds, in suspect and in healthy drives: less than a
     /// row is the sensors' business.
     pub(crate) delays: [Vec<f64>; 2],
-    /// Scatter of what is recorded about them.
+    /// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W].
+    pub(crate) shared: Vec<Vec<f64>>,
+    /// Scatter of what is recorded about the predictions: what models miss, which `shared` may take, counts as noise as well. With
+    /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
 }
 
@@ -38,7 +43,7 @@ impl Baseline {
     /// # Errors
     /// A surface that the robot does not know.
     pub(crate) fn fit(series: &Series, file: &Robot, applied: &[Applied]) -> Result<Self, Error> {
-        let knobs = Knob::of(file, &series.surfaces(), series.channels() == 2);
+        let knobs = Knob::of(file, &series.surfaces(), series.sees_battery());
         let mut robot = file.clone();
         let mut predicted_w = series.predict(&robot, applied)?;
         let mut noise =
@@ -60,8 +65,28 @@ impl Baseline {
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
-        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, noise })
+        let shared = shared(series, &predicted_w, &columns, &noise);
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, shared, noise })
     }
+
+    /// What makes errors about the fit independent and of one sigma 1.
+    pub(crate) fn whitening(&self, series: &Series) -> Whitening {
+        self.noise.whitening(&self.predicted_w, &series.averages)
+    }
+}
+
+/// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W].
+fn shared(series: &Series, predicted_w: &[f64], columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
+    let mut shared = nuisance::columns(&series.averages, predicted_w);
+    let means = nuisance::means(&series.averages, predicted_w);
+    let discrepancy = series.discrepancy.get_or_init(|| {
+        let white = noise.whitening(predicted_w, &series.averages);
+        let errors = white.of(&differences(&series.recorded, predicted_w));
+        let columns = columns.iter().chain(&shared).map(|column| white.of(column)).collect();
+        Discrepancy::learn(&series.averages, &means, &Whitened { errors, columns, white: &white })
+    });
+    shared.extend(discrepancy.columns(&means));
+    shared
 }
 
 fn delays(
@@ -110,9 +135,9 @@ fn solve(
     noise: &Noise,
 ) -> Vec<f64> {
     let count = knobs.len();
-    let white = |values: &[f64]| noise.whiten(values, predicted_w, &series.averages);
-    let errors = white(errors);
-    let columns: Vec<Vec<f64>> = columns.iter().map(|column| white(column)).collect();
+    let white = noise.whitening(predicted_w, &series.averages);
+    let errors = white.of(errors);
+    let columns: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
     // Errors beyond three sigma count linearly.
     let weight: Vec<f64> = errors.iter().map(|e| (3.0 / e.abs().max(1e-9)).min(1.0)).collect();
     let mut square = nalgebra::DMatrix::<f64>::identity(count, count);

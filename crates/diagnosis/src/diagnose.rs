@@ -30,6 +30,9 @@ const NEEDED_S: usize = 6 * BLOCK_S as usize;
 const LITTLE: f64 = 0.06;
 /// Share of what was explainable before that may remain so.
 const REMAINS: f64 = 0.35;
+/// Share of power that may be explainable where nothing is missing: of drives of another kind than the healthy ones, what the
+/// model misses of a robot in order reaches 1.1 %.
+const MISFIT: f64 = 0.015;
 
 /// What a diagnosis without healthy drives has to say of itself.
 const ALONE: &str = "without drives known to be healthy (`--reference`) only what sets in during a drive or grows with time can be \
@@ -125,6 +128,8 @@ struct Judged {
     steps: Vec<Refitted>,
     held_out_rmse_w: Vec<f64>,
     explainable: [f64; 2],
+    /// Mean size of the power under suspicion.
+    mean_w: f64,
     filed_w: Vec<f64>,
     /// Terms outside the list, which the last steps have.
     discovered: Vec<Discovered>,
@@ -161,7 +166,9 @@ impl Judged {
         };
         let explainable = [before, after];
         let discovered = Vec::new();
-        Ok(Judged { baseline, corrected, steps, held_out_rmse_w, explainable, filed_w, discovered })
+        let sizes: Vec<f64> = series.recorded.iter().map(|w| w.abs()).collect();
+        let mean_w = bias_w(series, &sizes);
+        Ok(Judged { baseline, corrected, steps, held_out_rmse_w, explainable, mean_w, filed_w, discovered })
     }
 
     /// Adds terms outside the list, one after the other.
@@ -182,11 +189,14 @@ impl Judged {
 
     fn verdict(&self, found: &Search) -> Verdict {
         let [before, after] = self.explainable;
+        let is_little = |explainable: f64| {
+            explainable <= LITTLE || explainable.sqrt() * self.corrected.rmse_w <= MISFIT * self.mean_w
+        };
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());
         match found.found.is_empty() {
-            true if before <= LITTLE => Verdict::Consistent,
+            true if is_little(before) => Verdict::Consistent,
             true => Verdict::Unexplained,
-            false if after > LITTLE.max(REMAINS * before) => Verdict::Unexplained,
+            false if !is_little(after) && after > REMAINS * before => Verdict::Unexplained,
             false if is_alone => Verdict::Explained,
             false => Verdict::Ambiguous,
         }
@@ -206,7 +216,7 @@ impl Judged {
             return Ok(Vec::new());
         }
         let after = &found.after;
-        let variance = |i: usize| after.noise.sigma_w(after.predicted_w[i]).powi(2);
+        let variance = |i: usize| after.noise.sigma(series.averages[i].channel, after.predicted_w[i]).powi(2);
         let errors_w = self.steps.last().map_or(&[][..], |step| &step.errors_w);
         let excess: Vec<f64> = if found.found.is_empty() {
             errors_w.iter().enumerate().map(|(i, e)| e * e / variance(i) - 1.0).collect()
@@ -260,9 +270,9 @@ fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
 
 /// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].
 fn floor_w(series: &Series, base: &Baseline) -> f64 {
-    let new = 1.0 - base.noise.rho * base.noise.rho;
-    let suspect = series.averages.iter().zip(&base.predicted_w).filter(|(a, _)| a.suspect);
-    let squares: Vec<f64> = suspect.map(|(_, p)| new * base.noise.sigma_w(*p).powi(2)).collect();
+    let counts = (0..series.averages.len()).filter(|i| series.averages[*i].suspect && series.is_power(*i));
+    let fresh = |i: usize| base.noise.fresh_sigma(series.averages[i].channel, base.predicted_w[i]).powi(2);
+    let squares: Vec<f64> = counts.map(fresh).collect();
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 

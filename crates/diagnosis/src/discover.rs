@@ -79,12 +79,12 @@ fn strongest(
     taken: &[Vec<f64>],
 ) -> Option<Discovered> {
     let system = system_with(series, base, taken);
-    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
+    let white = base.whitening(series);
     let blocks = system.blocks();
     let mut weighed: Vec<(f64, f64, usize, Evidence)> = (0..terms.len())
         .into_par_iter()
         .filter_map(|i| {
-            let evidence = system.weigh(&[white(&columns[i])])?;
+            let evidence = system.weigh(&[white.of(&columns[i])])?;
             let (wald, chance) = judged(&evidence, null.discount(UNKNOWN, blocks), blocks)?;
             let p_value = (chance * terms.len() as f64).min(1.0);
             // Each further group is a further choice.
@@ -97,7 +97,7 @@ fn strongest(
         if p_value > LEVEL {
             return None;
         }
-        let gain = passes(&system, series, &evidence, &[white(&columns[i])])?;
+        let gain = passes(&system, series, &evidence, &[white.of(&columns[i])])?;
         Some(Discovered {
             term: terms[i].clone(),
             size: evidence.values[0],
@@ -122,11 +122,11 @@ fn resembling(
     mechanisms: &[candidates::Candidate],
 ) -> Option<&'static str> {
     let system = system_with(series, base, &[]);
-    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
-    let own = system.weigh(&[white(column_w)])?;
+    let white = base.whitening(series);
+    let own = system.weigh(&[white.of(column_w)])?;
     let rows = series.recorded.len();
     let alike = mechanisms.par_iter().filter_map(|candidate| {
-        let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|column| white(column)).collect();
+        let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|column| white.of(column)).collect();
         let other = system.weigh(&columns)?;
         Some((cosine(&own, &other, rows), candidate.applied.mechanism.name()))
     });
@@ -157,8 +157,9 @@ impl Discovered {
 
     /// The sentence a person reads: what it goes with, how much it is, and where most of it lies.
     fn statement(&self, series: &Series) -> String {
-        let powers = self.column_w.iter().zip(&series.averages).filter(|(_, a)| a.suspect);
-        let sizes: Vec<f64> = powers.map(|(w, _)| self.size * w).collect();
+        let counts = |i: &usize| series.averages[*i].suspect && series.is_power(*i);
+        let sizes: Vec<f64> =
+            (0..self.column_w.len()).filter(counts).map(|i| self.size * self.column_w[i]).collect();
         let mean_w = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64 * series.channels() as f64;
         let more = if mean_w >= 0.0 { "more" } else { "less" };
         let mut text = format!(

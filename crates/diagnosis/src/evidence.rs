@@ -1,20 +1,48 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Whitened errors, the sensitivities of everything that is fitted whatever the candidate, and the blocks that count as one
-/// piece of evidence each.
+/// Whitened errors, everything that is fitted whatever the candidate, and the blocks that count as one piece of evidence each.
+///
+/// Rows are those that are recorded, then one for what is known before of each column, then one for each shared column.
 pub(crate) struct System {
     errors: DVector<f64>,
-    /// Sensitivities of the robot's own numbers, with rows below for what is known of them.
-    always: DMatrix<f64>,
+    /// What is fitted in every channel: the robot's own numbers.
+    columns: DMatrix<f64>,
+    /// What models miss, channel by channel.
+    shared: Vec<Shared>,
     /// Rows of the errors that are recorded, the rest being what is known before.
     rows: usize,
     /// Block by row.
     block: Vec<usize>,
     blocks: usize,
-    /// (AᵀA)⁻¹ of `always`.
+    /// The columns that shared ones do not explain.
+    own: DMatrix<f64>,
+    /// (AᵀA)⁻¹ of them.
     inverse: DMatrix<f64>,
+    /// The errors that are left when nothing but what is fitted always is.
+    left: DVector<f64>,
+}
+
+/// Columns of one channel whose weights have a width of 1, about 0.
+struct Shared {
+    /// Rows of the channel.
+    places: Vec<usize>,
+    columns: DMatrix<f64>,
+    /// Of their products, with what is known before.
+    root: Cholesky<f64, Dyn>,
+    /// Row of the first of them.
+    first: usize,
+}
+
+/// What is fitted whatever the candidate, whitened.
+pub(crate) struct Fitted<'a> {
+    /// Columns, what is known before of the weight of each in the same units, and the weight itself.
+    pub(crate) columns: &'a [Vec<f64>],
+    pub(crate) known: &'a [f64],
+    pub(crate) offset: &'a [f64],
+    /// Columns of one channel each, with weights of one sigma 1.
+    pub(crate) shared: &'a [Vec<f64>],
 }
 
 /// What a candidate explains.
@@ -31,29 +59,28 @@ pub(crate) struct Evidence {
 }
 
 impl System {
-    /// Puts a system together: `known` has the weight of what is known before of each column, in the same units.
-    pub(crate) fn new(
-        errors: Vec<f64>,
-        columns: &[Vec<f64>],
-        known: &[f64],
-        offset: &[f64],
-        block: Vec<usize>,
-    ) -> Self {
-        let (rows, count) = (errors.len(), columns.len());
-        let mut always = DMatrix::zeros(rows + count, count);
-        for (j, column) in columns.iter().enumerate() {
-            for (i, value) in column.iter().enumerate() {
-                always[(i, j)] = *value;
-            }
-            always[(rows + j, j)] = known[j];
+    /// Puts a system together of errors, whose rows belong to channels and blocks.
+    pub(crate) fn new(errors: Vec<f64>, fitted: &Fitted<'_>, channel: &[usize], block: Vec<usize>) -> Self {
+        let (rows, count) = (errors.len(), fitted.columns.len());
+        let shared = Shared::of(fitted.shared, channel, rows + count);
+        let all = rows + count + fitted.shared.len();
+        let mut columns = DMatrix::zeros(all, count);
+        for (j, column) in fitted.columns.iter().enumerate() {
+            columns.view_mut((0, j), (rows, 1)).copy_from_slice(column);
+            columns[(rows + j, j)] = fitted.known[j];
         }
-        let mut all = errors;
-        all.extend_from_slice(offset);
-        let inverse = (always.transpose() * &always)
-            .pseudo_inverse(1e-12)
-            .unwrap_or_else(|_| DMatrix::zeros(count, count));
+        let mut extended = errors;
+        extended.extend_from_slice(fitted.offset);
+        extended.resize(all, 0.0);
+        let errors = DVector::from_vec(extended);
+        let mut own = columns.clone();
+        shared.iter().for_each(|shared| shared.take(&mut own));
+        let mut left = DMatrix::from_column_slice(all, 1, errors.as_slice());
+        shared.iter().for_each(|shared| shared.take(&mut left));
+        let inverse = inverse(own.tr_mul(&own));
+        let left = left.column(0) - &own * (&inverse * own.tr_mul(&left.column(0)));
         let blocks = block.iter().max().map_or(0, |b| b + 1);
-        System { errors: DVector::from_vec(all), always, rows, block, blocks, inverse }
+        System { errors, columns, shared, rows, block, blocks, own, inverse, left }
     }
 
     /// Number of blocks.
@@ -61,29 +88,26 @@ impl System {
         self.blocks
     }
 
-    /// What is left of a column when everything fitted always has taken its part.
+    /// What is left of columns when everything fitted always has taken its part.
     fn own(&self, columns: &[Vec<f64>]) -> DMatrix<f64> {
-        let mut own = DMatrix::zeros(self.always.nrows(), columns.len());
+        let mut own = DMatrix::zeros(self.left.len(), columns.len());
         for (j, column) in columns.iter().enumerate() {
-            for (i, value) in column.iter().enumerate() {
-                own[(i, j)] = *value;
-            }
+            own.view_mut((0, j), (self.rows, 1)).copy_from_slice(column);
         }
-        let share = &self.inverse * (self.always.transpose() * &own);
-        own - &self.always * share
+        self.shared.iter().for_each(|shared| shared.take(&mut own));
+        let share = &self.inverse * self.own.tr_mul(&own);
+        own - &self.own * share
     }
 
     /// The errors that are left when nothing but what is fitted always is.
-    pub(crate) fn left(&self) -> DVector<f64> {
-        let share = &self.inverse * (self.always.transpose() * &self.errors);
-        &self.errors - &self.always * share
+    pub(crate) fn left(&self) -> &DVector<f64> {
+        &self.left
     }
 
     /// What a candidate's columns explain; `None` where the rest explains all that they do.
     pub(crate) fn weigh(&self, columns: &[Vec<f64>]) -> Option<Evidence> {
         let own = self.own(columns);
-        let left = self.left();
-        let square = own.transpose() * &own;
+        let square = own.tr_mul(&own);
         for (j, column) in columns.iter().enumerate() {
             let whole: f64 = column.iter().map(|x| x * x).sum();
             // Less than a ten-thousandth of its own is rounding.
@@ -92,8 +116,8 @@ impl System {
             }
         }
         let inverse = square.try_inverse()?;
-        let values = &inverse * (own.transpose() * &left);
-        let after = &left - &own * &values;
+        let values = &inverse * own.tr_mul(&self.left);
+        let after = &self.left - &own * &values;
         let mut scores = DMatrix::<f64>::zeros(columns.len(), self.blocks);
         for (i, block) in self.block.iter().enumerate() {
             for j in 0..columns.len() {
@@ -120,17 +144,50 @@ impl System {
         Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own })
     }
 
+    /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
+    fn dense(&self, columns: &[Vec<f64>]) -> (DMatrix<f64>, DVector<f64>) {
+        let always = self.columns.ncols();
+        let shared: usize = self.shared.iter().map(|shared| shared.columns.ncols()).sum();
+        let count = always + shared + columns.len();
+        let mut with = DMatrix::zeros(self.rows, count);
+        let mut known = DVector::zeros(count);
+        with.view_mut((0, 0), (self.rows, always)).copy_from(&self.columns.rows(0, self.rows));
+        for j in 0..always {
+            known[j] = self.columns[(self.rows + j, j)].powi(2);
+        }
+        let mut at = always;
+        for one in &self.shared {
+            for j in 0..one.columns.ncols() {
+                one.places
+                    .iter()
+                    .enumerate()
+                    .for_each(|(i, place)| with[(*place, at + j)] = one.columns[(i, j)]);
+                known[at + j] = 1.0;
+            }
+            at += one.columns.ncols();
+        }
+        for (j, column) in columns.iter().enumerate() {
+            with.view_mut((0, at + j), (self.rows, 1)).copy_from_slice(column);
+        }
+        (with, known)
+    }
+
+    /// What is known before of all columns, as a right-hand side.
+    fn known_before(&self, known: &DVector<f64>) -> DVector<f64> {
+        let always = self.columns.ncols();
+        DVector::from_fn(known.len(), |j, _| {
+            if j < always { known[j].sqrt() * self.errors[self.rows + j] } else { 0.0 }
+        })
+    }
+
     /// Drop of squared errors block by block when each tenth of the blocks is judged by a fit of the others.
     pub(crate) fn held_out(&self, columns: &[Vec<f64>], folds: usize) -> Vec<f64> {
-        let count = self.always.ncols();
-        let mut with = DMatrix::zeros(self.always.nrows(), count + columns.len());
-        with.view_mut((0, 0), (self.always.nrows(), count)).copy_from(&self.always);
-        for (j, column) in columns.iter().enumerate() {
-            for (i, value) in column.iter().enumerate() {
-                with[(i, count + j)] = *value;
-            }
-        }
-        let all = (with.transpose() * &with, with.transpose() * &self.errors);
+        let (with, known) = self.dense(columns);
+        let count = with.ncols() - columns.len();
+        let all = (
+            with.transpose() * &with + DMatrix::from_diagonal(&known),
+            with.tr_mul(&self.errors.rows(0, self.rows)) + self.known_before(&known),
+        );
         let mut gains = vec![0.0; self.blocks];
         // Whole stretches of neighbouring blocks are left out together.
         let fold = |block: usize| block * folds / self.blocks.max(1);
@@ -139,10 +196,10 @@ impl System {
             let part = DMatrix::from_fn(rows.len(), with.ncols(), |i, j| with[(rows[i], j)]);
             let errors = DVector::from_fn(rows.len(), |i, _| self.errors[rows[i]]);
             let square = &all.0 - part.transpose() * &part;
-            let right = &all.1 - part.transpose() * &errors;
+            let right = &all.1 - part.tr_mul(&errors);
             let solve = |n: usize| {
                 let square = square.view((0, 0), (n, n)).into_owned();
-                square.pseudo_inverse(1e-12).ok().map(|inverse| inverse * right.rows(0, n))
+                root(square).map(|root| root.solve(&right.rows(0, n)))
             };
             let (Some(before), Some(after)) = (solve(count), solve(with.ncols())) else { continue };
             let left = [&errors - part.columns(0, count) * before, &errors - &part * after];
@@ -152,4 +209,49 @@ impl System {
         }
         gains
     }
+}
+
+impl Shared {
+    /// Columns by channel; rows of what is known before begin at `first`.
+    fn of(columns: &[Vec<f64>], channel: &[usize], mut first: usize) -> Vec<Shared> {
+        let of_channel = |column: &Vec<f64>| column.iter().position(|x| *x != 0.0).map(|i| channel[i]);
+        let names: Vec<Option<usize>> = columns.iter().map(of_channel).collect();
+        let mut all = Vec::new();
+        for name in 0..channel.iter().max().map_or(0, |c| c + 1) {
+            let own: Vec<&Vec<f64>> =
+                columns.iter().zip(&names).filter(|(_, n)| **n == Some(name)).map(|(c, _)| c).collect();
+            let places: Vec<usize> = (0..channel.len()).filter(|i| channel[*i] == name).collect();
+            let columns = DMatrix::from_fn(places.len(), own.len(), |i, j| own[j][places[i]]);
+            let square = columns.transpose() * &columns + DMatrix::identity(own.len(), own.len());
+            let Some(root) = Cholesky::new(square) else { continue };
+            all.push(Shared { places, columns, root, first });
+            first += own.len();
+        }
+        all
+    }
+
+    /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
+    fn take(&self, columns: &mut DMatrix<f64>) {
+        for mut column in columns.column_iter_mut() {
+            let own = DVector::from_fn(self.places.len(), |i, _| column[self.places[i]]);
+            let weights = self.root.solve(&self.columns.tr_mul(&own));
+            let left = own - &self.columns * &weights;
+            self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
+            column.rows_mut(self.first, weights.len()).copy_from(&-weights);
+        }
+    }
+}
+
+/// Inverse of a matrix of products.
+fn inverse(square: DMatrix<f64>) -> DMatrix<f64> {
+    let count = square.nrows();
+    root(square).map_or_else(|| DMatrix::zeros(count, count), |root| root.inverse())
+}
+
+/// Root of a matrix of products; columns that nothing excites take no share.
+fn root(mut square: DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    for j in 0..square.nrows() {
+        square[(j, j)] += 1e-9 * (1.0 + square[(j, j)]);
+    }
+    square.cholesky()
 }

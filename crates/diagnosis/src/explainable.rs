@@ -17,7 +17,8 @@ const RIDGES: [f64; 3] = [300.0, 1000.0, 3000.0];
 ///
 /// Errors count in sigma, but what a second tells of the next stays in: taking it out hides whatever lasts for a manoeuvre.
 pub(crate) fn explained_share(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
-    let sigmas = errors_w.iter().zip(&base.predicted_w).map(|(e, p)| e / base.noise.sigma_w(*p));
+    let sigma = |i: usize| base.noise.sigma(series.averages[i].channel, base.predicted_w[i]);
+    let sigmas = (0..errors_w.len()).map(|i| errors_w[i] / sigma(i));
     let errors: Vec<f64> = sigmas.map(|z| z.clamp(-MOST_SIGMAS, MOST_SIGMAS)).collect();
     // Neighbouring blocks are judged by each other's fits, so that time itself may be followed.
     let fold: Vec<usize> = blocks(series).iter().map(|block| block % FOLDS).collect();
@@ -51,7 +52,8 @@ fn unexplained(series: &Series, errors: &[f64], fit: &Folded<'_>, columns: &[Vec
 
 fn squared(series: &Series, errors: &[f64], explained: Option<&[f64]>) -> f64 {
     let rest = |i: usize| errors[i] - explained.map_or(0.0, |explained| explained[i]);
-    (0..errors.len()).filter(|i| series.averages[*i].suspect).map(|i| rest(i).powi(2)).sum()
+    let counts = |i: &usize| series.averages[*i].suspect && series.is_power(*i);
+    (0..errors.len()).filter(counts).map(|i| rest(i).powi(2)).sum()
 }
 
 /// Inputs, their squares and products, each channel's own, in sigma and of mean square 1.
@@ -71,7 +73,7 @@ fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
             let own = product.iter().zip(&series.averages);
             let own = own.zip(&base.predicted_w);
             let value = |((x, a), p): ((&f64, &Average), &f64)| {
-                if a.channel == channel { x / base.noise.sigma_w(*p) } else { 0.0 }
+                if a.channel == channel { x / base.noise.sigma(channel, *p) } else { 0.0 }
             };
             let column: Vec<f64> = own.map(value).collect();
             let size = (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt();

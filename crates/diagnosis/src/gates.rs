@@ -35,14 +35,14 @@ pub(crate) fn best(
 ) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
     let (mut weighed, _) = weigh_all(series, base, applied, null)?;
     let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
-    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
+    let white = base.whitening(series);
     let passing = weighed.iter().enumerate().find_map(|(place, one)| {
         if one.p_value > LEVEL || one.score <= 0.0 {
             return None;
         }
         let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
         let system = if is_delay { &delay_apart } else { &all_fitted };
-        let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white(c)).collect();
+        let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
         Some((place, passes(system, series, &one.evidence, &columns)?))
     });
     let Some((place, gain)) = passing else { return Ok(None) };

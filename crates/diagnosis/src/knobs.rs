@@ -31,7 +31,7 @@ const STANDING_SIGMA_W: f64 = 2.0;
 
 impl Knob {
     /// The knobs of a robot on surfaces; the battery shows its hotel load, motor drivers do not.
-    pub(crate) fn of(robot: &Robot, surfaces: &[String], sides: bool) -> Vec<Knob> {
+    pub(crate) fn of(robot: &Robot, surfaces: &[String], sees_battery: bool) -> Vec<Knob> {
         let u = robot.uncertainty;
         let mut knobs = Vec::new();
         let mut add = |name: String, place: Place, sigma: f64, bounds: [f64; 2]| {
@@ -56,7 +56,7 @@ impl Knob {
         let standing = |w: f64| (0.1 * w).max(STANDING_SIGMA_W);
         let electronics_w = robot.drive_electronics_w;
         add("drive_electronics_w".into(), Place::Electronics, standing(electronics_w), [-50.0, 1000.0]);
-        if !sides {
+        if sees_battery {
             add("hotel_power_w".into(), Place::Hotel, standing(robot.hotel_power_w), [-50.0, 5000.0]);
         }
         knobs

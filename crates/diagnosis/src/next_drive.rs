@@ -71,7 +71,7 @@ pub(crate) fn next_drive(
         let own_w = powers_w(best, figure, surface, by_side)?;
         let apart = |other: &Explanation| {
             let other_w = powers_w(other, figure, surface, by_side)?;
-            let differ = |c: usize| (own_w[c] - other_w[c]).abs() / noise.sigma_w(own_w[c]);
+            let differ = |c: usize| (own_w[c] - other_w[c]).abs() / noise.sigma(c, own_w[c]);
             let channel = if differ(1) > differ(0) { 1 } else { 0 };
             Some((differ(channel), own_w[channel] - other_w[channel], channel, other.name))
         };
@@ -173,12 +173,24 @@ mod tests {
         Explanation { name: mechanism.name(), applied, robot: builtin::husky_a200() }
     }
 
-    const NOISE: Noise = Noise { floor_w: 1.0, gain: 0.0, rho: 0.0 };
+    fn one_watt() -> Noise {
+        let average = |i: u8| crate::Average {
+            channel: usize::from(i % 2),
+            run: 0,
+            suspect: true,
+            t_s: f64::from(i),
+            input: crate::Input::default(),
+        };
+        let averages: Vec<crate::Average> = (0..40).map(average).collect();
+        // The median size of what is normal is 0.6745 of its width.
+        let errors: Vec<f64> = (0..40).map(|i| if i % 4 < 2 { 0.6745 } else { -0.6745 }).collect();
+        Noise::of(&errors, &[10.0; 40], &averages)
+    }
 
     #[test]
     fn a_load_and_a_fan_part_where_the_load_is_lifted_or_dragged() {
         let (load, fan) = (explanation("payload", vec![10.0]), explanation("hotel_load", vec![5.0]));
-        let said = next_drive(&load, &[fan], &NOISE, "marble", false).unwrap_or_default();
+        let said = next_drive(&load, &[fan], &one_watt(), "marble", false).unwrap_or_default();
         assert!(said.contains("uphill") || said.contains("spin"), "{said}");
         assert!(said.contains("payload") && said.contains("hotel_load"), "{said}");
     }
@@ -186,8 +198,8 @@ mod tests {
     #[test]
     fn the_same_physics_under_two_names_is_not_told_apart_by_driving() {
         let (one, other) = (explanation("payload", vec![10.0]), explanation("payload", vec![10.0]));
-        let said = next_drive(&one, &[other], &NOISE, "marble", false).unwrap_or_default();
+        let said = next_drive(&one, &[other], &one_watt(), "marble", false).unwrap_or_default();
         assert!(said.starts_with("no simple drive"), "{said}");
-        assert_eq!(next_drive(&one, &[], &NOISE, "marble", false), None);
+        assert_eq!(next_drive(&one, &[], &one_watt(), "marble", false), None);
     }
 }

@@ -2,77 +2,116 @@
 
 use crate::series::Average;
 
+/// Scatter of each channel.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Noise {
+    channels: Vec<Scatter>,
+}
+
 /// Variance floor² + (gain P)², with errors of neighbours correlated by ρ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Noise {
-    /// What remains at no power [W].
-    pub(crate) floor_w: f64,
+struct Scatter {
+    /// What remains at no power, in the channel's unit.
+    floor: f64,
     /// Growth with power [-].
-    pub(crate) gain: f64,
+    gain: f64,
     /// Correlation from one average to the next.
-    pub(crate) rho: f64,
+    rho: f64,
 }
 
 /// Most of a correlation that is taken out before fitting; what is left is the blocks' business.
 const MOST_RHO: f64 = 0.95;
 
 impl Noise {
-    /// Measures the noise of errors about predictions [W].
-    ///
+    /// Measures the noise of errors about predictions, channel by channel.
+    pub(crate) fn of(errors: &[f64], predicted: &[f64], averages: &[Average]) -> Self {
+        let count = averages.iter().map(|a| a.channel + 1).max().unwrap_or(0);
+        let of = |channel: usize| {
+            let places: Vec<usize> =
+                (0..averages.len()).filter(|i| averages[*i].channel == channel).collect();
+            Scatter::of(errors, predicted, averages, places)
+        };
+        Noise { channels: (0..count).map(of).collect() }
+    }
+
+    /// One-sigma scatter of a channel about a prediction.
+    pub(crate) fn sigma(&self, channel: usize, predicted: f64) -> f64 {
+        let Scatter { floor, gain, .. } = self.channels[channel];
+        floor.hypot(gain * predicted)
+    }
+
+    /// What the average before does not tell of an error, one sigma of a channel about a prediction.
+    pub(crate) fn fresh_sigma(&self, channel: usize, predicted: f64) -> f64 {
+        (1.0 - self.channels[channel].rho.powi(2)).sqrt() * self.sigma(channel, predicted)
+    }
+
+    /// Prepares what divides by the scatter about predictions and takes out what the average before tells.
+    pub(crate) fn whitening(&self, predicted: &[f64], averages: &[Average]) -> Whitening {
+        let of = |i: usize| {
+            let rho = self.channels[averages[i].channel].rho;
+            let sigma = self.sigma(averages[i].channel, predicted[i]);
+            if i > 0 && follows(averages, i) {
+                [1.0 / sigma, rho / self.sigma(averages[i - 1].channel, predicted[i - 1])]
+            } else {
+                [(1.0 - rho * rho).sqrt() / sigma, 0.0]
+            }
+        };
+        Whitening { rows: (0..averages.len()).map(of).collect() }
+    }
+}
+
+/// Makes errors, or columns of them, independent and of one sigma 1.
+pub(crate) struct Whitening {
+    /// Weight of each value and of the one before it, which is taken out.
+    rows: Vec<[f64; 2]>,
+}
+
+impl Whitening {
+    /// The same of values.
+    pub(crate) fn of(&self, values: &[f64]) -> Vec<f64> {
+        let before = |i: usize| if i > 0 { values[i - 1] } else { 0.0 };
+        self.rows.iter().enumerate().map(|(i, [own, last])| own * values[i] - last * before(i)).collect()
+    }
+}
+
+impl Scatter {
     /// Where power is lowest the floor shows, where it is highest the gain; medians, so that what mechanisms do now and then
     /// matters little.
-    pub(crate) fn of(errors_w: &[f64], predicted_w: &[f64], averages: &[Average]) -> Self {
-        let mut order: Vec<usize> = (0..errors_w.len()).collect();
-        order.sort_by(|a, b| predicted_w[*a].abs().total_cmp(&predicted_w[*b].abs()));
-        let third = (order.len() / 3).max(1);
+    fn of(errors: &[f64], predicted: &[f64], averages: &[Average], mut places: Vec<usize>) -> Self {
+        let in_time = places.clone();
+        places.sort_by(|a, b| predicted[*a].abs().total_cmp(&predicted[*b].abs()));
+        let third = (places.len() / 3).max(1).min(places.len());
         let spread = |places: &[usize]| {
-            let mut sizes: Vec<f64> = places.iter().map(|i| errors_w[*i].abs()).collect();
+            let mut sizes: Vec<f64> = places.iter().map(|i| errors[*i].abs()).collect();
             // The median of a normal distribution's size is 0.6745 σ.
             median(&mut sizes) / 0.6745
         };
         let level = |places: &[usize]| {
-            let mut sizes: Vec<f64> = places.iter().map(|i| predicted_w[*i].abs()).collect();
+            let mut sizes: Vec<f64> = places.iter().map(|i| predicted[*i].abs()).collect();
             median(&mut sizes)
         };
-        let (low, high) = (&order[..third.min(order.len())], &order[order.len() - third.min(order.len())..]);
+        let (low, high) = (&places[..third], &places[places.len() - third..]);
         let (a, b) = (spread(low).powi(2), spread(high).powi(2));
         let (p, q) = (level(low).powi(2), level(high).powi(2));
-        let gain2 = if q > p { ((b - a) / (q - p)).max(0.0) } else { 0.0 };
-        let floor2 = (a - gain2 * p).max(0.05 * a.max(1e-6)).max(1e-6);
-        let mut noise = Noise { floor_w: floor2.sqrt(), gain: gain2.sqrt(), rho: 0.0 };
-        let scaled: Vec<f64> = errors_w.iter().zip(predicted_w).map(|(e, p)| e / noise.sigma_w(*p)).collect();
+        // A channel that hardly changes does not tell.
+        let gain2 = if q > VARIES * p { ((b - a) / (q - p)).max(0.0) } else { 0.0 };
+        let floor2 = (a - gain2 * p).max(0.05 * a).max(LEAST_VARIANCE);
+        let sigma = |i: usize| (floor2 + gain2 * predicted[i] * predicted[i]).sqrt();
         let (mut both, mut own) = (0.0, 0.0);
-        for i in 1..scaled.len() {
-            if follows(averages, i) {
-                let [a, b] = [scaled[i - 1], scaled[i]].map(|z| z.clamp(-3.0, 3.0));
-                both += a * b;
-                own += a * a;
-            }
+        for i in in_time.into_iter().filter(|i| *i > 0 && follows(averages, *i)) {
+            let [a, b] = [i - 1, i].map(|i| (errors[i] / sigma(i)).clamp(-3.0, 3.0));
+            both += a * b;
+            own += a * a;
         }
-        noise.rho = if own > 0.0 { (both / own).clamp(0.0, MOST_RHO) } else { 0.0 };
-        noise
-    }
-
-    /// One-sigma scatter at a power [W].
-    pub(crate) fn sigma_w(&self, power_w: f64) -> f64 {
-        self.floor_w.hypot(self.gain * power_w)
-    }
-
-    /// Divides by the scatter and takes out what the average before tells.
-    pub(crate) fn whiten(&self, values: &[f64], predicted_w: &[f64], averages: &[Average]) -> Vec<f64> {
-        let scaled: Vec<f64> = values.iter().zip(predicted_w).map(|(e, p)| e / self.sigma_w(*p)).collect();
-        let stationary = (1.0 - self.rho * self.rho).sqrt();
-        (0..scaled.len())
-            .map(|i| {
-                if i > 0 && follows(averages, i) {
-                    scaled[i] - self.rho * scaled[i - 1]
-                } else {
-                    stationary * scaled[i]
-                }
-            })
-            .collect()
+        let rho = if own > 0.0 { (both / own).clamp(0.0, MOST_RHO) } else { 0.0 };
+        Scatter { floor: floor2.sqrt(), gain: gain2.sqrt(), rho }
     }
 }
+
+/// How much larger the square of a channel's upper third has to be than that of its lower for growth of noise to be told.
+const VARIES: f64 = 1.5;
+/// A channel that never changes has this variance, of watts or metres per second: no meter is closer.
+const LEAST_VARIANCE: f64 = 1e-6;
 
 /// Whether an average comes right after the one before it.
 fn follows(averages: &[Average], i: usize) -> bool {

@@ -11,20 +11,30 @@ const SHARE: f64 = 0.03;
 /// act all the time as well, which then cannot be told from what the model is wrong by and are not named: with a few functions
 /// only, a healthy drive alone was taken for one on soft ground.
 pub(crate) fn columns(averages: &[Average], predicted_w: &[f64]) -> Vec<Vec<f64>> {
-    let mean_w = predicted_w.iter().map(|p| p.abs()).sum::<f64>() / predicted_w.len().max(1) as f64;
-    let channels = averages.iter().map(|a| a.channel).max().map_or(0, |c| c + 1);
     let mut columns = Vec::new();
-    for channel in 0..channels {
+    for (channel, mean_w) in means(averages, predicted_w).into_iter().enumerate() {
         for function in SHARED {
             let of = |a: &Average| if a.channel == channel { function(&a.input) } else { 0.0 };
             let values: Vec<f64> = averages.iter().map(of).collect();
-            let size = (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt();
+            let count = averages.iter().filter(|a| a.channel == channel).count().max(1) as f64;
+            let size = (values.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
             if size > 0.0 {
                 columns.push(values.iter().map(|x| x / size * SHARE * mean_w).collect());
             }
         }
     }
     columns
+}
+
+/// Mean size of what is predicted, by channel.
+pub(crate) fn means(averages: &[Average], predicted: &[f64]) -> Vec<f64> {
+    let channels = averages.iter().map(|a| a.channel + 1).max().unwrap_or(0);
+    let mean = |channel: usize| {
+        let own = averages.iter().zip(predicted).filter(|(a, _)| a.channel == channel);
+        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), (_, p)| (sum + p.abs(), count + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    (0..channels).map(mean).collect()
 }
 
 const SHARED: [fn(&Input) -> f64; 14] = [

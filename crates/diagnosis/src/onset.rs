@@ -50,8 +50,8 @@ pub(crate) fn refine(
     let at = |step: i32| -> Option<(f64, Vec<Vec<f64>>, Evidence)> {
         let from_s = guess.from_s + f64::from(step) * step_s;
         let columns: Vec<Vec<f64>> = all.iter().map(|column| cut(series, column, from_s)).collect();
-        let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
-        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white(column)).collect();
+        let white = base.whitening(series);
+        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
         Some((from_s, columns, system.weigh(&whitened)?)).filter(|_| from_s > 0.0)
     };
     let profile: Vec<_> = (-STEPS..=STEPS).into_par_iter().filter_map(at).collect();

@@ -36,15 +36,23 @@ impl Plain {
     /// A surface that the robot does not know.
     pub fn new(series: &Series, robot: &Robot) -> Result<Self, Error> {
         let base = Baseline::fit(series, robot, &[])?;
-        let candidates = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
+        let mut candidates = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
         let mut always = base.columns.clone();
         always.extend(nuisance::columns(&series.averages, &base.predicted_w));
-        let count = base.predicted_w.len().max(1) as f64;
+        // Errors taken as alike are all of power.
+        let power = |values: &[f64]| -> Vec<f64> {
+            (0..values.len()).filter(|i| series.is_power(*i)).map(|i| values[i]).collect()
+        };
+        always.iter_mut().for_each(|column| *column = power(column));
+        for candidate in &mut candidates {
+            candidate.columns.iter_mut().for_each(|column| *column = power(column));
+        }
+        let predicted_w = power(&base.predicted_w);
         Ok(Plain {
-            errors_w: DVector::from_vec(differences(&series.recorded, &base.predicted_w)),
+            errors_w: DVector::from_vec(differences(&power(&series.recorded), &predicted_w)),
             always,
             candidates,
-            mean_w: base.predicted_w.iter().map(|w| w.abs()).sum::<f64>() / count,
+            mean_w: predicted_w.iter().map(|w| w.abs()).sum::<f64>() / predicted_w.len().max(1) as f64,
         })
     }
 

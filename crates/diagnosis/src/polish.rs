@@ -43,8 +43,8 @@ pub(crate) fn polish(
     for _ in 0..POLISHES {
         // Sensitivities are differences from what is predicted with the mechanism as it stands.
         let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, &applied, &linear)?;
-        let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
-        let columns: Vec<Vec<f64>> = at.iter().map(|c| white(c)).collect();
+        let white = base.whitening(series);
+        let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
         let Some(evidence) = system(series, &base).weigh(&columns) else { break };
         add(&mut applied, file, &linear, &evidence.values);
         covariance = evidence.covariance;

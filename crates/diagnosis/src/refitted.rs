@@ -6,7 +6,6 @@ use crate::{
     candidates,
     discover::Discovered,
     linear::{FOLDS, Folded},
-    nuisance,
     search::Found,
     series::{Applied, Series},
     weigh::blocks,
@@ -34,9 +33,8 @@ impl Refitted {
     ) -> Result<Self, Error> {
         let mut columns = base.columns.clone();
         let mut before: Vec<f64> = base.moved.iter().map(|moved| -moved).collect();
-        let nuisances = nuisance::columns(&series.averages, &base.predicted_w);
-        before.extend(vec![0.0; nuisances.len()]);
-        columns.extend(nuisances);
+        before.extend(vec![0.0; base.shared.len()]);
+        columns.extend(base.shared.iter().cloned());
         let mut known = vec![1.0; columns.len()];
         let applied: Vec<Applied> = found.iter().map(|f| f.applied.clone()).collect();
         for (i, one) in found.iter().enumerate() {
@@ -59,10 +57,10 @@ impl Refitted {
         known.extend(vec![0.0; discovered.len()]);
         before.extend(vec![0.0; discovered.len()]);
         let errors_w = differences(&series.recorded, &base.predicted_w);
-        let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
-        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white(column)).collect();
+        let white = base.whitening(series);
+        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
         let fold = tenths(series);
-        let folded = Folded::new(&whitened, &white(&errors_w), &fold);
+        let folded = Folded::new(&whitened, &white.of(&errors_w), &fold);
         let explained =
             [folded.fitted(&columns, &known, &before), folded.held_out(&columns, &known, &before)];
         let [errors_w, held_out_w] = explained.map(|explained_w| differences(&errors_w, &explained_w));
@@ -84,14 +82,18 @@ fn tenths(series: &Series) -> Vec<usize> {
 
 /// Root mean square of errors over the drives under suspicion [W].
 pub(crate) fn rmse_w(series: &Series, errors_w: &[f64]) -> f64 {
-    let suspect = series.averages.iter().zip(errors_w).filter(|(a, _)| a.suspect);
-    let (sum, count) = suspect.fold((0.0, 0.0), |(sum, n), (_, e)| (sum + e * e, n + 1.0));
+    let (sum, count) = suspect(series, errors_w).fold((0.0, 0.0), |(sum, n), e| (sum + e * e, n + 1.0));
     (sum / f64::max(count, 1.0)).sqrt()
 }
 
 /// Their mean [W].
 pub(crate) fn bias_w(series: &Series, errors_w: &[f64]) -> f64 {
-    let suspect = series.averages.iter().zip(errors_w).filter(|(a, _)| a.suspect);
-    let (sum, count) = suspect.fold((0.0, 0.0), |(sum, n), (_, e)| (sum + e, n + 1.0));
+    let (sum, count) = suspect(series, errors_w).fold((0.0, 0.0), |(sum, n), e| (sum + e, n + 1.0));
     sum / f64::max(count, 1.0)
+}
+
+/// Errors of power in the drives under suspicion.
+fn suspect<'a>(series: &'a Series, errors_w: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    let counts = |i: &usize| series.averages[*i].suspect && series.is_power(*i);
+    (0..errors_w.len()).filter(counts).map(|i| errors_w[i])
 }

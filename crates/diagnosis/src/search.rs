@@ -7,13 +7,12 @@ use recording::Recording;
 use crate::{
     Error,
     baseline::Baseline,
-    evidence::System,
     gates::best,
     null::Null,
     onset::{self, Onset},
     polish::{Polished, polish},
     series::{Applied, Series},
-    weigh::{Weighed, misfit, system},
+    weigh::{Weighed, left, misfit, system},
 };
 
 /// Mechanisms that are looked for at most.
@@ -68,7 +67,7 @@ pub fn search(
     progress("fitting the robot", 0.05);
     let before = Baseline::fit(series, file, &[])?;
     let mut after = Baseline::fit(series, file, &[])?;
-    let left_before = rows(series, &system(series, &after));
+    let left_before = left(series, &after);
     let mut found: Vec<Found> = Vec::new();
     for round in 0..MOST {
         progress("weighing mechanisms", 0.1 + 0.3 * round as f64);
@@ -82,7 +81,7 @@ pub fn search(
             (found, after) = (kept, fit);
         }
     }
-    let left = [left_before, rows(series, &system(series, &after))];
+    let left = [left_before, left(series, &after)];
     Ok(Search { found, before, after, left, null })
 }
 
@@ -161,8 +160,4 @@ fn drop_one(
         }
     }
     Ok(None)
-}
-
-fn rows(series: &Series, system: &System) -> Vec<f64> {
-    system.left().iter().take(series.recorded.len()).copied().collect()
 }

@@ -126,14 +126,14 @@ pub(crate) fn all(channels: usize) -> Vec<Term> {
 }
 
 impl Term {
-    /// Its value in every average under suspicion, 0 in the others; `predicted_w` is what the model says \[W\].
+    /// Its value in every average of power under suspicion, 0 in the others; `predicted_w` is what the model says \[W\].
     pub(crate) fn column(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
         let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
         let fastest_mps = robot.max_wheel_speed_mps;
         let acts = |a: &Average| {
             a.suspect
                 && match self.on {
-                    On::Both => true,
+                    On::Both => a.channel < 2,
                     On::Left => a.channel == 0,
                     On::Right => a.channel == 1,
                 }

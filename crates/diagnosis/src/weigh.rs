@@ -10,9 +10,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     candidates::{self, Candidate},
-    evidence::{Evidence, System},
-    noise::Noise,
-    nuisance,
+    evidence::{Evidence, Fitted, System},
     null::Null,
     series::{Applied, Average, Series},
 };
@@ -23,6 +21,11 @@ pub(crate) const BLOCK_S: f64 = 20.0;
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
     system_by(series, base, base, true, &[])
+}
+
+/// Whitened errors that nothing takes, average by average.
+pub(crate) fn left(series: &Series, base: &Baseline) -> Vec<f64> {
+    system(series, base).left().iter().take(series.recorded.len()).copied().collect()
 }
 
 /// The same beside columns that are fitted too.
@@ -42,26 +45,25 @@ pub(crate) fn misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
 }
 
 fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, beside: &[Vec<f64>]) -> System {
-    let (noise, about_w): (&Noise, &[f64]) = (&by.noise, &by.predicted_w);
-    let white = |values: &[f64]| noise.whiten(values, about_w, &series.averages);
-    let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white(c)).collect();
+    let white = by.whitening(series);
+    let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white.of(c)).collect();
     let mut offset: Vec<f64> = base.moved.iter().map(|m| -m).collect();
-    let mut nuisances = nuisance::columns(&series.averages, about_w);
     if series.has_healthy() {
-        nuisances.push(base.delays[1].clone());
+        columns.push(white.of(&base.delays[1]));
     }
     if delayed {
-        nuisances.push(base.delays[0].clone());
+        columns.push(white.of(&base.delays[0]));
     }
-    offset.extend(vec![0.0; nuisances.len()]);
-    columns.extend(nuisances.iter().map(|c| white(c)));
     let mut known = vec![1.0; columns.len()];
     // Of what stands beside nothing is known before.
-    columns.extend(beside.iter().map(|c| white(c)));
-    offset.extend(vec![0.0; beside.len()]);
-    known.extend(vec![0.0; beside.len()]);
-    let errors = white(&differences(&series.recorded, &base.predicted_w));
-    System::new(errors, &columns, &known, &offset, blocks(series))
+    columns.extend(beside.iter().map(|c| white.of(c)));
+    known.resize(columns.len(), 0.0);
+    offset.resize(columns.len(), 0.0);
+    let shared: Vec<Vec<f64>> = by.shared.iter().map(|c| white.of(c)).collect();
+    let errors = white.of(&differences(&series.recorded, &base.predicted_w));
+    let channel: Vec<usize> = series.averages.iter().map(|a| a.channel).collect();
+    let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &shared };
+    System::new(errors, &fitted, &channel, blocks(series))
 }
 
 /// Blocks of neighbouring averages of a drive; channels of the same time share one.
@@ -100,12 +102,12 @@ pub(crate) fn weigh_all(
     let name = |candidate: &Candidate| candidate.applied.mechanism.name();
     let mut tried: BTreeMap<&str, u32> = BTreeMap::new();
     candidates.iter().for_each(|candidate| *tried.entry(name(candidate)).or_default() += 1);
-    let white = |values: &[f64]| base.noise.whiten(values, &base.predicted_w, &series.averages);
+    let white = base.whitening(series);
     let blocks = all_fitted.blocks();
     let mut weighed: Vec<Weighed> = candidates
         .into_par_iter()
         .filter_map(|candidate| {
-            let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| white(c)).collect();
+            let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| white.of(c)).collect();
             let is_delay = name(&candidate) == "clock_offset";
             let evidence = (if is_delay { &delay_apart } else { &all_fitted }).weigh(&columns)?;
             if !is_plausible(&base.robot, &candidate, &evidence)

@@ -8,6 +8,9 @@ use crate::{
 /// ρ of the standard atmosphere at sea level and 15 °C (ISO 2533) [kg/m³].
 const AIR_KG_PER_M3: f64 = 1.225;
 
+/// Drag areas that a robot may have, in areas between its wheels: a mast and a tarpaulin on a small robot.
+const MOST_FOOTPRINTS: f64 = 4.0;
+
 /// Air that stands or moves against the robot.
 pub(super) struct Wind;
 
@@ -26,6 +29,13 @@ impl Mechanism for Wind {
             Parameter { name: "east_mps", unit: "m/s", bounds: [-25.0, 25.0], probe: 0.1 },
             Parameter { name: "north_mps", unit: "m/s", bounds: [-25.0, 25.0], probe: 0.1 },
         ]
+    }
+
+    /// A body of several times the footprint is no robot's.
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        let [low, high] = self.parameters()[parameter].bounds;
+        let most_m2 = MOST_FOOTPRINTS * robot.track_m * robot.wheelbase_m;
+        if parameter == 0 { [low, high.min(most_m2)] } else { [low, high] }
     }
 
     fn equation(&self) -> &'static str {
