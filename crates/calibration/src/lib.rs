@@ -37,5 +37,5 @@ pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, c
 pub use drives::Drives;
 pub use error::Error;
 pub use method::Method;
-pub use predict::{PredictedDrives, Prediction, RunPrediction, predict, predict_watched};
+pub use predict::{PredictedDrives, Prediction, RunPrediction, predict, predict_watched, with_powers};
 pub use stuck::{SlipTrack, slip_track};

@@ -2,7 +2,7 @@
 
 use model::{Power, PowerKernel, Robot, Sides};
 use rayon::prelude::*;
-use recording::{PowerForm, Recording, Watch};
+use recording::{Channel, PowerForm, Recording, Watch};
 use serde::Serialize;
 
 use crate::{
@@ -97,7 +97,9 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
         let row = &drives.rows[i];
         let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
         let recorded_w = match amperes {
-            Some(amperes) => watts_of_currents(robot, row, reading(robot, amperes, row, power), read),
+            Some(amperes) => {
+                watts_of_currents(robot, row, reading(robot, amperes, row, power), read).iter().sum()
+            }
             None => read(0) + read(1),
         };
         (seen_w(robot, form, row, power).iter().sum::<f64>(), recorded_w)
@@ -120,6 +122,36 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
     Ok(PredictedDrives { prediction: Prediction { runs, total }, drives, predicted_w, recorded_w })
 }
 
+/// The same drives with the power that eq. 2 makes of recorded motor currents, for whoever compares powers; a recording that tells
+/// its power stays as it is.
+///
+/// Currents come without a sign: theirs is that of the force which the robot needs as its file has it.
+///
+/// # Errors
+/// As [`predict_watched()`].
+pub fn with_powers(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Recording, Error> {
+    if recording.power_form() != Some(PowerForm::MotorCurrents) {
+        return Ok(recording.clone());
+    }
+    let amperes = amperes(robot)?;
+    let drives = Drives::watched(robot, recording, watch)?.including_stuck();
+    let watts = by_row(&drives, robot, |i, power| {
+        let row = &drives.rows[i];
+        let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
+        watts_of_currents(robot, row, reading(robot, amperes, row, power), read)
+    })?;
+    let mut recording = recording.clone();
+    for (side, (current, power)) in
+        [(Channel::LeftMotorCurrent, Channel::LeftPower), (Channel::RightMotorCurrent, Channel::RightPower)]
+            .into_iter()
+            .enumerate()
+    {
+        recording.channels.remove(&current);
+        recording.channels.insert(power, watts.iter().map(|watts| watts[side]).collect());
+    }
+    Ok(recording)
+}
+
 fn amperes(robot: &Robot) -> Result<Sides<f64>, Error> {
     match (robot.motors.left.force_n_per_a, robot.motors.right.force_n_per_a) {
         (Some(left), Some(right)) => Ok(Sides { left, right }),
@@ -137,16 +169,16 @@ fn reading(robot: &Robot, amperes: Sides<f64>, row: &Row, power: &Power) -> Side
     })
 }
 
-/// The power that eq. 2 makes of recorded currents \[W\].
+/// The power that eq. 2 makes of recorded currents, left and right \[W\].
 fn watts_of_currents(
     robot: &Robot,
     row: &Row,
     force_n_per_a: Sides<f64>,
     read: impl Fn(usize) -> f64,
-) -> f64 {
+) -> [f64; 2] {
     let force_n = Sides { left: force_n_per_a.left * read(0), right: force_n_per_a.right * read(1) };
     let power = side_power(robot, row, force_n);
-    seen_w(robot, PowerForm::MotorCurrents, row, &power).iter().sum()
+    seen_w(robot, PowerForm::MotorCurrents, row, &power)
 }
 
 /// One-second averages of predicted and recorded current, side by side \[A\].

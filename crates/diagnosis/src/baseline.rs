@@ -38,16 +38,22 @@ pub(crate) struct Baseline {
 const STEPS: usize = 5;
 
 impl Baseline {
-    /// Fits the knobs, with mechanisms acting.
+    /// Fits the knobs, with mechanisms acting. While none does, only drives that nothing is missing from are fitted: a strong
+    /// effect would otherwise be shared out between the robot and the noise.
     ///
     /// # Errors
     /// A surface that the robot does not know.
     pub(crate) fn fit(series: &Series, file: &Robot, applied: &[Applied]) -> Result<Self, Error> {
         let knobs = Knob::of(file, &series.surfaces(), series.sees_battery());
+        let trusted = series.is_trusted();
+        let fitted = if applied.is_empty() { trusted.clone() } else { vec![true; trusted.len()] };
         let mut robot = file.clone();
         let mut predicted_w = series.predict(&robot, applied)?;
-        let mut noise =
-            Noise::of(&differences(&series.recorded, &predicted_w), &predicted_w, &series.averages);
+        let noise_of = |predicted_w: &[f64]| {
+            let errors_w = differences(&series.recorded, predicted_w);
+            Noise::of(&errors_w, predicted_w, &series.averages, &trusted)
+        };
+        let mut noise = noise_of(&predicted_w);
         let mut columns = Vec::new();
         for step in 0..STEPS {
             columns = columns_of(series, &robot, &knobs, applied, &predicted_w)?;
@@ -55,13 +61,14 @@ impl Baseline {
                 break;
             }
             let errors = differences(&series.recorded, &predicted_w);
-            let moves = solve(series, &knobs, file, &robot, (&errors, &predicted_w, &columns), &noise);
+            let moves =
+                solve(series, &knobs, file, &robot, (&errors, &predicted_w, &columns), &noise, &fitted);
             for (knob, by) in knobs.iter().zip(&moves) {
                 let value = knob.value(&robot) + by.clamp(-3.0, 3.0) * knob.sigma;
                 knob.set(&mut robot, value);
             }
             predicted_w = series.predict(&robot, applied)?;
-            noise = Noise::of(&differences(&series.recorded, &predicted_w), &predicted_w, &series.averages);
+            noise = noise_of(&predicted_w);
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
@@ -133,13 +140,15 @@ fn solve(
     robot: &Robot,
     (errors, predicted_w, columns): (&[f64], &[f64], &[Vec<f64>]),
     noise: &Noise,
+    fitted: &[bool],
 ) -> Vec<f64> {
     let count = knobs.len();
     let white = noise.whitening(predicted_w, &series.averages);
     let errors = white.of(errors);
     let columns: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
     // Errors beyond three sigma count linearly.
-    let weight: Vec<f64> = errors.iter().map(|e| (3.0 / e.abs().max(1e-9)).min(1.0)).collect();
+    let weight = |(e, fitted): (&f64, &bool)| if *fitted { (3.0 / e.abs().max(1e-9)).min(1.0) } else { 0.0 };
+    let weight: Vec<f64> = errors.iter().zip(fitted).map(weight).collect();
     let mut square = nalgebra::DMatrix::<f64>::identity(count, count);
     let mut right = nalgebra::DVector::<f64>::zeros(count);
     for j in 0..count {

@@ -1,7 +1,8 @@
 //! A diagnosis from beginning to end.
 
+use calibration::with_powers;
 use model::Robot;
-use recording::{Channel, Recording, Watch, unwatched};
+use recording::{Channel, PowerForm, Recording, Watch, unwatched};
 
 use crate::{
     Error,
@@ -25,7 +26,7 @@ use crate::{
 };
 
 /// Driving that a diagnosis needs [s]: six blocks, the visits that evidence takes.
-const NEEDED_S: usize = 6 * BLOCK_S as usize;
+pub(crate) const NEEDED_S: usize = 6 * BLOCK_S as usize;
 /// Share of held-out errors that may be explainable where nothing is missing.
 const LITTLE: f64 = 0.06;
 /// Share of what was explainable before that may remain so.
@@ -37,6 +38,9 @@ const MISFIT: f64 = 0.015;
 /// What a diagnosis without healthy drives has to say of itself.
 const ALONE: &str = "without drives known to be healthy (`--reference`) only what sets in during a drive or grows with time can be \
      told; what acts all the time looks like what the model itself misses";
+
+/// What a diagnosis of motor currents has to say of itself.
+const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
 
 /// What a finding outside the list has to say of itself.
 const OUTSIDE: &str = "what is outside the list is described, not understood: no robot's file can hold it, and the corrected \
@@ -70,6 +74,10 @@ pub fn diagnose_watched(
     watch: &Watch,
 ) -> Result<Diagnosis, Error> {
     progress("preparing the drives", 0.0);
+    let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
+    let suspect = &with_powers(robot, suspect, watch)?;
+    let healthy = healthy.map(|healthy| with_powers(robot, healthy, watch)).transpose()?;
+    let healthy = healthy.as_ref();
     let series = Series::watched(robot, suspect, healthy, watch)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
@@ -95,6 +103,9 @@ pub fn diagnose_watched(
     doubts.append(&mut notes);
     if healthy.is_none() {
         doubts.push(ALONE.to_owned());
+    }
+    if by_current {
+        doubts.push(BY_CURRENT.to_owned());
     }
     let findings = judged.findings(&series, &found);
     if !judged.discovered.is_empty() {
@@ -216,7 +227,7 @@ impl Judged {
             return Ok(Vec::new());
         }
         let after = &found.after;
-        let variance = |i: usize| after.noise.sigma(series.averages[i].channel, after.predicted_w[i]).powi(2);
+        let variance = |i: usize| after.noise.sigma(&series.averages[i], after.predicted_w[i]).powi(2);
         let errors_w = self.steps.last().map_or(&[][..], |step| &step.errors_w);
         let excess: Vec<f64> = if found.found.is_empty() {
             errors_w.iter().enumerate().map(|(i, e)| e * e / variance(i) - 1.0).collect()
@@ -271,7 +282,7 @@ fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
 /// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].
 fn floor_w(series: &Series, base: &Baseline) -> f64 {
     let counts = (0..series.averages.len()).filter(|i| series.averages[*i].suspect && series.is_power(*i));
-    let fresh = |i: usize| base.noise.fresh_sigma(series.averages[i].channel, base.predicted_w[i]).powi(2);
+    let fresh = |i: usize| base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]).powi(2);
     let squares: Vec<f64> = counts.map(fresh).collect();
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }

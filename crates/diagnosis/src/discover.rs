@@ -85,7 +85,7 @@ fn strongest(
         .into_par_iter()
         .filter_map(|i| {
             let evidence = system.weigh(&[white.of(&columns[i])])?;
-            let (wald, chance) = judged(&evidence, null.discount(UNKNOWN, blocks), blocks)?;
+            let (wald, chance) = judged(&evidence, UNKNOWN, null, blocks)?;
             let p_value = (chance * terms.len() as f64).min(1.0);
             // Each further group is a further choice.
             let cost = (1 + terms[i].groups.len()) as f64 * (blocks as f64).ln();

@@ -203,7 +203,8 @@ mod tests {
         let of = |a: &Average| size_w * (1.4 * (2.0 * a.input.rim_mps + a.input.difference_mps).sin());
         let errors: Vec<f64> = averages.iter().map(|a| of(a) + normal()).collect();
         let predicted = vec![100.0; averages.len()];
-        let white = Noise::of(&errors, &predicted, averages).whitening(&predicted, averages);
+        let white = Noise::of(&errors, &predicted, averages, &vec![true; averages.len()])
+            .whitening(&predicted, averages);
         let beside = Whitened { errors: white.of(&errors), columns: Vec::new(), white: &white };
         let learnt = Discrepancy::learn(averages, &[100.0, 100.0], &beside);
         learnt.channels[0].share

@@ -1,7 +1,8 @@
 //! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
 
+use calibration::Drives;
 use model::Robot;
-use recording::{Channel, Recording};
+use recording::{Channel, Recording, Run};
 
 use crate::{Error, baseline::Baseline, series::Series};
 
@@ -44,6 +45,7 @@ pub(crate) fn doubts(
             given.ratio
         ));
     }
+    said.extend(stuck(robot, recording, series)?);
     for (knob, moved) in fitted.knobs.iter().zip(&fitted.moved) {
         if moved.abs() > FAR_SIGMAS {
             said.push(format!(
@@ -54,6 +56,27 @@ pub(crate) fn doubts(
         }
     }
     Ok(said)
+}
+
+/// Share of a drive in which wheels that turn alone are told.
+const OFTEN_STUCK: f64 = 0.05;
+
+/// Drives in which the wheels turn against each other and the robot does not, which no mechanism describes.
+fn stuck(robot: &Robot, recording: &Recording, series: &Series) -> Result<Option<String>, Error> {
+    let drives = Drives::watched(robot, recording, series.watch())?;
+    let share = |run: &Run| {
+        let rows = drives.rows.get(run.rows.clone()).unwrap_or_default();
+        rows.iter().filter(|row| row.stuck).count() as f64 / rows.len().max(1) as f64
+    };
+    let often = recording.runs.iter().map(|run| (share(run), run)).filter(|(share, _)| *share > OFTEN_STUCK);
+    let named: Vec<String> =
+        often.map(|(share, run)| format!("{:.0} % of {}", 100.0 * share, run.name)).collect();
+    Ok((!named.is_empty()).then(|| {
+        format!(
+            "the wheels turn against each other and the robot does not, in {}: they slip, and what they draw there goes into the ground",
+            named.join(", ")
+        )
+    }))
 }
 
 /// How predictions of the robot's file follow what was recorded.

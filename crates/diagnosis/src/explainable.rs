@@ -17,7 +17,7 @@ const RIDGES: [f64; 3] = [300.0, 1000.0, 3000.0];
 ///
 /// Errors count in sigma, but what a second tells of the next stays in: taking it out hides whatever lasts for a manoeuvre.
 pub(crate) fn explained_share(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
-    let sigma = |i: usize| base.noise.sigma(series.averages[i].channel, base.predicted_w[i]);
+    let sigma = |i: usize| base.noise.sigma(&series.averages[i], base.predicted_w[i]);
     let sigmas = (0..errors_w.len()).map(|i| errors_w[i] / sigma(i));
     let errors: Vec<f64> = sigmas.map(|z| z.clamp(-MOST_SIGMAS, MOST_SIGMAS)).collect();
     // Neighbouring blocks are judged by each other's fits, so that time itself may be followed.
@@ -73,7 +73,7 @@ fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
             let own = product.iter().zip(&series.averages);
             let own = own.zip(&base.predicted_w);
             let value = |((x, a), p): ((&f64, &Average), &f64)| {
-                if a.channel == channel { x / base.noise.sigma(channel, *p) } else { 0.0 }
+                if a.channel == channel { x / base.noise.sigma(a, *p) } else { 0.0 }
             };
             let column: Vec<f64> = own.map(value).collect();
             let size = (column.iter().map(|x| x * x).sum::<f64>() / column.len().max(1) as f64).sqrt();

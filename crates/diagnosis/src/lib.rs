@@ -36,6 +36,7 @@ mod polish;
 mod refitted;
 pub mod report;
 mod search;
+mod secant;
 mod series;
 mod term;
 mod weigh;

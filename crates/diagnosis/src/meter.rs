@@ -15,6 +15,8 @@ pub(crate) enum Meter {
     Rest,
     /// Speed over ground, from positions [m/s].
     Ground,
+    /// Yaw rate of the gyroscope [rad/s].
+    Yaw,
 }
 
 impl Meter {
@@ -22,9 +24,11 @@ impl Meter {
     pub(crate) fn of(form: PowerForm) -> Vec<Meter> {
         match form {
             PowerForm::Sides | PowerForm::MotorCurrents => {
-                vec![Meter::Left, Meter::Right, Meter::Rest, Meter::Ground]
+                vec![Meter::Left, Meter::Right, Meter::Rest, Meter::Ground, Meter::Yaw]
             }
-            PowerForm::Battery | PowerForm::CurrentAndVoltage => vec![Meter::Battery, Meter::Ground],
+            PowerForm::Battery | PowerForm::CurrentAndVoltage => {
+                vec![Meter::Battery, Meter::Ground, Meter::Yaw]
+            }
         }
     }
 
@@ -35,6 +39,7 @@ impl Meter {
             Meter::Right => 1,
             Meter::Rest => 2,
             Meter::Ground => 3,
+            Meter::Yaw => 4,
         }
     }
 

@@ -71,7 +71,7 @@ pub(crate) fn next_drive(
         let own_w = powers_w(best, figure, surface, by_side)?;
         let apart = |other: &Explanation| {
             let other_w = powers_w(other, figure, surface, by_side)?;
-            let differ = |c: usize| (own_w[c] - other_w[c]).abs() / noise.sigma(c, own_w[c]);
+            let differ = |c: usize| (own_w[c] - other_w[c]).abs() / noise.sigma_of(c, own_w[c]);
             let channel = if differ(1) > differ(0) { 1 } else { 0 };
             Some((differ(channel), own_w[channel] - other_w[channel], channel, other.name))
         };
@@ -184,7 +184,7 @@ mod tests {
         let averages: Vec<crate::Average> = (0..40).map(average).collect();
         // The median size of what is normal is 0.6745 of its width.
         let errors: Vec<f64> = (0..40).map(|i| if i % 4 < 2 { 0.6745 } else { -0.6745 }).collect();
-        Noise::of(&errors, &[10.0; 40], &averages)
+        Noise::of(&errors, &[10.0; 40], &averages, &[true; 40])
     }
 
     #[test]

@@ -6,6 +6,8 @@ use crate::series::Average;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Noise {
     channels: Vec<Scatter>,
+    /// By how much drives under suspicion scatter more, by channel.
+    suspect: Vec<f64>,
 }
 
 /// Variance floor² + (gain P)², with errors of neighbours correlated by ρ.
@@ -23,35 +25,56 @@ struct Scatter {
 const MOST_RHO: f64 = 0.95;
 
 impl Noise {
-    /// Measures the noise of errors about predictions, channel by channel.
-    pub(crate) fn of(errors: &[f64], predicted: &[f64], averages: &[Average]) -> Self {
+    /// Measures the noise of errors about predictions, channel by channel, on averages that are trusted.
+    ///
+    /// Others scatter as much, or more where they change more from one second to the next: their errors themselves may be what
+    /// is looked for.
+    pub(crate) fn of(errors: &[f64], predicted: &[f64], averages: &[Average], trusted: &[bool]) -> Self {
         let count = averages.iter().map(|a| a.channel + 1).max().unwrap_or(0);
-        let of = |channel: usize| {
-            let places: Vec<usize> =
-                (0..averages.len()).filter(|i| averages[*i].channel == channel).collect();
+        let of_channel =
+            |channel: usize| (0..averages.len()).filter(move |i| averages[*i].channel == channel);
+        let scatter = |channel: usize| {
+            let places: Vec<usize> = of_channel(channel).filter(|i| trusted[*i]).collect();
             Scatter::of(errors, predicted, averages, places)
         };
-        Noise { channels: (0..count).map(of).collect() }
+        let channels: Vec<Scatter> = (0..count).map(scatter).collect();
+        let jumps = |channel: usize, of_trusted: bool| {
+            let places =
+                of_channel(channel).filter(|i| *i > 0 && follows(averages, *i) && trusted[*i] == of_trusted);
+            let scaled = |i: usize| errors[i] / channels[channel].sigma(predicted[i]);
+            median(&mut places.map(|i| (scaled(i) - scaled(i - 1)).abs()).collect::<Vec<f64>>())
+        };
+        let more = |channel: usize| {
+            let (here, there) = (jumps(channel, false), jumps(channel, true));
+            if there > 0.0 { (here / there).max(1.0) } else { 1.0 }
+        };
+        let suspect = (0..count).map(more).collect();
+        Noise { channels, suspect }
     }
 
-    /// One-sigma scatter of a channel about a prediction.
-    pub(crate) fn sigma(&self, channel: usize, predicted: f64) -> f64 {
-        let Scatter { floor, gain, .. } = self.channels[channel];
-        floor.hypot(gain * predicted)
+    /// One-sigma scatter of a channel about a prediction, in drives that are trusted.
+    pub(crate) fn sigma_of(&self, channel: usize, predicted: f64) -> f64 {
+        self.channels[channel].sigma(predicted)
     }
 
-    /// What the average before does not tell of an error, one sigma of a channel about a prediction.
-    pub(crate) fn fresh_sigma(&self, channel: usize, predicted: f64) -> f64 {
-        (1.0 - self.channels[channel].rho.powi(2)).sqrt() * self.sigma(channel, predicted)
+    /// One-sigma scatter of an average about its prediction.
+    pub(crate) fn sigma(&self, average: &Average, predicted: f64) -> f64 {
+        let more = if average.suspect { self.suspect[average.channel] } else { 1.0 };
+        more * self.sigma_of(average.channel, predicted)
+    }
+
+    /// What the average before does not tell of an error, one sigma.
+    pub(crate) fn fresh_sigma(&self, average: &Average, predicted: f64) -> f64 {
+        (1.0 - self.channels[average.channel].rho.powi(2)).sqrt() * self.sigma(average, predicted)
     }
 
     /// Prepares what divides by the scatter about predictions and takes out what the average before tells.
     pub(crate) fn whitening(&self, predicted: &[f64], averages: &[Average]) -> Whitening {
         let of = |i: usize| {
             let rho = self.channels[averages[i].channel].rho;
-            let sigma = self.sigma(averages[i].channel, predicted[i]);
+            let sigma = self.sigma(&averages[i], predicted[i]);
             if i > 0 && follows(averages, i) {
-                [1.0 / sigma, rho / self.sigma(averages[i - 1].channel, predicted[i - 1])]
+                [1.0 / sigma, rho / self.sigma(&averages[i - 1], predicted[i - 1])]
             } else {
                 [(1.0 - rho * rho).sqrt() / sigma, 0.0]
             }
@@ -75,6 +98,10 @@ impl Whitening {
 }
 
 impl Scatter {
+    fn sigma(&self, predicted: f64) -> f64 {
+        self.floor.hypot(self.gain * predicted)
+    }
+
     /// Where power is lowest the floor shows, where it is highest the gain; medians, so that what mechanisms do now and then
     /// matters little.
     fn of(errors: &[f64], predicted: &[f64], averages: &[Average], mut places: Vec<usize>) -> Self {

@@ -27,11 +27,13 @@ pub(crate) struct Part {
     rest_w: Vec<f64>,
     /// Speed over ground by average; NaN where no positions were recorded [m/s].
     ground_mps: Vec<f64>,
+    /// Yaw rate by average; NaN where no gyroscope was recorded [rad/s].
+    yaw_rate_radps: Vec<f64>,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
-/// velocity over ground along the axes that headings count from [m/s].
-pub(crate) type Seen = [f64; 5];
+/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s].
+pub(crate) type Seen = [f64; 6];
 
 impl Part {
     pub(crate) fn new(
@@ -61,8 +63,12 @@ impl Part {
                 *speed_mps = f64::NAN;
             }
         }
+        let yaw_rate_radps = match recording.channel(Channel::YawRate) {
+            Some(yaw_rate_radps) => drives.averaged(yaw_rate_radps),
+            None => vec![f64::NAN; drives.averages.len()],
+        };
         let height_m = ground::heights_m(recording);
-        Ok(Part { heading_rad, height_m, began_s, rest_w, ground_mps, drives, suspect })
+        Ok(Part { heading_rad, height_m, began_s, rest_w, ground_mps, yaw_rate_radps, drives, suspect })
     }
 
     /// Whether enough of a quantity was recorded to be compared with: half of the drives.
@@ -78,6 +84,7 @@ impl Part {
             Meter::Right => self.drives.averaged(&self.drives.recorded[1]),
             Meter::Rest => known(&self.rest_w),
             Meter::Ground => known(&self.ground_mps),
+            Meter::Yaw => known(&self.yaw_rate_radps),
         }
     }
 
@@ -89,6 +96,7 @@ impl Part {
         match meter {
             Meter::Rest => of(&self.rest_w),
             Meter::Ground => of(&self.ground_mps),
+            Meter::Yaw => of(&self.yaw_rate_radps),
             Meter::Left | Meter::Right | Meter::Battery => values.to_vec(),
         }
     }
@@ -101,6 +109,7 @@ impl Part {
             Meter::Right => mean(1),
             Meter::Rest => mean(2),
             Meter::Ground => mean(3).iter().zip(mean(4)).map(|(x, y)| x.hypot(y)).collect(),
+            Meter::Yaw => mean(5),
         };
         self.told(meter, &all)
     }
@@ -253,7 +262,7 @@ impl Part {
         };
         let rest_w = if meters.contains(&Meter::Rest) { battery_w() - first_w - second_w } else { 0.0 };
         let (sin, cos) = self.heading_rad[i].sin_cos();
-        let speed_mps = moment.motion.speed_mps;
-        [first_w, second_w, rest_w, speed_mps * cos, speed_mps * sin]
+        let Motion { speed_mps, yaw_rate_radps, .. } = moment.motion;
+        [first_w, second_w, rest_w, speed_mps * cos, speed_mps * sin, yaw_rate_radps]
     }
 }

@@ -1,7 +1,7 @@
 //! Recorded drives as the model sees them: one-second averages of what was recorded, and of what would be with mechanisms.
 //!
 //! Power is what is to be explained. What the battery gives beyond both sides tells standing loads and faults of the meters
-//! apart, and the speed over ground tells slipping wheels from encoders that are wrong; either is used where it was recorded.
+//! apart, and speed over ground and yaw rate tell slipping wheels and encoders that are wrong; each is used where it was recorded.
 
 use std::sync::OnceLock;
 
@@ -43,8 +43,8 @@ pub struct Series {
 /// What one value is an average of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
-    /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, and 3 for
-    /// the speed over ground.
+    /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, 3 for the
+    /// speed over ground and 4 for the yaw rate.
     pub channel: usize,
     /// Which drive; drives under suspicion and healthy ones count on.
     pub run: usize,
@@ -134,6 +134,18 @@ impl Series {
     /// Number of channels of power.
     pub fn channels(&self) -> usize {
         self.meters.iter().filter(|meter| meter.is_power()).count()
+    }
+
+    /// Whether an average tells what the robot is like when nothing is missing: those of healthy drives, or all where no drive is
+    /// healthy, or where healthy ones did not see the same ground.
+    pub(crate) fn is_trusted(&self) -> Vec<bool> {
+        let grounds = |suspect: bool| -> Vec<&String> {
+            let parts = self.parts.iter().filter(|part| part.suspect == suspect);
+            parts.flat_map(|part| &part.drives.surfaces).collect()
+        };
+        let known = grounds(false);
+        let is_known = self.has_healthy() && grounds(true).iter().all(|name| known.contains(name));
+        self.averages.iter().map(|a| !(is_known && a.suspect)).collect()
     }
 
     /// Whether an average is of power, which is what a diagnosis explains.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use model::Robot;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -11,7 +12,9 @@ use crate::{
     baseline::{Baseline, differences},
     candidates::{self, Candidate},
     evidence::{Evidence, Fitted, System},
+    noise::Whitening,
     null::Null,
+    secant,
     series::{Applied, Average, Series},
 };
 
@@ -96,48 +99,99 @@ pub(crate) fn weigh_all(
     applied: &[Applied],
     null: &Null,
 ) -> Result<(Vec<Weighed>, usize), Error> {
-    let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
     let candidates = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
-    let all = candidates.len() as f64;
-    let name = |candidate: &Candidate| candidate.applied.mechanism.name();
-    let mut tried: BTreeMap<&str, u32> = BTreeMap::new();
-    candidates.iter().for_each(|candidate| *tried.entry(name(candidate)).or_default() += 1);
-    let white = base.whitening(series);
-    let blocks = all_fitted.blocks();
-    let mut weighed: Vec<Weighed> = candidates
-        .into_par_iter()
-        .filter_map(|candidate| {
-            let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| white.of(c)).collect();
-            let is_delay = name(&candidate) == "clock_offset";
-            let evidence = (if is_delay { &delay_apart } else { &all_fitted }).weigh(&columns)?;
-            if !is_plausible(&base.robot, &candidate, &evidence)
-                || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * series.row_s()
-            {
-                return None;
-            }
-            let count = columns.len() as f64;
-            let (wald, chance) = judged(&evidence, null.discount(name(&candidate), blocks), blocks)?;
-            let score = wald - count * (blocks as f64).ln();
-            let tried = tried.get(name(&candidate)).copied().unwrap_or(1);
-            Some(Weighed { candidate, evidence, tried, score, p_value: (chance * all).min(1.0) })
-        })
-        .collect();
+    let scales = Scales::new(series, base, null, &candidates);
+    let mut weighed: Vec<Weighed> = candidates.into_par_iter().filter_map(|one| scales.weigh(one)).collect();
+    best_of_each(&mut weighed);
+    // What is strong is not in proportion to what little of it does.
+    let closer: Vec<Option<Weighed>> = weighed
+        .par_iter()
+        .take(CLOSER)
+        .map(|one| secant::closer(series, base, applied, one, &|candidate| scales.weigh(candidate)))
+        .collect::<Result<_, _>>()?;
+    weighed.extend(closer.into_iter().flatten());
+    best_of_each(&mut weighed);
+    Ok((weighed, scales.all_fitted.blocks()))
+}
+
+/// Candidates that are looked at more closely.
+const CLOSER: usize = 6;
+
+/// Sorts candidates, best first, and keeps of each mechanism only its best.
+fn best_of_each(weighed: &mut Vec<Weighed>) {
     weighed.sort_by(|a, b| b.score.total_cmp(&a.score));
-    // Of each mechanism only its best.
     let mut names: Vec<&str> = Vec::new();
     weighed.retain(|w| {
         let is_new = !names.contains(&name(&w.candidate));
         names.push(name(&w.candidate));
         is_new
     });
-    Ok((weighed, blocks))
 }
 
-/// Discounted evidence, and the chance of as much.
-pub(crate) fn judged(evidence: &Evidence, discount: f64, blocks: usize) -> Option<(f64, f64)> {
-    let count = evidence.values.len() as f64;
-    let freedom = (blocks as f64 - count - 1.0).max(2.0);
-    let wald = evidence.wald / discount;
+fn name(candidate: &Candidate) -> &'static str {
+    candidate.applied.mechanism.name()
+}
+
+/// What candidates are weighed on.
+struct Scales<'a> {
+    series: &'a Series,
+    base: &'a Baseline,
+    null: &'a Null,
+    white: Whitening,
+    all_fitted: System,
+    delay_apart: System,
+    /// How many were tried, of each mechanism and in all.
+    tried: BTreeMap<&'static str, u32>,
+    all: f64,
+}
+
+impl<'a> Scales<'a> {
+    fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, candidates: &[Candidate]) -> Self {
+        let mut tried = BTreeMap::new();
+        candidates.iter().for_each(|candidate| *tried.entry(name(candidate)).or_default() += 1);
+        Scales {
+            series,
+            base,
+            null,
+            white: base.whitening(series),
+            all_fitted: system(series, base),
+            delay_apart: undelayed(series, base),
+            tried,
+            all: candidates.len() as f64,
+        }
+    }
+
+    /// What a candidate explains; `None` where that is nothing, or more than can be.
+    fn weigh(&self, candidate: Candidate) -> Option<Weighed> {
+        let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| self.white.of(c)).collect();
+        let is_delay = name(&candidate) == "clock_offset";
+        let evidence = (if is_delay { &self.delay_apart } else { &self.all_fitted }).weigh(&columns)?;
+        if !is_plausible(&self.base.robot, &candidate, &evidence)
+            || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * self.series.row_s()
+        {
+            return None;
+        }
+        let blocks = self.all_fitted.blocks();
+        let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
+        let score = wald - columns.len() as f64 * (blocks as f64).ln();
+        let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
+        Some(Weighed { candidate, evidence, tried, score, p_value: (chance * self.all).min(1.0) })
+    }
+}
+
+/// Evidence beyond what models miss of healthy drives, and the chance of as much.
+pub(crate) fn judged(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<(f64, f64)> {
+    let parameters = evidence.values.len();
+    let freedom = (blocks as f64 - parameters as f64 - 1.0).max(2.0);
+    let wald = match null.variance(name, parameters) {
+        Some(misfit) => {
+            let values = DVector::from_column_slice(&evidence.values);
+            let covariance = &evidence.covariance + DMatrix::from_diagonal(&DVector::from_vec(misfit));
+            values.dot(&(covariance.try_inverse()? * &values))
+        }
+        None => evidence.wald / null.discount(name, blocks),
+    };
+    let count = parameters as f64;
     Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
 }
 

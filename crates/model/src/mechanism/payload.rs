@@ -5,6 +5,9 @@ use crate::{
     mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
 };
 
+/// Share of a robot that may have been taken off: an arm, one of two batteries.
+const LEAST_SHARE: f64 = 0.3;
+
 /// A load that the robot carries and its file does not know of.
 pub(super) struct Payload;
 
@@ -21,11 +24,20 @@ impl Mechanism for Payload {
         &[Parameter { name: "mass_kg", unit: "kg", bounds: [-60.0, 400.0], probe: 1.0 }]
     }
 
+    /// A robot without three tenths of itself does not drive.
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        let [low, high] = self.parameters()[parameter].bounds;
+        [low.max(-LEAST_SHARE * robot.mass_kg), high]
+    }
+
     fn equation(&self) -> &'static str {
         "m = m_file + m_load"
     }
 
     fn statement(&self, values: &[f64]) -> String {
+        if values[0] < 0.0 {
+            return format!("the robot is {:.1} kg lighter than its file says", -values[0]);
+        }
         format!("the robot carries {:.1} kg that its file does not know of", values[0])
     }
 

@@ -1,0 +1,122 @@
+//! Traps for a diagnosis: differences that follow nothing, and drives of a real robot on other ground.
+
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use diagnosis::{Diagnosis, Verdict, diagnose};
+use model::Robot;
+use recording::{Channel, Recording, read_paths};
+use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
+
+/// A drive over gentle hills by one robot, whatever the seed.
+fn record(seed: u64, effects: Vec<Effect>) -> Recording {
+    let text = format!(r#"{{"terrain": {{"rolling": {{"grade": 0.03}}}}, "seed": {seed}, "robot_seed": 5}}"#);
+    let world = World { effects, ..World::from_json(&text).unwrap() };
+    let robot = serde_json::to_string(&model::builtin::husky_a200()).unwrap();
+    let drive = Drive::new(DriveKind::Rich, 600.0, seed);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    simulate(&world, &RobotFile::from_json(&robot).unwrap(), &drive)
+        .unwrap()
+        .write_csv(std::fs::File::create(&path).unwrap())
+        .unwrap();
+    read_paths(&[path], None).unwrap().0
+}
+
+fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {
+    diagnose(robot, suspect, Some(healthy), &|_, _| {}).unwrap()
+}
+
+fn names(found: &Diagnosis) -> Vec<&str> {
+    found.findings.iter().map(|finding| finding.mechanism.as_str()).collect()
+}
+
+/// Length of what is dealt [s], as long as the blocks that count as one piece of evidence.
+const BLOCK_ROWS: usize = 200;
+
+#[test]
+fn a_difference_is_named_and_the_same_dealt_anew_against_its_inputs_is_not() {
+    let robot = model::builtin::husky_a200();
+    let (healthy, plain) = (record(31, vec![]), record(32, vec![]));
+    let dragging = record(32, vec![Effect::new(EffectName::DrivetrainDrag, 12.0)]);
+    let found = said(&robot, &dragging, &healthy);
+    assert!(names(&found).contains(&"drivetrain_drag"), "{}", found.sentence);
+    // The same drive with the same noise: what differs is the drag.
+    let mut dealt = plain.clone();
+    for channel in [Channel::LeftPower, Channel::RightPower] {
+        let (with_w, without_w) = (dragging.channel(channel).unwrap(), plain.channel(channel).unwrap());
+        let blocks = without_w.len() / BLOCK_ROWS;
+        let power_w = dealt.channels.get_mut(&channel).unwrap();
+        for block in 0..blocks {
+            // Another block's drag, with one sign or the other, so that nothing is added on average.
+            let from = (block * 7 + 3) % blocks * BLOCK_ROWS;
+            let sign = if (block * 5 + block / 3) % 2 == 0 { 1.0 } else { -1.0 };
+            for row in 0..BLOCK_ROWS {
+                power_w[block * BLOCK_ROWS + row] += sign * (with_w[from + row] - without_w[from + row]);
+            }
+        }
+    }
+    let found = said(&robot, &dealt, &healthy);
+    assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+}
+
+/// The real recordings: beside the workspace, or where `JOULEPATH_RECORDINGS` says.
+fn real_recordings() -> Option<PathBuf> {
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    let folder = std::env::var_os("JOULEPATH_RECORDINGS").map_or(beside, PathBuf::from);
+    if folder.join("husky-flooring.csv").exists() {
+        return Some(folder);
+    }
+    eprintln!("SKIPPED: the real recordings are not in {}", folder.display());
+    None
+}
+
+/// Some drives of a real recording, without the name of the ground.
+fn unlabelled(folder: &Path, ground: &str, wanted: impl Fn(usize) -> bool) -> Recording {
+    let mut whole = read_paths(&[folder.join(format!("husky-{ground}.csv"))], None).unwrap().0;
+    whole.surface = None;
+    let runs: Vec<_> =
+        whole.runs.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, r)| r.clone()).collect();
+    let pick = |values: &[f64]| -> Vec<f64> {
+        runs.iter().flat_map(|run| values[run.rows.clone()].iter().copied()).collect()
+    };
+    let mut at = 0;
+    let moved = runs.iter().map(|run| {
+        let rows = at..at + run.rows.len();
+        at = rows.end;
+        recording::Run { rows, ..run.clone() }
+    });
+    let channels: BTreeMap<_, _> = whole.channels.iter().map(|(c, values)| (*c, pick(values))).collect();
+    Recording { t_s: pick(&whole.t_s), channels, runs: moved.collect(), ..Recording::default() }
+}
+
+#[test]
+fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
+    let Some(folder) = real_recordings() else { return };
+    let labelled = read_paths(&[folder.join("husky-flooring.csv")], None).unwrap().0;
+    let options = calibration::Options::default();
+    let mut robot = calibration::calibrate(&model::builtin::husky_a200(), &labelled, &options).unwrap().robot;
+    robot.default_surface = "flooring".into();
+    let flooring = unlabelled(&folder, "flooring", |_| true);
+    // Other drives on the same floor.
+    let (even, odd) =
+        (unlabelled(&folder, "flooring", |i| i % 2 == 0), unlabelled(&folder, "flooring", |i| i % 2 == 1));
+    let found = said(&robot, &odd, &even);
+    assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+    // On ice, where spinning takes 7 A instead of 19, skid friction is a fifth.
+    let found = said(&robot, &unlabelled(&folder, "ice", |_| true), &flooring);
+    assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
+    let skid_change = found.findings[0].parameters.iter().find(|p| p.name == "skid_change").unwrap();
+    assert!((-0.9..-0.6).contains(&skid_change.value), "{skid_change:?}");
+    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
+    assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
+    // On snow the wheels often turn and the robot does not.
+    let found = said(&robot, &unlabelled(&folder, "snow", |_| true), &flooring);
+    assert_ne!(found.verdict, Verdict::Consistent);
+    let stuck = found.notes.iter().find(|note| note.contains("the robot does not")).unwrap();
+    assert!(stuck.contains("100 % of snow-02") && stuck.contains("100 % of snow-04"), "{stuck}");
+}
