@@ -15,7 +15,8 @@ pub(crate) fn heights_m(recording: &Recording) -> Vec<f64> {
     heights_m.iter().map(|z| z - mean_m).collect()
 }
 
-/// Headings by row: recorded, or from the yaw rate or the wheels, beginning at 0 [rad].
+/// Headings by row: recorded, or from the yaw rate or the wheels, counted from east where positions tell it and else from where
+/// each run begins [rad].
 pub(crate) fn headings(recording: &Recording, drives: &Drives) -> Vec<f64> {
     if let Some(recorded) = recording.channel(Channel::Heading) {
         return recorded.to_vec();
@@ -35,7 +36,45 @@ pub(crate) fn headings(recording: &Recording, drives: &Drives) -> Vec<f64> {
             headings[i] = heading_rad;
         }
     }
+    for run in &recording.runs {
+        let from_east_rad = began_rad(recording, drives, &headings, run.rows.clone()).unwrap_or(0.0);
+        headings[run.rows.clone()].iter_mut().for_each(|heading_rad| *heading_rad += from_east_rad);
+    }
     headings
+}
+
+/// Steps along which positions tell a direction [m].
+const STEP_M: f64 = 0.5;
+/// Steps that a beginning is told from.
+const LEAST_STEPS: usize = 10;
+
+/// Heading at the beginning of a run: by how much the directions in which positions went are turned against headings that
+/// count from there. `None` where there are no positions, or too few apart.
+fn began_rad(
+    recording: &Recording,
+    drives: &Drives,
+    headings_rad: &[f64],
+    rows: std::ops::Range<usize>,
+) -> Option<f64> {
+    let (x_m, y_m) = (recording.channel(Channel::X)?, recording.channel(Channel::Y)?);
+    let (mut sin, mut cos, mut steps) = (0.0, 0.0, 0);
+    let mut last: Option<usize> = None;
+    for i in rows.filter(|i| x_m[*i].is_finite() && y_m[*i].is_finite()) {
+        let start = *last.get_or_insert(i);
+        let (along_m, up_m) = (x_m[i] - x_m[start], y_m[i] - y_m[start]);
+        if along_m.hypot(up_m) < STEP_M {
+            continue;
+        }
+        last = Some(i);
+        let between = (start + i) / 2;
+        // Backwards, the robot goes against its heading.
+        let sign = drives.rows[between].speed_mps().signum();
+        let turned_rad = (sign * up_m).atan2(sign * along_m) - headings_rad[between];
+        if turned_rad.is_finite() {
+            (sin, cos, steps) = (sin + turned_rad.sin(), cos + turned_rad.cos(), steps + 1);
+        }
+    }
+    (steps >= LEAST_STEPS).then(|| sin.atan2(cos))
 }
 
 /// Speeds over ground by average, from the positions at its ends; NaN where there are none, or where they jump [m/s].
@@ -56,4 +95,45 @@ pub(crate) fn speeds_mps(robot: &Robot, recording: &Recording, drives: &Drives) 
         if speed_mps > JUMP * robot.max_wheel_speed_mps { f64::NAN } else { speed_mps }
     };
     drives.averages.iter().map(speed_mps).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn positions_tell_where_a_drive_headed_when_it_began() {
+        // Forwards along an arc that begins towards north-west, at 10 Hz, then back along it.
+        let began_rad = 2.4;
+        let (turn_radps, speed_mps) = (0.05, 0.5);
+        let rows = 600;
+        let at = |i: usize| 0.1 * if i < rows / 2 { i as f64 } else { (rows - i) as f64 };
+        let way = |f: fn(f64) -> f64, g: fn(f64) -> f64| -> Vec<f64> {
+            let place = |i: usize| {
+                let turned_rad = turn_radps * at(i);
+                speed_mps / turn_radps * (f(began_rad + turned_rad) - f(began_rad)) * g(1.0)
+            };
+            (0..rows).map(place).collect()
+        };
+        let sign = |i: usize| if i < rows / 2 { 1.0 } else { -1.0 };
+        let column = |value: f64| -> Vec<f64> { (0..rows).map(|i| sign(i) * value).collect() };
+        let channels = BTreeMap::from([
+            (Channel::X, way(f64::sin, |one| one)),
+            (Channel::Y, way(f64::cos, |one| -one)),
+            (Channel::LeftSpeed, column(speed_mps)),
+            (Channel::RightSpeed, column(speed_mps)),
+            (Channel::YawRate, column(turn_radps)),
+            (Channel::LeftPower, vec![30.0; rows]),
+            (Channel::RightPower, vec![30.0; rows]),
+        ]);
+        let t_s = (0..rows).map(|i| 0.1 * i as f64).collect();
+        let runs = vec![recording::Run { name: "arc".into(), rows: 0..rows, gap_s: 0.5, start_unix_s: None }];
+        let recording = Recording { t_s, channels, runs, ..Recording::default() };
+        let drives = Drives::new(&model::builtin::husky_a200(), &recording).unwrap();
+        let headings = headings(&recording, &drives);
+        assert!((headings[0] - began_rad).abs() < 0.02, "{}", headings[0]);
+        assert!((headings[300] - began_rad - turn_radps * 30.0).abs() < 0.02, "{}", headings[300]);
+    }
 }
