@@ -76,6 +76,36 @@ fn a_calibrated_robot_predicts_better_than_its_file_and_level_straights_do_not_t
 }
 
 #[test]
+fn friction_far_from_that_of_the_file_is_found_from_any_file() {
+    let mut random = seeded(3);
+    let with = |mu_roll: f64, mu_skid: f64, slip_angle_scale_rad: f64| {
+        let mut robot = file();
+        let marble = robot.surfaces.get_mut("marble").unwrap();
+        (marble.mu_roll, marble.mu_skid) = (mu_roll, mu_skid);
+        marble.slip_angle_scale_rad = slip_angle_scale_rad;
+        // Returned power and standing loads are at their bounds, where a search may stand still.
+        robot.motors.regeneration = 1.0;
+        (robot.drive_electronics_w, robot.hotel_power_w) = (0.0, 0.0);
+        robot.uncertainty.mu_roll = 1.0;
+        robot.uncertainty.mu_skid = 1.0;
+        robot
+    };
+    let truth = with(0.085, 0.284, 0.03);
+    let plain = drives(&mut random, RUNS, 4 * ROWS);
+    let recording = with_power(&truth, plain, &mut random);
+    for start in [with(0.063, 0.29, 0.05), with(0.08, 0.31, 0.03), with(0.12, 0.5, 0.30)] {
+        let found = calibrate(&start, &recording, &Options::default()).unwrap().robot;
+        let of = |robot: &Robot| {
+            let marble = &robot.surfaces["marble"];
+            [marble.mu_roll, marble.mu_skid, marble.slip_angle_scale_rad]
+        };
+        for (found, true_value) in of(&found).into_iter().zip(of(&truth)) {
+            assert!((found / true_value - 1.0).abs() < 0.15, "{found} instead of {true_value}");
+        }
+    }
+}
+
+#[test]
 fn the_papers_procedure_gives_the_coefficients_of_the_printed_form_back() {
     let mut random = Pcg64Mcg::new(3);
     let robot = builtin::husky_a200();

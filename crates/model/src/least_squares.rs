@@ -61,7 +61,8 @@ pub fn nonlinear<E: std::error::Error + 'static>(
         lower: DVector::zeros(range.len()),
         upper: DVector::repeat(range.len(), 1.0),
     };
-    let scaled = (0..range.len()).map(|i| (start[i] - lower[i]) / range[i]);
+    let inside = |z: f64| z.clamp(INSIDE, 1.0 - INSIDE);
+    let scaled = (0..range.len()).map(|i| inside((start[i] - lower[i]) / range[i]));
     let initial = PointState::new(DVector::from_iterator(range.len(), scaled));
     // The solver's own test, on the gradient, depends on the units of the residuals and often never holds.
     let solver = BoundedLevenbergMarquardt::new().with_relative_cost_change_tolerance(COST_CHANGE);
@@ -101,6 +102,9 @@ pub fn jacobian<E>(
 /// them a parameter's thirtieth of a sigma.
 const COST_CHANGE: f64 = 1e-8;
 const MAX_ITERATIONS: u64 = 200;
+/// Share of its range by which every parameter starts within its bounds. Steps grow with the distance from bounds: of a parameter
+/// that starts on one they are so short that the search takes its standstill for the end.
+const INSIDE: f64 = 0.01;
 /// Step of the central differences, as a fraction of a parameter's range: near the cube root of the rounding.
 const DIFFERENCE_STEP: f64 = 1e-5;
 
