@@ -106,9 +106,11 @@ fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
     let (even, odd) =
         (unlabelled(&folder, "flooring", |i| i % 2 == 0), unlabelled(&folder, "flooring", |i| i % 2 == 1));
     let found = said(&robot, &odd, &even);
+    say("flooring", &found);
     assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
     // On ice, where spinning takes 7 A instead of 19, skid friction is a fifth.
     let found = said(&robot, &unlabelled(&folder, "ice", |_| true), &flooring);
+    say("ice", &found);
     assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
     let skid_change = found.findings[0].parameters.iter().find(|p| p.name == "skid_change").unwrap();
     assert!((-0.9..-0.6).contains(&skid_change.value), "{skid_change:?}");
@@ -116,7 +118,20 @@ fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
     assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
     // On snow the wheels often turn and the robot does not.
     let found = said(&robot, &unlabelled(&folder, "snow", |_| true), &flooring);
+    say("snow", &found);
     assert_ne!(found.verdict, Verdict::Consistent);
     let stuck = found.notes.iter().find(|note| note.contains("the robot does not")).unwrap();
     assert!(stuck.contains("100 % of snow-02") && stuck.contains("100 % of snow-04"), "{stuck}");
+    say("sandy loam", &said(&robot, &unlabelled(&folder, "sandy-loam", |_| true), &flooring));
+}
+
+fn say(ground: &str, found: &Diagnosis) {
+    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
+    let floor_w = found.baseline.noise_floor_w;
+    eprintln!(
+        "{ground}: {:?}: {} Held out {before_w:.1} W before, {after_w:.1} W after, {floor_w:.1} W is noise. {}",
+        found.verdict,
+        found.sentence,
+        found.notes.join("; ")
+    );
 }
