@@ -69,7 +69,7 @@ fn fitted(
         if best.as_ref().is_none_or(|(wald, _)| evidence.wald > *wald) {
             let mut applied = at.applied;
             for (parameter, value) in at.linear.iter().zip(&evidence.values) {
-                let [low, high] = mechanism.parameters()[*parameter].bounds;
+                let [low, high] = mechanism.bounds(&base.robot, *parameter);
                 applied.values[*parameter] = (applied.values[*parameter] + value).clamp(low, high);
             }
             best = Some((evidence.wald, applied));
