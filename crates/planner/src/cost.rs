@@ -15,6 +15,8 @@ const FRACTION_BITS: u32 = 11;
 const IMPLICIT: u32 = 1 << FRACTION_BITS;
 /// Bits of an f32's fraction that are dropped.
 const DROPPED_BITS: u32 = 23 - FRACTION_BITS;
+/// From here to twice as much, an f32's fraction counts the whole numbers.
+const ALL_FRACTION: f32 = (1 << 23) as f32;
 /// What an f32's exponent has more than the code's, which is 1 from 2048 units on.
 const EXPONENT_BIAS: i32 = (126 + FRACTION_BITS as i32) << FRACTION_BITS;
 /// Largest exponent of a code.
@@ -31,8 +33,10 @@ pub(crate) fn encode(units: f32) -> u16 {
     let bits = units.to_bits() as i32;
     let large = ((bits + ((1 << DROPPED_BITS) - 1)) >> DROPPED_BITS) - EXPONENT_BIAS;
     let is_small = units < IMPLICIT as f32;
-    let whole = if is_small { units as i32 } else { 0 };
-    let small = whole + i32::from((whole as f32) < units);
+    // Adding 2^23 leaves no bits for fractions. A cast to an integer would have to ask lane by lane whether it fits.
+    let near = (units + ALL_FRACTION) - ALL_FRACTION;
+    let up = if near < units { near + 1.0 } else { near };
+    let small = (up + ALL_FRACTION).to_bits() as i32 - ALL_FRACTION.to_bits() as i32;
     let code = if is_small { small } else { large };
     if code > LARGEST { FORBIDDEN } else { code as u16 }
 }

@@ -50,7 +50,7 @@ fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, mano
     let on = |manoeuvre: &Manoeuvre| {
         let (kernel, speed_mps) = (manoeuvre.kernel(), manoeuvre.motion().speed_mps.abs());
         let skid_n = kernel.skid_n * kernel.pull.left_of_skid(steepest);
-        let rims_mps = kernel.rim_speed_mps;
+        let rims_mps = manoeuvre.motion().rim_speeds_mps;
         let friction_w = (kernel.rolling_n.left - skid_n) * rims_mps.left
             + (kernel.rolling_n.right + skid_n) * rims_mps.right;
         let least_w = (floor * friction_w).max(0.0) + kernel.standing_w;

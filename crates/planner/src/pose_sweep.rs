@@ -163,7 +163,7 @@ fn below(costs: &[u32; TILE], others: &[u32; TILE]) -> u64 {
 }
 
 /// Compiled for wider registers too, and chosen by what the machine has; whole numbers are the same on every machine.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
 fn settle(sweep: &mut PoseSweep, codes: &CodesAround<'_>) {
     while sweep.pending.iter().any(|headings| *headings != 0) {
         for row in (0..TILE).chain((0..TILE).rev()) {

@@ -16,8 +16,29 @@ pub(crate) struct Pricing {
     pub(crate) lift_j_per_m: f32,
 }
 
-/// Values of a row of cells.
-pub(crate) type Lanes = [f32; TILE];
+/// Values of a row of cells, where no register straddles two lines of memory.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Lanes(pub(crate) [f32; TILE]);
+
+impl Lanes {
+    pub(crate) const ZERO: Self = Lanes([0.0; TILE]);
+}
+
+impl std::ops::Deref for Lanes {
+    type Target = [f32; TILE];
+    #[inline(always)]
+    fn deref(&self) -> &[f32; TILE] {
+        &self.0
+    }
+}
+
+impl std::ops::DerefMut for Lanes {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f32; TILE] {
+        &mut self.0
+    }
+}
 
 /// A step of a motion from a row of cells side by side.
 pub(crate) struct RowStep {
@@ -48,16 +69,16 @@ impl RowStep {
         height_m: &mut Lanes,
         costs: &mut Lanes,
     ) {
-        let mut rise_m = [0.0f32; TILE];
+        let mut rise_m = Lanes::ZERO;
         if !self.taps.is_empty() {
-            let mut end_m = [0.0f32; TILE];
+            let mut end_m = Lanes::ZERO;
             for (offset, weight) in &self.taps {
                 let z = window.lanes(&window.height_m, row, *offset);
                 for x in 0..TILE {
-                    end_m[x] += weight * z[x];
+                    end_m[x] = weight.mul_add(z[x], end_m[x]);
                 }
             }
-            for ((rise_m, end_m), height_m) in rise_m.iter_mut().zip(&end_m).zip(height_m.iter()) {
+            for ((rise_m, end_m), height_m) in rise_m.iter_mut().zip(end_m.iter()).zip(height_m.iter()) {
                 *rise_m = end_m - height_m;
             }
             *height_m = end_m;
@@ -83,29 +104,30 @@ impl RowStep {
 
     /// Grades along and across the heading, and their cosines; see `PreparedStep::drive` for the same in double.
     #[inline(always)]
-    fn ground(&self, rise_m: &Lanes, east: &Lanes, north: &Lanes) -> Ground {
+    fn ground(&self, rise_m: &Lanes, east: &[f32; TILE], north: &[f32; TILE]) -> Ground {
         let (cos, sin) = self.travel;
         let mut ground = Ground {
-            grade: [0.0; TILE],
-            side_grade: [0.0; TILE],
-            cos_pitch: [0.0; TILE],
-            cos_roll: [0.0; TILE],
+            grade: Lanes::ZERO,
+            side_grade: Lanes::ZERO,
+            cos_pitch: Lanes::ZERO,
+            cos_roll: Lanes::ZERO,
         };
         for x in 0..TILE {
-            ground.side_grade[x] = north[x] * cos - east[x] * sin;
+            ground.side_grade[x] = north[x].mul_add(cos, -(east[x] * sin));
         }
         if self.horizontal_m == 0.0 {
             for x in 0..TILE {
-                ground.grade[x] = east[x] * cos + north[x] * sin;
+                ground.grade[x] = east[x].mul_add(cos, north[x] * sin);
             }
         } else {
-            for (grade, rise_m) in ground.grade.iter_mut().zip(rise_m) {
+            for (grade, rise_m) in ground.grade.iter_mut().zip(rise_m.iter()) {
                 *grade = rise_m * self.per_horizontal_m;
             }
         }
         for x in 0..TILE {
-            ground.cos_pitch[x] = inverse_sqrt(1.0 + ground.grade[x] * ground.grade[x]);
-            ground.cos_roll[x] = inverse_sqrt(1.0 + ground.side_grade[x] * ground.side_grade[x]);
+            let (grade, side_grade) = (ground.grade[x], ground.side_grade[x]);
+            ground.cos_pitch[x] = inverse_sqrt(grade.mul_add(grade, 1.0));
+            ground.cos_roll[x] = inverse_sqrt(side_grade.mul_add(side_grade, 1.0));
         }
         ground
     }
@@ -113,27 +135,43 @@ impl RowStep {
     /// The cost of the step on one surface, infinite where limits forbid it.
     #[inline(always)]
     fn costs(&self, pricing: &Pricing, power: &PowerKernel<f32>, ground: &Ground, rise_m: &Lanes) -> Lanes {
-        // Copies that the compiler can keep in registers.
+        // Copies that the compiler can keep in registers, and short loops, in which the processor finds enough to do while
+        // it waits for roots.
         let (power, limits) = (*power, *pricing);
+        let (mut steepened, mut skid_n) = (Lanes::ZERO, Lanes::ZERO);
+        if power.steepening != 0.0 {
+            for x in 0..TILE {
+                steepened[x] = power.steepened(ground.cos_pitch[x] * ground.cos_roll[x]);
+            }
+        }
+        if power.skid_n != 0.0 {
+            for x in 0..TILE {
+                skid_n[x] = power.skid_left_n(self.facing * ground.side_grade[x]);
+            }
+        }
+        let (mut largest_n, mut bus_w) = (Lanes::ZERO, Lanes::ZERO);
+        for x in 0..TILE {
+            let along = self.facing * ground.grade[x] * ground.cos_pitch[x];
+            let tilt = self.facing * ground.side_grade[x];
+            let normal = ground.cos_pitch[x] * ground.cos_roll[x];
+            let force_n = power.forces_of_n(Grade { normal, along, tilt }, steepened[x], skid_n[x]);
+            largest_n[x] = force_n.left.abs().max(force_n.right.abs());
+            bus_w[x] = power.bus_w(power.side_w(force_n), along);
+        }
         let (per_j, per_m, per_s) = (pricing.per_j, pricing.per_m, pricing.per_s);
         let lift_j_per_m = if self.horizontal_m == 0.0 { 0.0 } else { pricing.lift_j_per_m };
-        let mut costs = [0.0; TILE];
+        let mut costs = Lanes::ZERO;
         for x in 0..TILE {
-            let (grade, cos_pitch) = (ground.grade[x], ground.cos_pitch[x]);
-            let along = self.facing * grade * cos_pitch;
-            let tilt = self.facing * ground.side_grade[x];
-            let length_m = self.horizontal_m * (1.0 + grade * grade) * cos_pitch;
-            let duration_s = length_m * self.s_per_m + self.on_the_spot_s;
-            let force_n = power.forces_n(Grade { normal: cos_pitch * ground.cos_roll[x], along, tilt });
-            let bus_w = power.bus_w(power.side_w(force_n), along);
-            let friction_j = bus_w * duration_s - lift_j_per_m * rise_m[x];
+            let grade = ground.grade[x];
+            let length_m = self.horizontal_m * grade.mul_add(grade, 1.0) * ground.cos_pitch[x];
+            let duration_s = length_m.mul_add(self.s_per_m, self.on_the_spot_s);
+            let friction_j = bus_w[x].mul_add(duration_s, -(lift_j_per_m * rise_m[x]));
             let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
-            let cost = per_j * friction_j + per_m * length_m + per_s * duration_s;
+            let cost = per_j.mul_add(friction_j, per_m.mul_add(length_m, per_s * duration_s));
             // Written so that a NaN of unknown ground fails too.
             let allowed = (grade.abs() <= limits.pitch_grade)
                 & (ground.side_grade[x].abs() <= limits.roll_grade)
-                & (force_n.left.abs() <= limits.side_force_n)
-                & (force_n.right.abs() <= limits.side_force_n);
+                & (largest_n[x] <= limits.side_force_n);
             costs[x] = if allowed { cost } else { f32::INFINITY };
         }
         costs
@@ -156,9 +194,10 @@ fn inverse_sqrt(x: f32) -> f32 {
     const GUESS: u32 = 0x5f37_59df;
     let half = 0.5 * x;
     let mut y = f32::from_bits(GUESS.wrapping_sub(x.to_bits() >> 1));
-    y *= 1.5 - half * y * y;
-    y *= 1.5 - half * y * y;
-    y * (1.5 - half * y * y)
+    for _ in 0..3 {
+        y *= (half * y).mul_add(-y, 1.5);
+    }
+    y
 }
 
 impl Chain {

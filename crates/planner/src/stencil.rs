@@ -1,6 +1,8 @@
 //! Steps of the lattice's motions in the order in which a field takes them.
 
-use crate::{displacement::Displacement, layout::TILE};
+use std::ops::Range;
+
+use crate::displacement::Displacement;
 
 /// Steps of the lattice's motions, by the row they end in.
 pub(crate) struct Stencil {
@@ -18,6 +20,10 @@ pub(crate) struct Stencil {
 pub(crate) struct RowSteps {
     pub(crate) rows: isize,
     pub(crate) steps: Vec<(usize, isize)>,
+    /// How far bits move, up or down, from the ends of a step to its origins, where both can lie in one tile.
+    shifts: Vec<(u32, u32)>,
+    /// Cells of the tile's row from which one of them ends west, and east, of the tile.
+    beyond: [u64; 2],
 }
 
 impl Stencil {
@@ -26,18 +32,20 @@ impl Stencil {
         let mut stencil = Stencil {
             reach: farthest.unwrap_or(0) as usize,
             across: Vec::new(),
-            along: [(); 2].map(|()| RowSteps { rows: 0, steps: Vec::new() }),
+            along: [(); 2].map(|()| RowSteps::new(0)),
             count: displacements.len(),
         };
         for (i, displacement) in displacements.iter().enumerate() {
             let (rows, step) = (displacement.rows as isize, (i, displacement.columns as isize));
             if rows == 0 {
-                stencil.along[usize::from(displacement.columns > 0)].steps.push(step);
+                stencil.along[usize::from(displacement.columns > 0)].push(step);
                 continue;
             }
-            match stencil.across.last_mut().filter(|last| last.rows == rows) {
-                Some(last) => last.steps.push(step),
-                None => stencil.across.push(RowSteps { rows, steps: vec![step] }),
+            if stencil.across.last().is_none_or(|last| last.rows != rows) {
+                stencil.across.push(RowSteps::new(rows));
+            }
+            if let Some(last) = stencil.across.last_mut() {
+                last.push(step);
             }
         }
         stencil
@@ -45,28 +53,42 @@ impl Stencil {
 }
 
 impl RowSteps {
+    fn new(rows: isize) -> Self {
+        RowSteps { rows, steps: Vec::new(), shifts: Vec::new(), beyond: [0; 2] }
+    }
+
+    fn push(&mut self, step: (usize, isize)) {
+        let by = step.1.unsigned_abs() as u32;
+        if by < u64::BITS {
+            self.shifts.push(if step.1 > 0 { (0, by) } else { (by, 0) });
+        }
+        let lowest = u64::MAX.checked_shr(u64::BITS.saturating_sub(by)).unwrap_or(0);
+        if step.1 < 0 {
+            self.beyond[Side::West as usize] |= lowest;
+        } else {
+            self.beyond[Side::East as usize] |= lowest.reverse_bits();
+        }
+        self.steps.push(step);
+    }
+
+    /// Places among all steps; steps into the same other row follow one another.
+    #[inline(always)]
+    pub(crate) fn all(&self) -> Range<usize> {
+        let first = self.steps.first().map_or(0, |(step, _)| *step);
+        first..first + self.steps.len()
+    }
+
     /// Cells of the tile's row from which one of the steps ends in a cell of a set.
+    #[inline(always)]
     pub(crate) fn origins(&self, ends: u64) -> u64 {
-        self.steps.iter().fold(0, |origins, (_, columns)| {
-            let by = columns.unsigned_abs() as u32;
-            let moved = if *columns > 0 { ends.checked_shr(by) } else { ends.checked_shl(by) };
-            origins | moved.unwrap_or(0)
-        })
+        // One of the two shifts is by nothing.
+        self.shifts.iter().fold(0, |origins, (up, down)| origins | ends.wrapping_shl(*up).wrapping_shr(*down))
     }
 
     /// Cells of the tile's row from which one of the steps ends west (east) of the tile.
+    #[inline(always)]
     pub(crate) fn origins_beyond(&self, side: Side) -> u64 {
-        let columns = self.steps.iter().map(|(_, columns)| columns);
-        let by = match side {
-            Side::West => columns.map(|c| -c).max(),
-            Side::East => columns.copied().max(),
-        };
-        let cells = by.unwrap_or(0).clamp(0, TILE as isize) as u32;
-        let lowest = 1u64.checked_shl(cells).unwrap_or(0).wrapping_sub(1);
-        match side {
-            Side::West => lowest,
-            Side::East => lowest.reverse_bits(),
-        }
+        self.beyond[side as usize]
     }
 }
 

@@ -166,14 +166,15 @@ impl Sweep {
                 continue;
             }
             let to = at as isize + steps.rows * self.width as isize;
-            for (step, columns) in &steps.steps {
-                let ends = self.costs[(to + columns) as usize..].first_chunk::<LANES>();
-                prefetch(soon, *step);
-                if let (Some(ends), Some(codes)) = (ends, least.get(*step)) {
-                    let costs = decode_lanes(codes);
-                    for x in 0..LANES {
-                        best[x] = best[x].min(ends[x] + costs[x]);
-                    }
+            let all = steps.all();
+            for (((_, columns), codes), soon) in steps.steps.iter().zip(&least[all.clone()]).zip(&soon[all]) {
+                prefetch(std::slice::from_ref(soon), 0);
+                let Some(ends) = self.costs[(to + columns) as usize..].first_chunk::<LANES>() else {
+                    continue;
+                };
+                let costs = decode_lanes(&codes.0);
+                for x in 0..LANES {
+                    best[x] = best[x].min(ends[x] + costs[x]);
                 }
             }
         }
@@ -187,7 +188,7 @@ impl Sweep {
 }
 
 /// Compiled for wider registers too, and chosen by what the machine has; whole numbers are the same on every machine.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
 fn settle(sweep: &mut Sweep, least: &[Lanes]) {
     while sweep.rows != 0 {
         let mut ahead = u64::MAX;

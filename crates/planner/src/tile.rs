@@ -123,20 +123,20 @@ impl TileKernel {
 const ROWS_BETWEEN_LOOKS: usize = 4;
 
 /// All chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
-/// is contracted, so the result is the same on every machine.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+/// is contracted but where the source says so, so the result is the same on every machine.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
 fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut [RowCodes]) {
     for (chain, codes) in kernel.chains.iter().zip(offered) {
-        let mut costs = [0.0; TILE];
+        let mut costs = Lanes::ZERO;
         chain.evaluate(kernel, window, row, &mut costs);
-        for (code, cost) in codes.iter_mut().zip(&costs) {
+        for (code, cost) in codes.iter_mut().zip(costs.iter()) {
             *code = encode(cost * kernel.units);
         }
     }
 }
 
 /// The cheapest variant of each motion.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
 fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCodes]) {
     slots.fill([FORBIDDEN; TILE]);
     for (chain, codes) in kernel.chains.iter().zip(offered) {
@@ -151,8 +151,8 @@ impl RowChain {
 
     #[inline(always)]
     fn evaluate(&self, kernel: &TileKernel, window: &Window, row: usize, costs: &mut Lanes) {
-        let mut height_m = *window.lanes(&window.height_m, row, (0, 0));
-        *costs = [0.0; TILE];
+        let mut height_m = Lanes(*window.lanes(&window.height_m, row, (0, 0)));
+        *costs = Lanes::ZERO;
         for step in &self.steps {
             step.evaluate(&kernel.pricing, window, row, &mut height_m, costs);
         }

@@ -1,6 +1,6 @@
 //! The codes of a tile, put together row by row.
 
-use std::sync::Arc;
+use std::{iter::repeat_n, sync::Arc};
 
 use multiversion::multiversion;
 
@@ -19,8 +19,10 @@ pub(crate) type RowCodes = [u16; TILE];
 pub(crate) const LANES: usize = 16;
 /// Groups of lanes in a row of a tile.
 pub(crate) const GROUPS: usize = TILE / LANES;
-/// Codes of one step from a group of lanes.
-pub(crate) type Lanes = [u16; LANES];
+/// Codes of one step from a group of lanes, within one line of memory.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub(crate) struct Lanes(pub(crate) [u16; LANES]);
 /// Least codes of a tile by row, group of lanes, displacement and lane, so that they are read in the order they lie in.
 pub(crate) type Least = Arc<[Lanes]>;
 /// States of a tile.
@@ -29,8 +31,8 @@ pub(crate) const TILE_STATES: usize = TILE_CELLS * HEADINGS;
 /// A tile in the making.
 pub(crate) struct TileBuilder<'d> {
     displacements: &'d [Displacement],
-    codes: Vec<u16>,
-    least: Vec<Lanes>,
+    codes: Codes,
+    least: Least,
 }
 
 impl<'d> TileBuilder<'d> {
@@ -38,26 +40,30 @@ impl<'d> TileBuilder<'d> {
     pub(crate) fn new(stride: usize, displacements: &'d [Displacement]) -> Self {
         TileBuilder {
             displacements,
-            codes: vec![FORBIDDEN; TILE_STATES * stride],
-            least: vec![[FORBIDDEN; LANES]; TILE * GROUPS * displacements.len()],
+            codes: repeat_n(FORBIDDEN, TILE_STATES * stride).collect(),
+            least: repeat_n(Lanes([FORBIDDEN; LANES]), TILE * GROUPS * displacements.len()).collect(),
         }
     }
 
     /// Stores the codes of a row of cells, given slot by slot.
     pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
-        let codes = &mut self.codes[row * TILE * slots.len()..][..TILE * slots.len()];
+        let (Some(codes), Some(least)) = (Arc::get_mut(&mut self.codes), Arc::get_mut(&mut self.least))
+        else {
+            unreachable!("a tile in the making is shared with nobody");
+        };
+        let codes = &mut codes[row * TILE * slots.len()..][..TILE * slots.len()];
         let steps = self.displacements.len();
-        let least = &mut self.least[row * GROUPS * steps..][..GROUPS * steps];
+        let least = &mut least[row * GROUPS * steps..][..GROUPS * steps];
         store_row(slots, codes, self.displacements, least);
     }
 
     /// Codes by quad of cells, heading, motion and cell, and the least by displacement and cell.
     pub(crate) fn finish(self) -> (Codes, Least) {
-        (self.codes.into(), self.least.into())
+        (self.codes, self.least)
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
 fn store_row(slots: &[RowCodes], codes: &mut [u16], displacements: &[Displacement], least: &mut [Lanes]) {
     let (codes, _) = codes.as_chunks_mut::<QUAD>();
     for (quad, codes) in codes.chunks_exact_mut(slots.len()).enumerate() {
@@ -68,7 +74,7 @@ fn store_row(slots: &[RowCodes], codes: &mut [u16], displacements: &[Displacemen
     let steps = displacements.len();
     for (i, least) in least.iter_mut().enumerate() {
         for &slot in &displacements[i % steps].slots {
-            lower(least, &slots[slot][i / steps * LANES..][..LANES]);
+            lower(&mut least.0, &slots[slot][i / steps * LANES..][..LANES]);
         }
     }
 }
