@@ -65,10 +65,15 @@ fn main() {
     let robot = builtin::husky_a200();
     for rows in [10_000, 1_000_000] {
         let recording = recording(rows);
-        let began = Instant::now();
-        let predicted = predict(&robot, &recording).unwrap();
-        println!("predict   {rows:>8} rows: {:.3} s", began.elapsed().as_secs_f64());
-        drop(predicted);
+        let mut times_s = [0.0; 9];
+        for time_s in &mut times_s {
+            let began = Instant::now();
+            let predicted = predict(&robot, &recording).unwrap();
+            *time_s = began.elapsed().as_secs_f64();
+            drop(predicted);
+        }
+        times_s.sort_by(f64::total_cmp);
+        println!("predict   {rows:>8} rows: {:.3} s, middle of {}", times_s[4], times_s.len());
         time_calibration("", &recording);
         time_calibration("by motor currents", &with_currents(recording));
     }

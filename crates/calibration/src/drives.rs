@@ -194,8 +194,8 @@ impl Drives {
     /// The same drives with stuck rows counted like any other.
     #[must_use]
     pub fn including_stuck(mut self) -> Drives {
-        if self.rows.iter().any(|row| row.stuck) {
-            self.rows.iter_mut().for_each(|row| row.stuck = false);
+        if self.rows.par_iter().any(|row| row.stuck) {
+            self.rows.par_iter_mut().for_each(|row| row.stuck = false);
             self.average();
         }
         self
@@ -225,17 +225,18 @@ impl Drives {
 }
 
 fn recorded(recording: &Recording, form: PowerForm) -> Vec<Vec<f64>> {
-    let column = |channel| recording.channel(channel).map(<[f64]>::to_vec).unwrap_or_default();
+    let column = |channel| recording.channel(channel).unwrap_or_default();
+    let copy = |channel| column(channel).par_iter().copied().collect();
     match form {
-        PowerForm::Sides => vec![column(Channel::LeftPower), column(Channel::RightPower)],
-        PowerForm::Battery => vec![column(Channel::Power)],
+        PowerForm::Sides => vec![copy(Channel::LeftPower), copy(Channel::RightPower)],
+        PowerForm::Battery => vec![copy(Channel::Power)],
         PowerForm::CurrentAndVoltage => {
             let (amperes, volts) = (column(Channel::Current), column(Channel::Voltage));
-            vec![amperes.iter().zip(&volts).map(|(i, v)| i * v).collect()]
+            vec![amperes.iter().zip(volts).map(|(i, v)| i * v).collect()]
         }
         // Many drivers report no sign, so none is relied on.
         PowerForm::MotorCurrents => [Channel::LeftMotorCurrent, Channel::RightMotorCurrent]
-            .map(|channel| column(channel).into_iter().map(f64::abs).collect())
+            .map(|channel| column(channel).par_iter().map(|a| a.abs()).collect())
             .to_vec(),
     }
 }

@@ -60,7 +60,7 @@ impl<'a> PowerModel<'a> {
             let ground = &ground[average.surface];
             drives.mean(average, |i| {
                 let row = &drives.rows[i];
-                wanted(row, &power(robot, ground, row, &shapes[i], grade[i]))
+                wanted(row, &power(robot, ground, row, motion(robot, row), &shapes[i], grade[i]))
             })
         };
         Ok(drives.averages.par_iter().with_min_len(LEAST_AVERAGES).map(mean).collect())
@@ -109,11 +109,33 @@ pub fn by_row<T: Send>(
     robot: &Robot,
     wanted: impl Fn(usize, &Power) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
+    Ok(each_row(drives, robot, &wanted)?.collect())
+}
+
+/// The same for two values of each row, as two columns.
+///
+/// # Errors
+/// As [`by_row`].
+pub(crate) fn columns_by_row(
+    drives: &Drives,
+    robot: &Robot,
+    wanted: impl Fn(usize, &Power) -> (f64, f64) + Sync,
+) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    each_row(drives, robot, &wanted)?.unzip_into_vecs(&mut first, &mut second);
+    Ok((first, second))
+}
+
+fn each_row<'a, T: Send>(
+    drives: &'a Drives,
+    robot: &'a Robot,
+    wanted: &'a (impl Fn(usize, &Power) -> T + Sync),
+) -> Result<impl IndexedParallelIterator<Item = T>, Error> {
     drives.go_on()?;
     let ground = ground(drives, robot)?;
     let surface = surface_of_rows(drives);
-    let value = |(i, row): (usize, &Row)| wanted(i, &ground[surface[i] as usize].power(robot, row));
-    Ok(drives.rows.par_iter().enumerate().map(value).collect())
+    let value = move |(i, row): (usize, &Row)| wanted(i, &ground[surface[i] as usize].power(robot, row));
+    Ok(drives.rows.par_iter().enumerate().map(value))
 }
 
 /// Surface of each row, an index into the drives' surfaces.
@@ -141,8 +163,9 @@ impl<'r> Ground<'r> {
 
     /// Power of one row.
     pub(crate) fn power(&self, robot: &Robot, row: &Row) -> Power {
-        let shape = FrictionShape::new(robot, self.surface.slip_angle_scale_rad, &motion(robot, row));
-        power(robot, self, row, &shape, grade(row))
+        let motion = motion(robot, row);
+        let shape = FrictionShape::new(robot, self.surface.slip_angle_scale_rad, &motion);
+        power(robot, self, row, motion, &shape, grade(row))
     }
 }
 
@@ -172,8 +195,14 @@ fn grade(row: &Row) -> Grade<f64> {
 
 /// The power of one row, by the model's one function.
 #[inline]
-fn power(robot: &Robot, ground: &Ground<'_>, row: &Row, shape: &FrictionShape, grade: Grade<f64>) -> Power {
-    let motion = motion(robot, row);
+fn power(
+    robot: &Robot,
+    ground: &Ground<'_>,
+    row: &Row,
+    motion: Motion,
+    shape: &FrictionShape,
+    grade: Grade<f64>,
+) -> Power {
     let acceleration = row.acceleration(robot);
     let adjustment = if ground.adjusted {
         let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };

@@ -1,5 +1,7 @@
 //! Predicted against recorded power, run by run.
 
+use std::ops::Range;
+
 use model::{Power, PowerKernel, Robot, Sides};
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
@@ -7,9 +9,9 @@ use serde::Serialize;
 
 use crate::{
     Drives, Error,
-    power::{PowerModel, by_row, seen_w},
+    power::{PowerModel, columns_by_row, seen_w},
     row::Row,
-    score::Score,
+    score::Tally,
 };
 
 /// How well one run, or all of them, was predicted.
@@ -88,12 +90,12 @@ pub fn predict_watched(
 }
 
 fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {
-    let stuck: Vec<bool> = drives.rows.iter().map(|row| row.stuck).collect();
+    let stuck: Vec<bool> = drives.rows.par_iter().map(|row| row.stuck).collect();
     // A prediction is judged on all of a drive; being stuck is part of it.
     let drives = drives.including_stuck();
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let amperes = (form == PowerForm::MotorCurrents).then(|| amperes(robot)).transpose()?;
-    let by_row = by_row(&drives, robot, |i, power| {
+    let (predicted_w, recorded_w) = columns_by_row(&drives, robot, |i, power| {
         let row = &drives.rows[i];
         let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
         let recorded_w = match amperes {
@@ -104,7 +106,6 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
         };
         (seen_w(robot, form, row, power).iter().sum::<f64>(), recorded_w)
     })?;
-    let (predicted_w, recorded_w): (Vec<f64>, Vec<f64>) = by_row.into_iter().unzip();
     let currents_a = match amperes {
         Some(amperes) => currents(robot, &drives, amperes)?,
         None => Vec::new(),
@@ -116,9 +117,9 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
         recorded_w: drives.averaged(&recorded_w),
         currents_a,
     };
-    let judge = |run: Option<usize>| judge(&drives, run, &predicted_w, &recorded_w, &stuck, &averages);
-    let (runs, total) =
-        rayon::join(|| order.par_iter().map(|run| judge(Some(*run))).collect(), || judge(None));
+    let judged = judge(&drives, &predicted_w, &recorded_w, &stuck, &averages);
+    let runs = order.iter().map(|run| judged[*run].named(drives.runs[*run].clone())).collect();
+    let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into());
     Ok(PredictedDrives { prediction: Prediction { runs, total }, drives, predicted_w, recorded_w })
 }
 
@@ -135,19 +136,18 @@ pub fn with_powers(robot: &Robot, recording: &Recording, watch: &Watch) -> Resul
     }
     let amperes = amperes(robot)?;
     let drives = Drives::watched(robot, recording, watch)?.including_stuck();
-    let watts = by_row(&drives, robot, |i, power| {
+    let (left_w, right_w) = columns_by_row(&drives, robot, |i, power| {
         let row = &drives.rows[i];
         let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
-        watts_of_currents(robot, row, reading(robot, amperes, row, power), read)
+        watts_of_currents(robot, row, reading(robot, amperes, row, power), read).into()
     })?;
     let mut recording = recording.clone();
-    for (side, (current, power)) in
-        [(Channel::LeftMotorCurrent, Channel::LeftPower), (Channel::RightMotorCurrent, Channel::RightPower)]
-            .into_iter()
-            .enumerate()
-    {
+    for (current, power, watts) in [
+        (Channel::LeftMotorCurrent, Channel::LeftPower, left_w),
+        (Channel::RightMotorCurrent, Channel::RightPower, right_w),
+    ] {
         recording.channels.remove(&current);
-        recording.channels.insert(power, watts.iter().map(|watts| watts[side]).collect());
+        recording.channels.insert(power, watts);
     }
     Ok(recording)
 }
@@ -208,52 +208,98 @@ struct Averages {
     currents_a: Vec<[Vec<f64>; 2]>,
 }
 
+/// How well one run was predicted, in what adds up over runs.
+#[derive(Clone, Copy, Default)]
+struct Judged {
+    by_row: Tally,
+    by_second: Tally,
+    currents: Option<Tally>,
+    stuck_rows: usize,
+    predicted_j: f64,
+    recorded_j: f64,
+}
+
+impl Judged {
+    fn join(self, other: &Judged) -> Judged {
+        Judged {
+            by_row: self.by_row.join(&other.by_row),
+            by_second: self.by_second.join(&other.by_second),
+            currents: match (self.currents, other.currents) {
+                (Some(currents), Some(more)) => Some(currents.join(&more)),
+                (currents, more) => currents.or(more),
+            },
+            stuck_rows: self.stuck_rows + other.stuck_rows,
+            predicted_j: self.predicted_j + other.predicted_j,
+            recorded_j: self.recorded_j + other.recorded_j,
+        }
+    }
+
+    fn named(&self, run: String) -> RunPrediction {
+        let (by_row, by_second) = (self.by_row.score(), self.by_second.score());
+        let currents = self.currents.map(|tally| tally.score());
+        RunPrediction {
+            run,
+            rows: by_row.count,
+            stuck_rows: self.stuck_rows,
+            bias_w: by_row.bias,
+            rmse_w: by_row.rmse,
+            r2: by_row.r2.is_finite().then_some(by_row.r2),
+            recorded_j: self.recorded_j,
+            predicted_j: self.predicted_j,
+            normalized_error_percent: Some(by_second.normalized_error_percent)
+                .filter(|percent| percent.is_finite()),
+            rmse_a: currents.map(|score| score.rmse),
+            r2_a: currents.map(|score| score.r2),
+        }
+    }
+}
+
+/// Judges every run.
 fn judge(
     drives: &Drives,
-    run: Option<usize>,
     predicted_w: &[f64],
     recorded_w: &[f64],
     stuck: &[bool],
     averages: &Averages,
-) -> RunPrediction {
-    let wanted = |other: usize| run.is_none_or(|run| run == other);
-    let (mut predicted, mut recorded, mut stuck_rows) = (Vec::new(), Vec::new(), 0);
-    let (mut predicted_j, mut recorded_j) = (0.0, 0.0);
-    for stretch in drives.stretches.iter().filter(|stretch| wanted(stretch.run)) {
-        for i in stretch.rows.clone().filter(|&i| drives.rows[i].used) {
-            predicted.push(predicted_w[i]);
-            recorded.push(recorded_w[i]);
-            stuck_rows += usize::from(stuck[i]);
-            // Trapezes; a step counts where both of its ends are there.
-            if i > stretch.rows.start && drives.rows[i - 1].used {
-                predicted_j += drives.rows[i].step_s * (predicted_w[i] + predicted_w[i - 1]) / 2.0;
-                recorded_j += drives.rows[i].step_s * (recorded_w[i] + recorded_w[i - 1]) / 2.0;
+) -> Vec<Judged> {
+    // Stretches and averages are in order of rows, those of a run together.
+    let stretches = by_run(drives.runs.len(), drives.stretches.iter().map(|stretch| stretch.run));
+    let seconds = by_run(drives.runs.len(), drives.averages.iter().map(|average| average.run));
+    let of_run = |(stretches, seconds): (Range<usize>, Range<usize>)| {
+        let mut judged = Judged::default();
+        for stretch in &drives.stretches[stretches] {
+            let mut before_used = false;
+            for i in stretch.rows.clone() {
+                let row = &drives.rows[i];
+                if row.used {
+                    judged.by_row.add(predicted_w[i], recorded_w[i]);
+                    judged.stuck_rows += usize::from(stuck[i]);
+                    // Trapezes; a step counts where both of its ends are there.
+                    if before_used {
+                        judged.predicted_j += row.step_s * (predicted_w[i] + predicted_w[i - 1]) / 2.0;
+                        judged.recorded_j += row.step_s * (recorded_w[i] + recorded_w[i - 1]) / 2.0;
+                    }
+                }
+                before_used = row.used;
             }
         }
-    }
-    let by_row = Score::of(&predicted, &recorded);
-    let places: Vec<usize> = (0..drives.averages.len()).filter(|&i| wanted(drives.averages[i].run)).collect();
-    let of = |watts: &[f64]| places.iter().map(|&i| watts[i]).collect::<Vec<f64>>();
-    let by_second = Score::of(&of(&averages.predicted_w), &of(&averages.recorded_w));
-    let current = (!averages.currents_a.is_empty()).then(|| {
-        let column = |which: usize| {
-            let sides = averages.currents_a.iter();
-            sides.flat_map(|side| places.iter().map(move |&i| side[which][i])).collect::<Vec<f64>>()
+        let pairs = |[predicted, recorded]: [&[f64]; 2]| {
+            Tally::of(seconds.clone().map(|i| (predicted[i], recorded[i])))
         };
-        Score::of(&column(0), &column(1))
-    });
-    RunPrediction {
-        run: run.map_or_else(|| "total".into(), |run| drives.runs[run].clone()),
-        rows: predicted.len(),
-        stuck_rows,
-        bias_w: by_row.bias,
-        rmse_w: by_row.rmse,
-        r2: by_row.r2.is_finite().then_some(by_row.r2),
-        recorded_j,
-        predicted_j,
-        normalized_error_percent: Some(by_second.normalized_error_percent)
-            .filter(|percent| percent.is_finite()),
-        rmse_a: current.map(|score| score.rmse),
-        r2_a: current.map(|score| score.r2),
+        judged.by_second = pairs([&averages.predicted_w, &averages.recorded_w]);
+        let currents = averages.currents_a.iter().map(|[predicted, recorded]| pairs([predicted, recorded]));
+        judged.currents = currents.reduce(|all, side| all.join(&side));
+        judged
+    };
+    stretches.into_par_iter().zip(seconds).map(of_run).collect()
+}
+
+/// Where the entries of each run lie among entries in order of runs.
+fn by_run(runs: usize, of_entry: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
+    let mut places = vec![0..0; runs];
+    for (i, run) in of_entry.enumerate() {
+        let first = if places[run].is_empty() { i } else { places[run].start };
+        places[run] = first..i + 1;
     }
+    places
 }

@@ -20,25 +20,69 @@ pub struct Score {
 impl Score {
     /// Compares pairs of predicted and recorded values; NaN for none.
     pub fn of(predicted: &[f64], recorded: &[f64]) -> Score {
-        let count = predicted.len().min(recorded.len());
-        let n = count as f64;
-        let mean = recorded.iter().sum::<f64>() / n;
-        let (mut sum, mut squares, mut spread) = (0.0, 0.0, 0.0);
-        let (mut missed, mut amount) = (0.0, 0.0);
-        for (p, r) in predicted.iter().zip(recorded) {
-            sum += p - r;
-            squares += (p - r).powi(2);
-            spread += (r - mean).powi(2);
-            missed += (p - r).abs();
-            amount += r.abs();
-        }
-        let r2 = if spread > 0.0 { 1.0 - squares / spread } else { f64::NAN };
-        Score {
+        Tally::of(predicted.iter().copied().zip(recorded.iter().copied())).score()
+    }
+}
+
+/// What a score is made of, pair by pair; tallies of parts add up to that of the whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tally {
+    pub(crate) count: usize,
+    sum: f64,
+    squares: f64,
+    /// Mean of what was recorded, and the sum of squares about it.
+    mean: f64,
+    spread: f64,
+    missed: f64,
+    amount: f64,
+}
+
+impl Tally {
+    pub(crate) fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Tally {
+        let mut tally = Tally::default();
+        pairs.for_each(|(predicted, recorded)| tally.add(predicted, recorded));
+        tally
+    }
+
+    /// Adds a pair of predicted and recorded values.
+    #[inline]
+    pub(crate) fn add(&mut self, predicted: f64, recorded: f64) {
+        let error = predicted - recorded;
+        self.count += 1;
+        self.sum += error;
+        self.squares += error * error;
+        self.missed += error.abs();
+        self.amount += recorded.abs();
+        // Welford's updates: a constant stays without spread, however large.
+        let from_mean = recorded - self.mean;
+        self.mean += from_mean / self.count as f64;
+        self.spread += from_mean * (recorded - self.mean);
+    }
+
+    /// Adds the pairs of another part.
+    pub(crate) fn join(self, other: &Tally) -> Tally {
+        let count = self.count + other.count;
+        let apart = other.mean - self.mean;
+        let share = other.count as f64 / count.max(1) as f64;
+        Tally {
             count,
-            bias: sum / n,
-            rmse: (squares / n).sqrt(),
-            r2,
-            normalized_error_percent: 100.0 * missed / amount,
+            sum: self.sum + other.sum,
+            squares: self.squares + other.squares,
+            mean: self.mean + apart * share,
+            spread: self.spread + other.spread + apart * apart * share * self.count as f64,
+            missed: self.missed + other.missed,
+            amount: self.amount + other.amount,
+        }
+    }
+
+    pub(crate) fn score(&self) -> Score {
+        let n = self.count as f64;
+        Score {
+            count: self.count,
+            bias: self.sum / n,
+            rmse: (self.squares / n).sqrt(),
+            r2: if self.spread > 0.0 { 1.0 - self.squares / self.spread } else { f64::NAN },
+            normalized_error_percent: 100.0 * self.missed / self.amount,
         }
     }
 }
@@ -65,6 +109,26 @@ mod tests {
         assert!((Score::of(&[2.0; 3], &recorded).r2).abs() < 1e-12);
         assert_eq!(Score::of(&recorded, &recorded).r2, 1.0);
         assert!((Score::of(&[2.0, 3.0, 4.0], &recorded).bias - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn tallies_of_parts_add_up_to_that_of_the_whole() {
+        let pairs = |range: std::ops::Range<i32>| {
+            range.map(|i| (f64::from(i * 7 % 11), f64::from(i * 5 % 13))).collect::<Vec<_>>()
+        };
+        let whole = Tally::of(pairs(0..40).into_iter()).score();
+        let parts = [0..3, 3..3, 3..17, 17..40].map(|range| Tally::of(pairs(range).into_iter()));
+        let joined = parts.iter().fold(Tally::default(), |all, part| all.join(part)).score();
+        assert_eq!(whole.count, joined.count);
+        for (a, b) in [(whole.bias, joined.bias), (whole.rmse, joined.rmse), (whole.r2, joined.r2)] {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+        // By definition, about the mean.
+        let recorded: Vec<f64> = pairs(0..40).iter().map(|pair| pair.1).collect();
+        let mean = recorded.iter().sum::<f64>() / 40.0;
+        let spread: f64 = recorded.iter().map(|r| (r - mean).powi(2)).sum();
+        let missed: f64 = pairs(0..40).iter().map(|(p, r)| (p - r).powi(2)).sum();
+        assert!((whole.r2 - (1.0 - missed / spread)).abs() < 1e-12);
     }
 
     #[test]

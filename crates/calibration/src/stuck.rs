@@ -20,15 +20,15 @@ const LEAST_SHARE: f64 = 0.5;
 /// Marks and measured track depend on each other; a few rounds settle both.
 pub(crate) fn flag(drives: &mut Drives, robot: &Robot) {
     const ROUNDS: usize = 4;
-    let turns = turns(drives);
+    let pieces = turns(drives);
     let mut track_m = robot.slip_track_m;
     if robot.slip_track_m == robot.track_m {
         for _ in 0..ROUNDS {
-            let Some(found) = track_of(turns.iter().filter(|turn| !turn.is_stuck(track_m))) else { break };
+            let Some(found) = track_of(&pieces, |turn| !turn.is_stuck(track_m)) else { break };
             track_m = found.value_m.clamp(robot.track_m, 2.0 * robot.track_m);
         }
     }
-    for turn in turns.iter().filter(|turn| turn.is_stuck(track_m)) {
+    for turn in pieces.iter().flat_map(|piece| &piece.turns).filter(|turn| turn.is_stuck(track_m)) {
         drives.rows[turn.row].stuck = true;
     }
 }
@@ -36,10 +36,15 @@ pub(crate) fn flag(drives: &mut Drives, robot: &Robot) {
 /// A row around which a turn is meant: |⟨u_r − u_l⟩| > 0.08 m/s, ⟨⟩ means over 2 s.
 struct Turn {
     row: usize,
-    /// The run and which 15 s of it.
-    block: (usize, i64),
     difference_mps: f64,
     yaw_rate_radps: f64,
+}
+
+/// The turns of some 15 s of a stretch.
+struct Piece {
+    /// The run and which 15 s of it.
+    block: (usize, i64),
+    turns: Vec<Turn>,
 }
 
 impl Turn {
@@ -59,55 +64,56 @@ impl Turn {
 }
 
 /// The turns of all stretches, in order of rows.
-fn turns(drives: &Drives) -> Vec<Turn> {
+fn turns(drives: &Drives) -> Vec<Piece> {
     let of_stretch = |stretch: &Stretch| {
         let (run, start) = (stretch.run, stretch.rows.start);
         let rows = &drives.rows[stretch.rows.clone()];
-        let meant = mean_turns(rows).into_iter().enumerate().filter(|(_, turn)| turn.is_meant());
-        meant.map(move |(i, MeanTurn { difference_mps, yaw_rate_radps })| Turn {
-            row: start + i,
-            block: (run, (rows[i].t_s / BLOCK_S).floor() as i64),
-            difference_mps,
-            yaw_rate_radps,
-        })
+        let sums = sums_of_turns(rows);
+        let half = rows_in(rows, MEAN_S / 2.0);
+        let block_of = |row: &Row| (row.t_s / BLOCK_S).floor() as i64;
+        let mut first = 0;
+        let of_block = |block: &[Row]| {
+            let here = first..first + block.len();
+            first = here.end;
+            let turns = here.filter_map(|i| mean_turn(&sums, i, half, start + i)).collect();
+            Piece { block: (run, block_of(&block[0])), turns }
+        };
+        let blocks = if sums.is_empty() { &[] } else { rows };
+        blocks.chunk_by(|a, b| block_of(a) == block_of(b)).map(of_block).collect::<Vec<_>>()
     };
     drives.stretches.par_iter().flat_map_iter(of_stretch).collect()
 }
 
-/// Means over the rows around one that have a measured yaw rate; NaN where none has.
-struct MeanTurn {
-    difference_mps: f64,
-    yaw_rate_radps: f64,
+/// Rows that a time is long.
+fn rows_in(rows: &[Row], time_s: f64) -> usize {
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return 0 };
+    let step_s = (last.t_s - first.t_s) / (rows.len() - 1).max(1) as f64;
+    if step_s > 0.0 { (time_s / step_s) as usize } else { 0 }
 }
 
-impl MeanTurn {
-    fn is_meant(&self) -> bool {
-        self.difference_mps.abs() > LEAST_DIFFERENCE_MPS
-    }
-}
-
-/// The mean turn around each row, by running sums; nothing where no yaw rate was measured.
-fn mean_turns(rows: &[Row]) -> Vec<MeanTurn> {
-    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Vec::new() };
+/// Sums of count, difference and yaw rate over the rows before each that have a measured yaw rate; empty where none has.
+fn sums_of_turns(rows: &[Row]) -> Vec<[f64; 3]> {
     if !rows.iter().any(|row| row.yaw_rate_radps.is_finite()) {
         return Vec::new();
     }
-    let step_s = (last.t_s - first.t_s) / (rows.len() - 1).max(1) as f64;
-    let half = if step_s > 0.0 { (MEAN_S / 2.0 / step_s) as usize } else { 0 };
-    let mut sums = vec![[0.0; 3]];
     let mut sum = [0.0; 3];
+    let mut sums = Vec::with_capacity(rows.len() + 1);
+    sums.push(sum);
     for row in rows {
         if row.yaw_rate_radps.is_finite() {
             sum = [sum[0] + 1.0, sum[1] + row.difference_mps(), sum[2] + row.yaw_rate_radps];
         }
         sums.push(sum);
     }
-    let mean = |i: usize| {
-        let (from, to) = (sums[i.saturating_sub(half)], sums[(i + half + 1).min(rows.len())]);
-        let count = to[0] - from[0];
-        MeanTurn { difference_mps: (to[1] - from[1]) / count, yaw_rate_radps: (to[2] - from[2]) / count }
-    };
-    (0..rows.len()).map(mean).collect()
+    sums
+}
+
+/// The mean turn around a row, if one is meant.
+fn mean_turn(sums: &[[f64; 3]], i: usize, half: usize, row: usize) -> Option<Turn> {
+    let (from, to) = (sums[i.saturating_sub(half)], sums[(i + half + 1).min(sums.len() - 1)]);
+    let count = to[0] - from[0];
+    let (difference_mps, yaw_rate_radps) = ((to[1] - from[1]) / count, (to[2] - from[2]) / count);
+    (difference_mps.abs() > LEAST_DIFFERENCE_MPS).then_some(Turn { row, difference_mps, yaw_rate_radps })
 }
 
 /// A kinematic track that was measured.
@@ -129,17 +135,23 @@ pub struct SlipTrack {
 /// The ratio of the two spreads does not mind a delay between the clocks, as a regression would. Its uncertainty is that between
 /// pieces of 15 s.
 pub fn slip_track(drives: &Drives) -> Option<SlipTrack> {
-    track_of(turns(drives).iter().filter(|turn| !drives.rows[turn.row].stuck))
+    track_of(&turns(drives), |turn| !drives.rows[turn.row].stuck)
 }
 
-fn track_of<'a>(turns: impl Iterator<Item = &'a Turn>) -> Option<SlipTrack> {
+fn track_of(pieces: &[Piece], counts: impl Fn(&Turn) -> bool + Sync) -> Option<SlipTrack> {
+    let of_piece = |piece: &Piece| {
+        piece.turns.iter().filter(|turn| counts(turn)).fold(None, |sums, turn| {
+            let (differences, rates) = sums.unwrap_or((0.0, 0.0));
+            let (difference_mps, radps) = (turn.difference_mps, turn.yaw_rate_radps);
+            Some((differences + difference_mps * difference_mps, rates + radps * radps))
+        })
+    };
+    let of_pieces: Vec<Option<(f64, f64)>> = pieces.par_iter().map(of_piece).collect();
     let mut blocks: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
-    let mut turns = turns.peekable();
-    while let Some(block) = turns.peek().map(|turn| turn.block) {
-        let sums = blocks.entry(block).or_default();
-        while let Some(turn) = turns.next_if(|turn| turn.block == block) {
-            sums.0 += turn.difference_mps * turn.difference_mps;
-            sums.1 += turn.yaw_rate_radps * turn.yaw_rate_radps;
+    for (piece, sums) in pieces.iter().zip(of_pieces) {
+        if let Some((differences, rates)) = sums {
+            let block = blocks.entry(piece.block).or_default();
+            *block = (block.0 + differences, block.1 + rates);
         }
     }
     let total = blocks.values().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));

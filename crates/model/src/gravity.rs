@@ -44,7 +44,8 @@ impl Attitude {
 
     /// How the ground carries the weight.
     pub fn grade(self) -> Grade<f64> {
-        Grade { normal: self.weight_normal(), along: self.weight_along(), tilt: self.roll_rad.tan() }
+        let ((along, cos_pitch), (sin_roll, cos_roll)) = (self.pitch_rad.sin_cos(), self.roll_rad.sin_cos());
+        Grade { normal: cos_pitch * cos_roll, along, tilt: sin_roll / cos_roll }
     }
 
     /// The attitude on a plane of inclination γ, heading at angle β from the contour line (Fig. 1).
