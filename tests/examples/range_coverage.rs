@@ -2,7 +2,7 @@
 //!
 //! A seed draws ground, a way over it, a robot within its uncertainty, and a charge. The planner plans and range predicts with
 //! the robot's file; the world drives the path with the robot as drawn. What the world adds beyond parameters (other tyres,
-//! motors and driver, starts and stops) is estimated on development seeds, whose root mean square is `mission::MODEL_SIGMA`, and
+//! motors and driver, starts and stops) is estimated on development seeds, as `mission::MODEL_MEAN` and `MODEL_SIGMA`, and
 //! scored on seeds that nothing was chosen by.
 //!
 //!     cargo run --release -p joulepath-tests --example range_coverage -- develop     # error of the model in the matched world
@@ -15,9 +15,9 @@ use drive::{Case, Scored, score};
 use rayon::prelude::*;
 
 /// Seeds of the estimate of the model's own error.
-const DEVELOPMENT: std::ops::Range<u64> = 0..100;
+const DEVELOPMENT: std::ops::Range<u64> = 0..400;
 /// The first seed that is scored; none of them served any choice.
-const SCORED_FROM: u64 = 1_000_000;
+const SCORED_FROM: u64 = 2_000_000;
 const SCORED: u64 = 300;
 
 fn main() {
@@ -61,9 +61,9 @@ fn develop(scored: &[Scored]) {
     let errors: Vec<f64> = scored.iter().map(|s| (s.driven_j - s.nominal_j) / s.gross_j).collect();
     let count = errors.len() as f64;
     let mean = errors.iter().sum::<f64>() / count;
-    let square = errors.iter().map(|e| e * e).sum::<f64>() / count;
+    let square = errors.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / (count - 1.0);
     println!(
-        "error of the model over what is drawn and returned: mean {:+.2} %, root mean square {:.2} %",
+        "error of the model over what is drawn and returned: mean {:+.2} %, one sigma {:.2} %",
         100.0 * mean,
         100.0 * square.sqrt()
     );

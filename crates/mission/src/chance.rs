@@ -16,26 +16,36 @@ pub struct Doubt {
     /// Way over which that error changes [m]. Default 10, some posts of such a map: errors of neighbouring posts are nearly the
     /// same, since what they share (the flight line, the grass) is as large.
     pub elevation_scale_m: f64,
-    /// One-sigma error that the power model makes of what the drives draw and return, though all its parameters are right, over
-    /// the sum of both. Default [`MODEL_SIGMA`].
+    /// What drives draw more and return less on average than the power model says, though all its parameters are right, over the
+    /// sum of both. Default [`MODEL_MEAN`].
+    pub model_mean: f64,
+    /// One-sigma scatter about that. Default [`MODEL_SIGMA`].
     pub model_sigma: f64,
 }
 
-/// One-sigma error of a drive's energy that is left when every parameter is known, over what the drives draw and return together:
-/// root mean square over development seeds of drives through the independent world, whose tyres, motors and driver are others
-/// than the model's.
+/// Mean error of a drive's energy that is left when every parameter is known, over what the drives draw and return together:
+/// drives start, stop and correct their course, which a path does not. Mean over development seeds of drives through the
+/// independent world, whose tyres, motors and driver are others than the model's.
 /// `cargo run --release -p joulepath-tests --example range_coverage -- develop` prints it.
-pub const MODEL_SIGMA: f64 = 0.015;
+pub const MODEL_MEAN: f64 = 0.0102;
+/// Scatter of the same about its mean, one sigma.
+pub const MODEL_SIGMA: f64 = 0.0082;
 
 impl Default for Doubt {
     fn default() -> Self {
-        Doubt { elevation_sigma_m: 0.1, elevation_scale_m: 10.0, model_sigma: MODEL_SIGMA }
+        Doubt {
+            elevation_sigma_m: 0.1,
+            elevation_scale_m: 10.0,
+            model_mean: MODEL_MEAN,
+            model_sigma: MODEL_SIGMA,
+        }
     }
 }
 
 impl Doubt {
     /// No doubt beyond the robot's file.
-    pub const NONE: Doubt = Doubt { elevation_sigma_m: 0.0, elevation_scale_m: 10.0, model_sigma: 0.0 };
+    pub const NONE: Doubt =
+        Doubt { elevation_sigma_m: 0.0, elevation_scale_m: 10.0, model_mean: 0.0, model_sigma: 0.0 };
 }
 
 /// What draws are made of.
@@ -112,7 +122,7 @@ impl Drawn<'_> {
         changed.mass_kg *= factor(u.mass_kg);
         let pack = Pack::new(battery, factor(battery.capacity_sigma));
         let charge = (charge + battery.charge_sigma * normal()).clamp(0.0, 1.0);
-        let model_error = doubt.model_sigma * normal();
+        let model_error = doubt.model_mean + doubt.model_sigma * normal();
         let grade_error = match doubt.elevation_sigma_m {
             0.0 => Vec::new(),
             sigma_m => {

@@ -20,7 +20,7 @@ mod run;
 mod turning;
 
 pub use carries::Carries;
-pub use chance::{Chance, Doubt, Drawn, MODEL_SIGMA};
+pub use chance::{Chance, Doubt, Drawn, MODEL_MEAN, MODEL_SIGMA};
 pub use error::Error;
 pub use journey::{Journey, Stop};
 pub use likely::{Likely, Spread, draws};
