@@ -70,6 +70,11 @@ impl Drives {
         self.averages.par_iter().map(|average| self.mean(average, |row| [value(row)])[0]).collect()
     }
 
+    /// Averages of several functions of the row at once.
+    pub fn means<const N: usize>(&self, value: impl Fn(usize) -> [f64; N] + Sync) -> Vec<[f64; N]> {
+        self.averages.par_iter().with_min_len(64).map(|average| self.mean(average, &value)).collect()
+    }
+
     /// The mean of some quantities over the rows of one average that count.
     pub(crate) fn mean<const N: usize>(
         &self,

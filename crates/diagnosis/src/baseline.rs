@@ -27,9 +27,7 @@ pub(crate) struct Baseline {
     /// Change of predictions with half a row of delay of power behind speeds, in suspect and in healthy drives: less than a
     /// row is the sensors' business.
     pub(crate) delays: [Vec<f64>; 2],
-    /// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W].
-    pub(crate) shared: Vec<Vec<f64>>,
-    /// Scatter of what is recorded about the predictions: what models miss, which `shared` may take, counts as noise as well. With
+    /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
 }
@@ -72,8 +70,19 @@ impl Baseline {
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
-        let shared = shared(series, &predicted_w, &columns, &noise);
-        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, shared, noise })
+        series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, noise })
+    }
+
+    /// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W]. They are many and long,
+    /// so they are made anew whenever they are needed.
+    pub(crate) fn shared(&self, series: &Series) -> Vec<Vec<f64>> {
+        let mut shared = nuisance::columns(&series.averages, &self.predicted_w);
+        if let Some(discrepancy) = series.discrepancy.get() {
+            let means = nuisance::means(&series.averages, &self.predicted_w);
+            shared.extend(discrepancy.columns(&series.averages, &means));
+        }
+        shared
     }
 
     /// What makes errors about the fit independent and of one sigma 1.
@@ -82,18 +91,14 @@ impl Baseline {
     }
 }
 
-/// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W].
-fn shared(series: &Series, predicted_w: &[f64], columns: &[Vec<f64>], noise: &Noise) -> Vec<Vec<f64>> {
-    let mut shared = nuisance::columns(&series.averages, predicted_w);
+/// Learns what the model misses from what a fit leaves.
+fn learn(series: &Series, predicted_w: &[f64], columns: &[Vec<f64>], noise: &Noise) -> Discrepancy {
+    let white = noise.whitening(predicted_w, &series.averages);
     let means = nuisance::means(&series.averages, predicted_w);
-    let discrepancy = series.discrepancy.get_or_init(|| {
-        let white = noise.whitening(predicted_w, &series.averages);
-        let errors = white.of(&differences(&series.recorded, predicted_w));
-        let columns = columns.iter().chain(&shared).map(|column| white.of(column)).collect();
-        Discrepancy::learn(&series.averages, &means, &Whitened { errors, columns, white: &white })
-    });
-    shared.extend(discrepancy.columns(&means));
-    shared
+    let errors = white.of(&differences(&series.recorded, predicted_w));
+    let nuisances = nuisance::columns(&series.averages, predicted_w);
+    let columns = columns.iter().chain(&nuisances).map(|column| white.of(column)).collect();
+    Discrepancy::learn(&series.averages, &means, &Whitened { errors, columns, white: &white })
 }
 
 fn delays(

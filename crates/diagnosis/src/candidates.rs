@@ -25,7 +25,43 @@ const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
 /// Winds that are tried [m/s], in eight directions.
 const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
 
-/// All candidates beside mechanisms that act already.
+/// A mechanism with its sensitivities, and the times from which it may act.
+pub(crate) struct Family {
+    /// From the beginning of the drives on.
+    always: Candidate,
+    onsets_s: Vec<f64>,
+}
+
+impl Family {
+    /// Whose it is.
+    pub(crate) fn name(&self) -> &'static str {
+        self.always.applied.mechanism.name()
+    }
+
+    /// Number of its candidates.
+    pub(crate) fn count(&self) -> usize {
+        self.onsets_s.len()
+    }
+
+    /// Its candidates, one by one.
+    ///
+    /// What shifts in time or remembers has no onset but the beginning; all else does from some time on what it would always do.
+    pub(crate) fn candidates<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Candidate> + 'a {
+        self.onsets_s.iter().map(|&from_s| {
+            let from = |column: &Vec<f64>| {
+                let acts = series.averages.iter().map(|average| average.t_s >= from_s);
+                column.iter().zip(acts).map(|(by, acts)| if acts { *by } else { 0.0 }).collect()
+            };
+            Candidate {
+                applied: Applied { from_s, ..self.always.applied.clone() },
+                linear: self.always.linear.clone(),
+                columns: self.always.columns.iter().map(from).collect(),
+            }
+        })
+    }
+}
+
+/// All candidates beside mechanisms that act already, by mechanism and values that power does not follow in proportion.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -34,22 +70,21 @@ pub(crate) fn all(
     robot: &Robot,
     applied: &[Applied],
     predicted_w: &[f64],
-) -> Result<Vec<Candidate>, Error> {
-    let mut probes = Vec::new();
-    for mechanism in mechanism::ALL {
-        if applied.iter().any(|a| a.mechanism.name() == mechanism.name()) {
-            continue;
-        }
-        for from_s in onsets(series, mechanism.name()) {
-            for (values, linear) in grids(mechanism) {
-                probes.push((Applied { mechanism, values, from_s }, linear));
-            }
-        }
-    }
-    probes
-        .into_par_iter()
-        .map(|(probe, linear)| of(series, robot, applied, predicted_w, probe, linear))
-        .collect()
+) -> Result<Vec<Family>, Error> {
+    let acts = |name: &str| applied.iter().any(|a| a.mechanism.name() == name);
+    let others = mechanism::ALL.into_iter().filter(|mechanism| !acts(mechanism.name()));
+    let probes: Vec<(Applied, Vec<usize>)> = others
+        .flat_map(|mechanism| {
+            grids(mechanism)
+                .into_iter()
+                .map(move |(values, linear)| (Applied { mechanism, values, from_s: 0.0 }, linear))
+        })
+        .collect();
+    let family = |(probe, linear): (Applied, Vec<usize>)| {
+        let onsets_s = onsets(series, probe.mechanism.name());
+        Ok(Family { always: of(series, robot, applied, predicted_w, probe, linear)?, onsets_s })
+    };
+    probes.into_par_iter().map(family).collect()
 }
 
 /// The sensitivities of one mechanism about a probe whose linear parameters are at nothing.

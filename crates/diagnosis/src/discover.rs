@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::{
     Error,
     baseline::Baseline,
-    candidates,
+    candidates::{self, Family},
     evidence::Evidence,
     gates::{LEVEL, cosine, passes},
     null::Null,
@@ -119,17 +119,18 @@ fn resembling(
     series: &Series,
     base: &Baseline,
     column_w: &[f64],
-    mechanisms: &[candidates::Candidate],
+    mechanisms: &[Family],
 ) -> Option<&'static str> {
     let system = system_with(series, base, &[]);
     let white = base.whitening(series);
     let own = system.weigh(&[white.of(column_w)])?;
     let rows = series.recorded.len();
-    let alike = mechanisms.par_iter().filter_map(|candidate| {
-        let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|column| white.of(column)).collect();
-        let other = system.weigh(&columns)?;
-        Some((cosine(&own, &other, rows), candidate.applied.mechanism.name()))
-    });
+    let alike =
+        mechanisms.par_iter().flat_map_iter(|family| family.candidates(series)).filter_map(|candidate| {
+            let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|column| white.of(column)).collect();
+            let other = system.weigh(&columns)?;
+            Some((cosine(&own, &other, rows), candidate.applied.mechanism.name()))
+        });
     let (most, name) = alike.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (most > ALIKE).then_some(name)
 }

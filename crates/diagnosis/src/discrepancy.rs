@@ -32,6 +32,7 @@ pub(crate) struct Discrepancy {
 
 #[derive(Debug)]
 struct Process {
+    /// By function, over the averages of the channel.
     functions: Vec<Vec<f64>>,
     /// One sigma of it, as a share of the mean power.
     share: f64,
@@ -53,20 +54,38 @@ impl Discrepancy {
     pub(crate) fn learn(averages: &[Average], means: &[f64], beside: &Whitened<'_>) -> Self {
         let process = |(channel, mean): (usize, &f64)| {
             let functions = functions(averages, channel);
-            Process { share: share(averages, channel, &scaled(&functions, *mean), beside), functions }
+            Process {
+                share: share(averages, channel, &spread(averages, channel, &functions, *mean), beside),
+                functions,
+            }
         };
         Discrepancy { channels: means.iter().enumerate().map(process).collect() }
     }
 
     /// Columns with weights of one sigma 1, by the mean size of each channel.
-    pub(crate) fn columns(&self, means: &[f64]) -> Vec<Vec<f64>> {
-        let told = self.channels.iter().zip(means).filter(|(process, _)| process.share > 0.0);
-        told.flat_map(|(process, mean)| scaled(&process.functions, process.share * mean)).collect()
+    pub(crate) fn columns(&self, averages: &[Average], means: &[f64]) -> Vec<Vec<f64>> {
+        let told =
+            self.channels.iter().zip(means).enumerate().filter(|(_, (process, _))| process.share > 0.0);
+        told.flat_map(|(channel, (process, mean))| {
+            spread(averages, channel, &process.functions, process.share * mean)
+        })
+        .collect()
     }
 }
 
-fn scaled(functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
-    functions.iter().map(|f| f.iter().map(|x| x * by).collect()).collect()
+/// Functions over the averages of a channel, scaled, as columns over all averages.
+fn spread(averages: &[Average], channel: usize, functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
+    let places = places(averages, channel);
+    let column = |function: &Vec<f64>| {
+        let mut column = vec![0.0; averages.len()];
+        places.iter().zip(function).for_each(|(place, value)| column[*place] = value * by);
+        column
+    };
+    functions.iter().map(column).collect()
+}
+
+fn places(averages: &[Average], channel: usize) -> Vec<usize> {
+    (0..averages.len()).filter(|i| averages[*i].channel == channel).collect()
 }
 
 /// The likeliest size of a channel's function, as a share of those given.
@@ -117,13 +136,7 @@ fn log_likelihood(
 ///
 /// They are the columns of the pivoted Cholesky factor of the covariance exp(−d²/2).
 fn functions(averages: &[Average], channel: usize) -> Vec<Vec<f64>> {
-    let places: Vec<usize> = (0..averages.len()).filter(|i| averages[*i].channel == channel).collect();
-    let spread = |factor: Vec<f64>| {
-        let mut function = vec![0.0; averages.len()];
-        places.iter().zip(factor).for_each(|(place, value)| function[*place] = value);
-        function
-    };
-    cholesky(&standardised(averages, &places)).into_iter().map(spread).collect()
+    cholesky(&standardised(averages, &places(averages, channel)))
 }
 
 /// Inputs of the averages over their spreads and the length.
@@ -221,7 +234,8 @@ mod tests {
     #[test]
     fn products_of_the_functions_are_the_covariance_and_channels_stay_apart() {
         let averages = averages(300);
-        let functions = [functions(&averages, 0), functions(&averages, 1)].concat();
+        let of = |channel| spread(&averages, channel, &functions(&averages, channel), 1.0);
+        let functions = [of(0), of(1)].concat();
         let covariance = |i: usize, j: usize| -> f64 { functions.iter().map(|f| f[i] * f[j]).sum() };
         for i in (0..300).step_by(7) {
             assert!((covariance(i, i) - 1.0).abs() < LEFT_OUT + 1e-9, "{i}: {}", covariance(i, i));

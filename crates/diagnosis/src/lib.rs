@@ -38,6 +38,7 @@ pub mod report;
 mod search;
 mod secant;
 mod series;
+mod shapes;
 mod term;
 mod weigh;
 mod words;

@@ -1,6 +1,7 @@
 //! Least squares of many columns, judged by blocks that were left out.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Tenths that are left out in turn.
 pub(crate) const FOLDS: usize = 10;
@@ -16,15 +17,13 @@ impl<'a> Folded<'a> {
     /// Adds up the products of all rows of each fold.
     pub(crate) fn new(columns: &[Vec<f64>], errors: &[f64], fold: &'a [usize]) -> Self {
         let count = columns.len();
-        let mut square = vec![DMatrix::zeros(count, count); FOLDS];
-        let mut right = vec![DVector::zeros(count); FOLDS];
-        for out in 0..FOLDS {
+        let products = |out: usize| {
             let rows: Vec<usize> = (0..errors.len()).filter(|i| fold[*i] == out).collect();
             let part = DMatrix::from_fn(rows.len(), count, |i, j| columns[j][rows[i]]);
             let own = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
-            right[out] = part.tr_mul(&own);
-            square[out] = part.tr_mul(&part);
-        }
+            (part.tr_mul(&part), part.tr_mul(&own))
+        };
+        let (square, right) = (0..FOLDS).into_par_iter().map(products).unzip();
         Folded { fold, square, right }
     }
 

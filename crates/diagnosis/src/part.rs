@@ -1,8 +1,11 @@
 //! Drives of one kind, row by row: those under suspicion, or healthy ones.
 
+use std::sync::Arc;
+
 use calibration::{Drives, average, drives::Stretch, losses, power::seen_w, row::Row};
 use model::{
-    Attitude, Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides, mechanism::Moment, robot::Surface,
+    Attitude, Friction, FrictionShape, Grade, Manoeuvre, Motion, Robot, Sides, mechanism::Moment,
+    robot::Surface,
 };
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
@@ -11,6 +14,7 @@ use crate::{
     Error, ground,
     meter::Meter,
     series::{Applied, Average, Input},
+    shapes::Shapes,
 };
 
 /// Drives of one kind.
@@ -29,6 +33,9 @@ pub(crate) struct Part {
     ground_mps: Vec<f64>,
     /// Yaw rate by average; NaN where no gyroscope was recorded [rad/s].
     yaw_rate_radps: Vec<f64>,
+    /// How the ground carries the weight, by row.
+    grade: Vec<Grade<f64>>,
+    shapes: Shapes,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
@@ -68,7 +75,20 @@ impl Part {
             None => vec![f64::NAN; drives.averages.len()],
         };
         let height_m = ground::heights_m(recording);
-        Ok(Part { heading_rad, height_m, began_s, rest_w, ground_mps, yaw_rate_radps, drives, suspect })
+        let grade = drives.rows.par_iter().map(|row| attitude(row).grade()).collect();
+        let shapes = Shapes::default();
+        Ok(Part {
+            heading_rad,
+            height_m,
+            began_s,
+            rest_w,
+            ground_mps,
+            yaw_rate_radps,
+            grade,
+            shapes,
+            drives,
+            suspect,
+        })
     }
 
     /// Whether enough of a quantity was recorded to be compared with: half of the drives.
@@ -101,17 +121,21 @@ impl Part {
         }
     }
 
-    /// Averages of what would be recorded by row, where it was.
-    pub(crate) fn averaged(&self, meter: Meter, rows: &[Seen]) -> Vec<f64> {
-        let mean = |value: usize| self.drives.averaged_by(|row| rows[row][value]);
-        let all = match meter {
-            Meter::Left | Meter::Battery => mean(0),
-            Meter::Right => mean(1),
-            Meter::Rest => mean(2),
-            Meter::Ground => mean(3).iter().zip(mean(4)).map(|(x, y)| x.hypot(y)).collect(),
-            Meter::Yaw => mean(5),
+    /// Averages of what would be recorded by row, quantity by quantity, where it was.
+    pub(crate) fn averaged(&self, meters: &[Meter], rows: &[Seen]) -> Vec<f64> {
+        let means = self.drives.means(|row| rows[row]);
+        let of = |value: &dyn Fn(&Seen) -> f64| means.iter().map(value).collect::<Vec<f64>>();
+        let averages = |meter: &Meter| {
+            let all = match meter {
+                Meter::Left | Meter::Battery => of(&|mean| mean[0]),
+                Meter::Right => of(&|mean| mean[1]),
+                Meter::Rest => of(&|mean| mean[2]),
+                Meter::Ground => of(&|mean| mean[3].hypot(mean[4])),
+                Meter::Yaw => of(&|mean| mean[5]),
+            };
+            self.told(*meter, &all)
         };
-        self.told(meter, &all)
+        meters.iter().flat_map(averages).collect()
     }
 
     /// What the averages of a quantity are of; drives count from `first_run`.
@@ -170,32 +194,51 @@ impl Part {
             Some(memory_s) => losses::averaged(&self.drives, robot, memory_s),
             None => Vec::new(),
         };
+        let delay_s: f64 = applied.iter().map(|a| a.mechanism.delay_s(&a.values)).sum();
+        let [plain_shapes, changed_shapes] = [robot, &changed].map(|robot| self.shapes_of(robot));
+        let (plain_shapes, changed_shapes) = (plain_shapes?, changed_shapes?);
         let mut seen = vec![Seen::default(); self.drives.rows.len()];
         for stretch in &self.drives.stretches {
             let name = &self.drives.surfaces[stretch.surface];
-            let surface_of =
-                |robot: &Robot| robot.surface(name).cloned().map_err(|_| Error::surface(name, robot));
-            let (plain, other) = (surface_of(robot)?, surface_of(&changed)?);
-            let rows: Vec<Seen> = stretch
-                .rows
-                .clone()
-                .into_par_iter()
-                .with_min_len(512)
-                .map(|i| {
-                    let t_s = self.drives.rows[i].t_s - self.began_s[i];
-                    let acting: Vec<&Applied> = applied.iter().filter(|a| t_s >= a.from_s).collect();
-                    let (robot, surface) =
-                        if acting.is_empty() { (robot, &plain) } else { (&changed, &other) };
-                    let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
-                    self.seen(robot, surface, i, self.moment(robot, i, loss_w), &acting, meters)
-                })
-                .collect();
-            let delay_s: f64 = applied.iter().map(|a| a.mechanism.delay_s(&a.values)).sum();
-            for (i, row) in stretch.rows.clone().enumerate() {
-                seen[row] = if delay_s == 0.0 { rows[i] } else { self.late(stretch, &rows, i, delay_s) };
+            let on = |robot, shapes| On::new(robot, name, shapes, meters);
+            let (plain, changed) = (on(robot, &plain_shapes)?, on(&changed, &changed_shapes)?);
+            let row = |i: usize| {
+                let t_s = self.drives.rows[i].t_s - self.began_s[i];
+                let acts = applied.iter().any(|a| t_s >= a.from_s);
+                let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
+                self.seen(if acts { &changed } else { &plain }, i, loss_w, (applied, t_s))
+            };
+            let places = stretch.rows.clone();
+            let rows = &mut seen[places.clone()];
+            rows.par_iter_mut().zip(places).with_min_len(512).for_each(|(seen, i)| *seen = row(i));
+            if delay_s != 0.0 {
+                let rows = rows.to_vec();
+                for (i, row) in stretch.rows.clone().enumerate() {
+                    seen[row] = self.late(stretch, &rows, i, delay_s);
+                }
             }
         }
         Ok(seen)
+    }
+
+    /// Friction shapes of every row for a robot, kept from the last robots.
+    fn shapes_of(&self, robot: &Robot) -> Result<Arc<Vec<FrictionShape>>, Error> {
+        let scales_rad = self.drives.surfaces.iter().map(|name| match robot.surface(name) {
+            Ok(surface) => Ok(surface.slip_angle_scale_rad),
+            Err(_) => Err(Error::surface(name, robot)),
+        });
+        let scales_rad: Vec<f64> = scales_rad.collect::<Result<_, _>>()?;
+        Ok(self.shapes.of(robot, scales_rad, |scales_rad| {
+            let mut shapes = vec![FrictionShape::default(); self.drives.rows.len()];
+            for stretch in &self.drives.stretches {
+                let scale_rad = scales_rad[stretch.surface];
+                let rows = &self.drives.rows[stretch.rows.clone()];
+                let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &motion(robot, row));
+                let shapes = &mut shapes[stretch.rows.clone()];
+                shapes.par_iter_mut().zip(rows).with_min_len(512).for_each(|(to, row)| *to = shape(row));
+            }
+            shapes
+        }))
     }
 
     /// The row with the powers of so much earlier, between rows in proportion; the first or last where the stretch does not
@@ -213,47 +256,37 @@ impl Part {
         late
     }
 
-    fn moment(&self, robot: &Robot, i: usize, loss_w: Sides<f64>) -> Moment {
-        let row = &self.drives.rows[i];
-        let rims = if row.stands() { Sides::both(0.0) } else { row.rim_mps };
-        Moment {
-            motion: Motion::of_wheels(robot, rims).heading(self.heading_rad[i]),
+    /// What would be recorded of one row.
+    #[inline]
+    fn seen(&self, on: &On<'_>, i: usize, loss_w: Sides<f64>, (applied, t_s): (&[Applied], f64)) -> Seen {
+        let On { robot, surface, friction, shapes, meters } = on;
+        let row: &Row = &self.drives.rows[i];
+        let driven = Moment {
+            motion: motion(robot, row).heading(self.heading_rad[i]),
             acceleration: row.acceleration(robot),
             rim_mps2: row.rim_mps2,
-            attitude: Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad },
+            attitude: attitude(row),
             loss_w,
-        }
-    }
-
-    /// What would be recorded of one row.
-    fn seen(
-        &self,
-        robot: &Robot,
-        surface: &Surface,
-        i: usize,
-        mut moment: Moment,
-        acting: &[&Applied],
-        meters: &[Meter],
-    ) -> Seen {
-        for applied in acting {
+        };
+        let acting = || applied.iter().filter(|a| t_s >= a.from_s);
+        let mut moment = driven;
+        for applied in acting() {
             applied.mechanism.measure(&applied.values, &mut moment);
         }
         let mut adjustment = robot.adjustment(surface, &moment);
-        for applied in acting {
+        for applied in acting() {
             adjustment = adjustment.and(applied.mechanism.adjust(robot, &applied.values, &moment));
         }
-        let row: &Row = &self.drives.rows[i];
-        let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &moment.motion);
-        let manoeuvre = Manoeuvre::adjusted(
-            robot,
-            &Friction::new(robot, surface),
-            moment.motion,
-            &shape,
-            row.motor_c,
-            &adjustment,
-        );
-        let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
-        let read = |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
+        // Few mechanisms change what the wheels or the ground were measured to do.
+        let shape = if moment.motion == driven.motion {
+            shapes[i]
+        } else {
+            FrictionShape::new(robot, surface.slip_angle_scale_rad, &moment.motion)
+        };
+        let grade = if moment.attitude == driven.attitude { self.grade[i] } else { moment.attitude.grade() };
+        let manoeuvre = Manoeuvre::adjusted(robot, friction, moment.motion, &shape, row.motor_c, &adjustment);
+        let power = manoeuvre.power_on_grade(grade, moment.acceleration);
+        let read = |true_w: f64| acting().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
         let sides_w = || seen_w(robot, PowerForm::Sides, row, &power).map(read);
         let battery_w = || read(seen_w(robot, PowerForm::Battery, row, &power)[0]);
         let [first_w, second_w] = match meters.first() {
@@ -261,8 +294,44 @@ impl Part {
             _ => sides_w(),
         };
         let rest_w = if meters.contains(&Meter::Rest) { battery_w() - first_w - second_w } else { 0.0 };
-        let (sin, cos) = self.heading_rad[i].sin_cos();
         let Motion { speed_mps, yaw_rate_radps, .. } = moment.motion;
-        [first_w, second_w, rest_w, speed_mps * cos, speed_mps * sin, yaw_rate_radps]
+        let [along_mps, across_mps] = if meters.contains(&Meter::Ground) {
+            let (sin, cos) = self.heading_rad[i].sin_cos();
+            [speed_mps * cos, speed_mps * sin]
+        } else {
+            [0.0; 2]
+        };
+        [first_w, second_w, rest_w, along_mps, across_mps, yaw_rate_radps]
     }
+}
+
+/// A robot on one surface, prepared for many rows.
+struct On<'a> {
+    robot: &'a Robot,
+    surface: &'a Surface,
+    friction: Friction,
+    /// By row of all drives.
+    shapes: &'a [FrictionShape],
+    meters: &'a [Meter],
+}
+
+impl<'a> On<'a> {
+    fn new(
+        robot: &'a Robot,
+        name: &str,
+        shapes: &'a [FrictionShape],
+        meters: &'a [Meter],
+    ) -> Result<Self, Error> {
+        let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
+        Ok(On { robot, surface, friction: Friction::new(robot, surface), shapes, meters })
+    }
+}
+
+/// Encoders dither about zero while a robot stands.
+fn motion(robot: &Robot, row: &Row) -> Motion {
+    Motion::of_wheels(robot, if row.stands() { Sides::both(0.0) } else { row.rim_mps })
+}
+
+fn attitude(row: &Row) -> Attitude {
+    Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad }
 }

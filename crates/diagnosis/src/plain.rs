@@ -36,7 +36,9 @@ impl Plain {
     /// A surface that the robot does not know.
     pub fn new(series: &Series, robot: &Robot) -> Result<Self, Error> {
         let base = Baseline::fit(series, robot, &[])?;
-        let mut candidates = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
+        let families = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
+        let mut candidates: Vec<Candidate> =
+            families.iter().flat_map(|family| family.candidates(series)).collect();
         let mut always = base.columns.clone();
         always.extend(nuisance::columns(&series.averages, &base.predicted_w));
         // Errors taken as alike are all of power.

@@ -33,8 +33,9 @@ impl Refitted {
     ) -> Result<Self, Error> {
         let mut columns = base.columns.clone();
         let mut before: Vec<f64> = base.moved.iter().map(|moved| -moved).collect();
-        before.extend(vec![0.0; base.shared.len()]);
-        columns.extend(base.shared.iter().cloned());
+        let shared = base.shared(series);
+        before.extend(vec![0.0; shared.len()]);
+        columns.extend(shared);
         let mut known = vec![1.0; columns.len()];
         let applied: Vec<Applied> = found.iter().map(|f| f.applied.clone()).collect();
         for (i, one) in found.iter().enumerate() {

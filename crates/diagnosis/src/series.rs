@@ -205,7 +205,7 @@ impl Series {
         let mut seen = Vec::with_capacity(self.recorded.len());
         for part in &self.parts {
             let rows = part.predict(robot, if part.suspect { suspect } else { healthy }, &self.meters)?;
-            self.meters.iter().for_each(|meter| seen.extend(part.averaged(*meter, &rows)));
+            seen.extend(part.averaged(&self.meters, &rows));
         }
         Ok(seen)
     }

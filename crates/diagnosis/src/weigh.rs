@@ -10,7 +10,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use crate::{
     Error,
     baseline::{Baseline, differences},
-    candidates::{self, Candidate},
+    candidates::{self, Candidate, Family},
     evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
@@ -62,7 +62,7 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, bes
     columns.extend(beside.iter().map(|c| white.of(c)));
     known.resize(columns.len(), 0.0);
     offset.resize(columns.len(), 0.0);
-    let shared: Vec<Vec<f64>> = by.shared.iter().map(|c| white.of(c)).collect();
+    let shared: Vec<Vec<f64>> = by.shared(series).iter().map(|c| white.of(c)).collect();
     let errors = white.of(&differences(&series.recorded, &base.predicted_w));
     let channel: Vec<usize> = series.averages.iter().map(|a| a.channel).collect();
     let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &shared };
@@ -99,9 +99,13 @@ pub(crate) fn weigh_all(
     applied: &[Applied],
     null: &Null,
 ) -> Result<(Vec<Weighed>, usize), Error> {
-    let candidates = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
-    let scales = Scales::new(series, base, null, &candidates);
-    let mut weighed: Vec<Weighed> = candidates.into_par_iter().filter_map(|one| scales.weigh(one)).collect();
+    let families = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
+    let scales = Scales::new(series, base, null, &families);
+    let best_of = |family: &Family| {
+        let weighed = family.candidates(series).filter_map(|one| scales.weigh(one));
+        weighed.reduce(|best, one| if one.score > best.score { one } else { best })
+    };
+    let mut weighed: Vec<Weighed> = families.par_iter().filter_map(best_of).collect();
     best_of_each(&mut weighed);
     // What is strong is not in proportion to what little of it does.
     let closer: Vec<Option<Weighed>> = weighed
@@ -146,9 +150,9 @@ struct Scales<'a> {
 }
 
 impl<'a> Scales<'a> {
-    fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, candidates: &[Candidate]) -> Self {
+    fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, families: &[Family]) -> Self {
         let mut tried = BTreeMap::new();
-        candidates.iter().for_each(|candidate| *tried.entry(name(candidate)).or_default() += 1);
+        families.iter().for_each(|family| *tried.entry(family.name()).or_default() += family.count() as u32);
         Scales {
             series,
             base,
@@ -157,7 +161,7 @@ impl<'a> Scales<'a> {
             all_fitted: system(series, base),
             delay_apart: undelayed(series, base),
             tried,
-            all: candidates.len() as f64,
+            all: families.iter().map(Family::count).sum::<usize>() as f64,
         }
     }
 
