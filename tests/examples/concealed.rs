@@ -6,8 +6,11 @@
 
 use std::{collections::BTreeMap, path::Path, time::Instant};
 
-use diagnosis::{Diagnosis, Verdict, diagnose};
-use model::Robot;
+use diagnosis::{Diagnosis, Question, Verdict, diagnose};
+use model::{
+    Robot,
+    mechanism::{self, Mechanism},
+};
 use recording::{Recording, read_paths};
 use world::{Case, CaseKind, Drive, EffectName, Family, RobotFile, World, simulate};
 
@@ -43,8 +46,14 @@ fn main() {
             let suspect = record(folder.path(), &case.world, &file, &case.drive);
             let healthy = record(folder.path(), &case.reference_world, &file, &case.reference_drive);
             let began = Instant::now();
-            let found = diagnose(&robot, &suspect, Some(&healthy), &|_, _| {}).unwrap();
+            let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
             say(kind, seed, &case, &found, began);
+            if let Some(truth) = mechanism_of(kind).filter(|_| is_named(kind, &found)) {
+                let question = Question::new(&robot, &suspect, Some(&healthy));
+                let without = diagnose(&Question { ruled_out: &[truth], ..question }, &|_, _| {}).unwrap();
+                print!("    ruled out: ");
+                say(kind, seed, &case, &without, began);
+            }
             let count = counts.entry(family(kind)).or_default();
             count.cases += 1;
             count.noticed += u32::from(found.verdict != Verdict::Consistent);
@@ -69,6 +78,12 @@ fn family(kind: CaseKind) -> &'static str {
         CaseKind::One(effect) if effect.family() == Family::Unlisted => "outside the list",
         _ => "listed",
     }
+}
+
+/// The mechanism that a case conceals, if the library holds it.
+fn mechanism_of(kind: CaseKind) -> Option<&'static dyn Mechanism> {
+    let CaseKind::One(effect) = kind else { return None };
+    mechanism::by_name(serde_json::to_value(effect).unwrap().as_str()?)
 }
 
 fn is_named(kind: CaseKind, found: &Diagnosis) -> bool {

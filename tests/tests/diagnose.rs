@@ -245,6 +245,10 @@ fn over_http_a_diagnosis_is_a_job_with_the_same_report() {
     server
         .post_json("/v1/diagnose", &json!({"robot": "husky-a200", "recordings": []}))
         .problem(400, "invalid-request");
+    let body = json!({"robot": "husky-a200", "recordings": [id], "ruled_out": ["payload", "gremlins"]});
+    let problem = server.post_json("/v1/diagnose", &body).problem(400, "invalid-request");
+    assert_eq!(problem["errors"][0]["pointer"], "/ruled_out/1", "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("drivetrain_drag"), "{problem}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use diagnosis::{Diagnosis, Verdict, diagnose};
+use diagnosis::{Diagnosis, Question, Verdict, diagnose};
 use model::Robot;
 use recording::{Channel, Recording, read_paths};
 use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
@@ -28,7 +28,7 @@ fn record(seed: u64, effects: Vec<Effect>) -> Recording {
 }
 
 fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {
-    diagnose(robot, suspect, Some(healthy), &|_, _| {}).unwrap()
+    diagnose(&Question::new(robot, suspect, Some(healthy)), &|_, _| {}).unwrap()
 }
 
 fn names(found: &Diagnosis) -> Vec<&str> {
@@ -62,6 +62,28 @@ fn a_difference_is_named_and_the_same_dealt_anew_against_its_inputs_is_not() {
     }
     let found = said(&robot, &dealt, &healthy);
     assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+}
+
+/// Strong effects that set in half way and that no other mechanism is like.
+const UNLIKE_OTHERS: [(EffectName, f64, &str); 2] =
+    [(EffectName::DrivetrainDrag, 14.0, "drivetrain_drag"), (EffectName::PitchBias, 0.023, "pitch_bias")];
+
+#[test]
+fn what_is_ruled_out_is_missed_and_not_given_another_name() {
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    for (effect, strength, name) in UNLIKE_OTHERS {
+        let effect = Effect { onset_s: 300.0, ..Effect::new(effect, strength) };
+        let suspect = record(32, vec![effect]);
+        let question = Question::new(&robot, &suspect, Some(&healthy));
+        let with = diagnose(&question, &|_, _| {}).unwrap();
+        assert_eq!(with.verdict, Verdict::Explained, "{}", with.sentence);
+        assert!(names(&with).contains(&name), "{}", with.sentence);
+        let truth = model::mechanism::by_name(name).unwrap();
+        let without = diagnose(&Question { ruled_out: &[truth], ..question }, &|_, _| {}).unwrap();
+        assert_eq!(without.verdict, Verdict::Unexplained, "{name} ruled out: {}", without.sentence);
+        assert!(!names(&without).contains(&name), "{}", without.sentence);
+    }
 }
 
 /// The real recordings: beside the workspace, or where `JOULEPATH_RECORDINGS` says.

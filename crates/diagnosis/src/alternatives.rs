@@ -98,10 +98,7 @@ pub(crate) fn detectable(
 ) -> Result<(Vec<Detectable>, Vec<&'static str>), Error> {
     let system = system(series, base);
     let (mut sizes, mut none) = (Vec::new(), Vec::new());
-    for mechanism in mechanism::ALL {
-        if applied.iter().any(|a| a.mechanism.name() == mechanism.name()) {
-            continue;
-        }
+    for mechanism in series.others(applied) {
         let least = least_size(series, base, applied, &system, mechanism)?;
         match least {
             Some(size) => sizes.push(size),

@@ -71,9 +71,8 @@ pub(crate) fn all(
     applied: &[Applied],
     predicted_w: &[f64],
 ) -> Result<Vec<Family>, Error> {
-    let acts = |name: &str| applied.iter().any(|a| a.mechanism.name() == name);
-    let others = mechanism::ALL.into_iter().filter(|mechanism| !acts(mechanism.name()));
-    let probes: Vec<(Applied, Vec<usize>)> = others
+    let probes: Vec<(Applied, Vec<usize>)> = series
+        .others(applied)
         .flat_map(|mechanism| {
             grids(mechanism)
                 .into_iter()

@@ -19,6 +19,7 @@ mod evidence;
 mod explainable;
 mod gates;
 mod ground;
+mod judged;
 mod knobs;
 mod linear;
 mod locate;
@@ -43,7 +44,7 @@ mod term;
 mod weigh;
 mod words;
 
-pub use diagnose::{diagnose, diagnose_watched};
+pub use diagnose::{Question, diagnose, diagnose_watched};
 pub use error::Error;
 pub use plain::Plain;
 pub use report::{Diagnosis, Verdict};

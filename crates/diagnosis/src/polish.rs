@@ -1,13 +1,14 @@
 //! A candidate fitted together with the robot and everything found before, at its own nonlinear values.
 
 use model::Robot;
+use nalgebra::DMatrix;
 
 use crate::{
     Error,
     baseline::Baseline,
     candidates,
     series::{Applied, Series},
-    weigh::{Weighed, system},
+    weigh::{Weighed, misfit, system},
 };
 
 /// A fit with a mechanism more.
@@ -21,6 +22,8 @@ pub(crate) struct Polished {
 
 /// Rounds in which robot and mechanism are fitted in turn.
 const POLISHES: usize = 3;
+/// Drop of squared errors, in sigma, that a move has to bring.
+const LEAST_GAIN: f64 = 1.0;
 /// 97.5 % quantile of the normal distribution.
 const NORMAL_975: f64 = 1.959_964;
 
@@ -50,11 +53,61 @@ pub(crate) fn polish(
         covariance = evidence.covariance;
         base = Baseline::fit(series, file, &with(&applied))?;
     }
+    let mut fitted = linear;
+    // Values from a grid are freed at last, as long as that explains more.
+    if fitted.len() < applied.values.len() {
+        for _ in 0..POLISHES {
+            let grid = &one.candidate.linear;
+            let Some(freed) = freed(series, file, others, (&applied, &base), grid)? else { break };
+            (applied, base, covariance, fitted) = freed;
+        }
+    }
     let mut half_widths = vec![None; applied.values.len()];
-    for (j, parameter) in linear.iter().enumerate() {
+    for (j, parameter) in fitted.iter().enumerate() {
         half_widths[*parameter] = Some(NORMAL_975 * covariance[(j, j)].max(0.0).sqrt());
     }
     Ok(Polished { base, applied, half_widths })
+}
+
+/// Values, the fit with them, their covariance, and which of them that is of.
+type Freed = (Applied, Baseline, DMatrix<f64>, Vec<usize>);
+
+/// One step of all values together, or of those that are within their bounds; `None` where neither explains more.
+fn freed(
+    series: &Series,
+    file: &Robot,
+    others: &[Applied],
+    (applied, base): (&Applied, &Baseline),
+    linear: &[usize],
+) -> Result<Option<Freed>, Error> {
+    let all: Vec<usize> = (0..applied.values.len()).collect();
+    let is_within = |parameter: &usize| {
+        let [low, high] = applied.mechanism.bounds(file, *parameter);
+        (low..high).contains(&applied.values[*parameter]) && applied.values[*parameter] > low
+    };
+    let within: Vec<usize> = all.iter().copied().filter(is_within).collect();
+    let before = misfit(series, base, base);
+    for free in [all, within] {
+        let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, applied, &free)?;
+        let white = base.whitening(series);
+        let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
+        let Some(evidence) = system(series, base).weigh(&columns) else { continue };
+        let mut moved = applied.clone();
+        add(&mut moved, file, &free, &limited(applied, &free, &evidence.values, linear));
+        let next = Baseline::fit(series, file, &[others, std::slice::from_ref(&moved)].concat())?;
+        if misfit(series, &next, base) < before - LEAST_GAIN {
+            return Ok(Some((moved, next, evidence.covariance, free)));
+        }
+    }
+    Ok(None)
+}
+
+/// A move of all values, in which those that come from a grid go no farther than to its next point: half their size.
+fn limited(applied: &Applied, free: &[usize], by: &[f64], linear: &[usize]) -> Vec<f64> {
+    let from_grid = || free.iter().zip(by).filter(|(parameter, _)| !linear.contains(parameter));
+    let reach = 0.5 * from_grid().map(|(&parameter, _)| applied.values[parameter].abs()).fold(0.0, f64::max);
+    let beyond = from_grid().map(|(_, by)| by.abs() / reach.max(1e-9)).fold(1.0, f64::max);
+    by.iter().map(|by| by / beyond).collect()
 }
 
 /// Moves values, within what a mechanism can have.

@@ -5,7 +5,10 @@
 
 use std::sync::OnceLock;
 
-use model::{Robot, mechanism::Mechanism};
+use model::{
+    Robot,
+    mechanism::{self, Mechanism},
+};
 use recording::{PowerForm, Recording, Watch, unwatched};
 
 use crate::{Error, discrepancy::Discrepancy, meter::Meter, part::Part};
@@ -36,6 +39,8 @@ pub struct Series {
     /// What each value is of, in the same order.
     pub averages: Vec<Average>,
     watch: Watch,
+    /// Mechanisms that may act.
+    library: Vec<&'static dyn Mechanism>,
     /// What the model misses of these drives; learnt when first needed.
     pub(crate) discrepancy: OnceLock<Discrepancy>,
 }
@@ -113,6 +118,7 @@ impl Series {
             recorded: Vec::new(),
             averages: Vec::new(),
             watch,
+            library: mechanism::ALL.to_vec(),
             discrepancy: OnceLock::new(),
         };
         let mut runs = 0;
@@ -124,6 +130,22 @@ impl Series {
             runs += part.drives.runs.len();
         }
         Ok(series)
+    }
+
+    /// The same drives, known to be without some mechanisms.
+    #[must_use]
+    pub fn without(mut self, ruled_out: &[&'static dyn Mechanism]) -> Self {
+        self.library.retain(|one| ruled_out.iter().all(|other| other.name() != one.name()));
+        self
+    }
+
+    /// Mechanisms that may act beside some that do.
+    pub(crate) fn others<'a>(
+        &'a self,
+        applied: &'a [Applied],
+    ) -> impl Iterator<Item = &'static dyn Mechanism> + 'a {
+        let acts = |name: &str| applied.iter().any(|a| a.mechanism.name() == name);
+        self.library.iter().copied().filter(move |one| !acts(one.name()))
     }
 
     /// Who is asked whether to go on.

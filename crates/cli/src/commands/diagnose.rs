@@ -7,8 +7,9 @@ use std::{
 };
 
 use anyhow::Context;
-use clap::Args;
-use diagnosis::{Diagnosis, diagnose, report::Finding};
+use clap::{Args, builder::PossibleValuesParser};
+use diagnosis::{Diagnosis, Question, diagnose, report::Finding};
+use model::mechanism;
 
 use crate::{failure::BadInput, progress, recorded::Recorded};
 
@@ -19,13 +20,16 @@ pub(crate) struct Arguments {
     /// Recordings of the same robot known to be healthy
     #[arg(long, num_args = 1..)]
     reference: Vec<PathBuf>,
+    /// Mechanisms that are known not to act, such as `payload` of a robot that was weighed
+    #[arg(long, num_args = 1.., value_name = "MECHANISM", value_parser = PossibleValuesParser::new(mechanism::ALL.map(|one| one.name())))]
+    ruled_out: Vec<String>,
     /// Folder for report.json, report.html and corrected-robot.json; it is made if need be
     #[arg(long)]
     out: PathBuf,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { recorded, reference, out } = arguments;
+    let Arguments { recorded, reference, ruled_out, out } = arguments;
     make_folder(out)?;
     let (robot, suspect) = recorded.read()?;
     let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference)?) };
@@ -34,7 +38,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bar.set_position((share * progress::STEPS as f64) as u64);
         bar.set_message(step.to_owned());
     };
-    let found = diagnose(&robot, &suspect, healthy.as_ref(), &told);
+    let ruled_out: Vec<_> = ruled_out.iter().filter_map(|name| mechanism::by_name(name)).collect();
+    let question = Question { ruled_out: &ruled_out, ..Question::new(&robot, &suspect, healthy.as_ref()) };
+    let found = diagnose(&question, &told);
     bar.finish_and_clear();
     let found = found.map_err(|error| recorded.refuse(&error))?;
     let write = |name: &str, text: String| {

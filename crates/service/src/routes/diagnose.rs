@@ -3,8 +3,11 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use diagnosis::diagnose_watched;
-use model::Robot;
+use diagnosis::{Question, diagnose_watched};
+use model::{
+    Robot,
+    mechanism::{self, Mechanism},
+};
 use recording::Map;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -41,6 +44,10 @@ pub struct DiagnoseRequest {
     #[serde(default)]
     #[schema(max_items = 1000)]
     pub reference: Vec<String>,
+    /// Names of mechanisms that are known not to act, such as `payload` of a robot that was weighed. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 20)]
+    pub ruled_out: Vec<String>,
     /// Name of a built-in map, or a map, to read all recordings with. Default: the one that each was stored with.
     #[schema(value_type = Option<Object>)]
     pub map: Option<Value>,
@@ -91,13 +98,14 @@ struct Work {
     robot: Robot,
     suspect: Vec<Note>,
     healthy: Vec<Note>,
+    ruled_out: Vec<&'static dyn Mechanism>,
     map: Option<Map>,
 }
 
 impl Work {
     /// Refuses at once what can be known without reading a recording.
     async fn prepare(engine: &Engine, request: DiagnoseRequest) -> Result<Work, Problem> {
-        let DiagnoseRequest { robot, recordings, reference, map } = request;
+        let DiagnoseRequest { robot, recordings, reference, ruled_out, map } = request;
         for (ids, least, field) in [(&recordings, 1, "/recordings"), (&reference, 0, "/reference")] {
             let count = ids.len();
             if !(least..=MOST_RECORDINGS).contains(&count) {
@@ -110,6 +118,7 @@ impl Work {
             robot: robot.robot()?,
             suspect: notes(engine, &recordings, "/recordings").await?,
             healthy: notes(engine, &reference, "/reference").await?,
+            ruled_out: mechanisms(&ruled_out)?,
             map: map.as_ref().map(map_from).transpose()?,
         })
     }
@@ -124,11 +133,24 @@ impl job_run::Work for Work {
             _ => Some(read(engine, job, &self.healthy, map, "/reference")?),
         };
         let tell = |step: &str, share: f64| job.tell(step, Some(share));
-        let found = diagnose_watched(&self.robot, &suspect, healthy.as_ref(), &tell, &job.watch());
+        let question =
+            Question { ruled_out: &self.ruled_out, ..Question::new(&self.robot, &suspect, healthy.as_ref()) };
+        let found = diagnose_watched(&question, &tell, &job.watch());
         let found = found.map_err(|error| Problem::no_diagnosis(&error))?;
         let mut answer = to_value(&found)?;
         answer["robot"] = to_value(&found.corrected_robot)?;
         answer["trace"] = to_value(&found.trace.thinned(MOST_POINTS))?;
         Ok(answer)
     }
+}
+
+fn mechanisms(names: &[String]) -> Result<Vec<&'static dyn Mechanism>, Problem> {
+    let of = |(i, name): (usize, &String)| {
+        mechanism::by_name(name).ok_or_else(|| {
+            let known = mechanism::ALL.map(|one| one.name()).join(", ");
+            let detail = format!("there is no mechanism {name:?}; there are {known}");
+            Problem::new(ProblemType::InvalidRequest, detail).at(format!("/ruled_out/{i}"))
+        })
+    };
+    names.iter().enumerate().map(of).collect()
 }

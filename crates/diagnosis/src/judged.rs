@@ -1,0 +1,277 @@
+//! What the fits say: the verdict, the findings, and where the drives differed.
+
+use model::Robot;
+use recording::{Channel, Recording};
+
+use crate::{
+    Error,
+    baseline::{Baseline, differences},
+    discover::Discovered,
+    explainable::explained_share,
+    locate,
+    refitted::{Refitted, bias_w, rmse_w},
+    report::{
+        BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
+        Verdict,
+    },
+    search::{Found, Search},
+    series::{Applied, Series},
+    words,
+};
+
+/// Share of held-out errors that may be explainable where nothing is missing.
+const LITTLE: f64 = 0.06;
+/// Share of what was explainable before that may remain so.
+const REMAINS: f64 = 0.35;
+/// Share of power that may be explainable where nothing is missing: of drives of another kind than the healthy ones, what the
+/// model misses of a robot in order reaches 1.1 %.
+const MISFIT: f64 = 0.015;
+/// How many times what models usually miss may be left where all is explained.
+const BEYOND_USUAL: f64 = 2.0;
+
+/// What the fits before, with each finding, and after say.
+pub(crate) struct Judged {
+    pub(crate) baseline: BaselineFit,
+    pub(crate) corrected: CorrectedFit,
+    /// Before, and with each finding more.
+    steps: Vec<Refitted>,
+    held_out_rmse_w: Vec<f64>,
+    pub(crate) explainable: [f64; 2],
+    /// Mean size of the power under suspicion.
+    mean_w: f64,
+    /// What is left of errors held out beyond noise in healthy drives [W].
+    usual_w: f64,
+    filed_w: Vec<f64>,
+    /// Terms outside the list, which the last steps have.
+    pub(crate) discovered: Vec<Discovered>,
+}
+
+impl Judged {
+    pub(crate) fn new(series: &Series, file: &Robot, found: &Search) -> Result<Self, Error> {
+        let filed_w = series.predict(file, &[])?;
+        let filed_errors_w = differences(&series.recorded, &filed_w);
+        let mut steps = vec![Refitted::new(series, &found.before, &[], &[])?];
+        for count in 1..=found.found.len() {
+            let part: Vec<&Found> = found.found.iter().take(count).collect();
+            let applied: Vec<Applied> = part.iter().map(|f| f.applied.clone()).collect();
+            let base = Baseline::fit(series, file, &applied)?;
+            steps.push(Refitted::new(series, &base, &part, &[])?);
+        }
+        let held_out_rmse_w: Vec<f64> = steps.iter().map(|step| rmse_w(series, &step.held_out_w)).collect();
+        let last = steps.len() - 1;
+        let corrected = CorrectedFit {
+            rmse_w: rmse_w(series, &steps[last].errors_w),
+            held_out_rmse_w: held_out_rmse_w[last],
+        };
+        let baseline = BaselineFit {
+            rmse_w: rmse_w(series, &filed_errors_w),
+            bias_w: bias_w(series, &filed_errors_w),
+            held_out_rmse_w: held_out_rmse_w[0],
+            noise_floor_w: floor_w(series, &found.after).min(corrected.rmse_w),
+        };
+        let before = explained_share(series, &found.before, &steps[0].errors_w);
+        let after = if found.found.is_empty() {
+            before
+        } else {
+            explained_share(series, &found.after, &steps[last].errors_w)
+        };
+        let explainable = [before, after];
+        let discovered = Vec::new();
+        let sizes: Vec<f64> = series.recorded.iter().map(|w| w.abs()).collect();
+        let mean_w = bias_w(series, &sizes);
+        let usual_w = usual_w(series, &found.after, &steps[last].held_out_w);
+        Ok(Judged {
+            baseline,
+            corrected,
+            steps,
+            held_out_rmse_w,
+            explainable,
+            mean_w,
+            usual_w,
+            filed_w,
+            discovered,
+        })
+    }
+
+    /// Adds terms outside the list, one after the other.
+    pub(crate) fn take_up(
+        &mut self,
+        series: &Series,
+        found: &Search,
+        discovered: Vec<Discovered>,
+    ) -> Result<(), Error> {
+        let mechanisms: Vec<&Found> = found.found.iter().collect();
+        for count in 1..=discovered.len() {
+            let step = Refitted::new(series, &found.after, &mechanisms, &discovered[..count])?;
+            self.corrected = CorrectedFit {
+                rmse_w: rmse_w(series, &step.errors_w),
+                held_out_rmse_w: rmse_w(series, &step.held_out_w),
+            };
+            self.held_out_rmse_w.push(self.corrected.held_out_rmse_w);
+            self.steps.push(step);
+        }
+        self.discovered = discovered;
+        Ok(())
+    }
+
+    pub(crate) fn verdict(&self, found: &Search) -> Verdict {
+        let [before, after] = self.explainable;
+        let is_little = |explainable: f64| {
+            explainable <= LITTLE || explainable.sqrt() * self.corrected.rmse_w <= MISFIT * self.mean_w
+        };
+        let usual_w = self.usual_w.max(MISFIT * self.mean_w);
+        let is_missed = self.missed_share() > REMAINS && self.missed_w() > BEYOND_USUAL * usual_w;
+        let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());
+        match found.found.is_empty() {
+            true if is_little(before) => Verdict::Consistent,
+            true => Verdict::Unexplained,
+            false
+                if is_missed
+                    || !self.discovered.is_empty()
+                    || !is_little(after) && after > REMAINS * before =>
+            {
+                Verdict::Unexplained
+            }
+            false if is_alone => Verdict::Explained,
+            false => Verdict::Ambiguous,
+        }
+    }
+
+    /// What is left of errors held out beyond noise [W].
+    fn missed_w(&self) -> f64 {
+        (self.corrected.held_out_rmse_w.powi(2) - self.baseline.noise_floor_w.powi(2)).max(0.0).sqrt()
+    }
+
+    /// The same as a share of what was there before, both squared: mechanisms that take the place of what is missing follow it
+    /// here and there, but not all through the drives.
+    fn missed_share(&self) -> f64 {
+        let BaselineFit { held_out_rmse_w, noise_floor_w, .. } = self.baseline;
+        self.missed_w().powi(2) / (held_out_rmse_w.powi(2) - noise_floor_w.powi(2)).max(1e-12)
+    }
+
+    pub(crate) fn findings(&self, series: &Series, found: &Search) -> Vec<Finding> {
+        let mut rmse_w = self.held_out_rmse_w.windows(2).map(|pair| [pair[0], pair[1]]);
+        let mut findings: Vec<Finding> =
+            found.found.iter().zip(&mut rmse_w).map(|(f, rmse_w)| finding(f, rmse_w)).collect();
+        findings.extend(self.discovered.iter().zip(rmse_w).map(|(d, rmse_w)| d.finding(series, rmse_w)));
+        findings
+    }
+
+    /// Where the errors are that the findings take away; where nothing was found, those beyond noise.
+    pub(crate) fn places(
+        &self,
+        series: &Series,
+        found: &Search,
+        suspect: &Recording,
+    ) -> Result<Vec<Place>, Error> {
+        if self.verdict(found) == Verdict::Consistent {
+            return Ok(Vec::new());
+        }
+        let after = &found.after;
+        let variance = |i: usize| after.noise.sigma(&series.averages[i], after.predicted_w[i]).powi(2);
+        let errors_w = self.steps.last().map_or(&[][..], |step| &step.errors_w);
+        let excess: Vec<f64> = if found.found.is_empty() {
+            errors_w.iter().enumerate().map(|(i, e)| e * e / variance(i) - 1.0).collect()
+        } else {
+            // The corrected robot with what was found switched off.
+            let without_w = series.predict(&after.robot, &[])?;
+            let off = |i: usize| errors_w[i] + after.predicted_w[i] - without_w[i];
+            (0..errors_w.len()).map(|i| (off(i).powi(2) - errors_w[i].powi(2)) / variance(i)).collect()
+        };
+        let runs: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
+        let mut places = locate::places(series, &excess, &runs);
+        if places.is_empty() {
+            let range = Range { quantity: "t_s", from: None, to: None, name: None };
+            let statement = "all through the drives, nowhere in particular".into();
+            places.push(Place { kind: "time", statement, range, share_of_excess: 1.0 });
+        }
+        Ok(places)
+    }
+
+    pub(crate) fn trace(&self, series: &Series, recording: &Recording) -> Trace {
+        let count = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+        let errors_w = self.steps.last().map_or(&[][..], |step| &step.errors_w);
+        let all = |values: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            (0..count).map(|i| (0..series.channels()).map(|c| values(i + c * count)).sum()).collect()
+        };
+        let averages = &series.averages[..count];
+        Trace {
+            run: averages.iter().map(|a| a.run).collect(),
+            t_s: averages.iter().map(|a| a.t_s).collect(),
+            recorded_w: all(&|i| series.recorded[i]),
+            filed_w: all(&|i| self.filed_w[i]),
+            corrected_w: all(&|i| series.recorded[i] - errors_w[i]),
+            runs: recording.runs.iter().map(|run| run.name.clone()).collect(),
+            position_m: averages.iter().map(|a| position_m(recording, a.run, a.t_s)).collect(),
+        }
+    }
+}
+
+/// Where the robot was so long after a drive began.
+fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
+    let rows = recording.runs.get(run)?.rows.clone();
+    let times = recording.t_s.get(rows.clone())?;
+    let wanted_s = times.first()? + t_s;
+    let row = rows.start + times.partition_point(|t| *t < wanted_s).min(times.len() - 1);
+    let at = [Channel::X, Channel::Y].map(|channel| recording.channel(channel).map(|values| values[row]));
+    match at {
+        [Some(x), Some(y)] if x.is_finite() && y.is_finite() => Some([x, y]),
+        _ => None,
+    }
+}
+
+/// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].
+fn floor_w(series: &Series, base: &Baseline) -> f64 {
+    let counts = (0..series.averages.len()).filter(|i| series.averages[*i].suspect && series.is_power(*i));
+    let fresh = |i: usize| base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]).powi(2);
+    let squares: Vec<f64> = counts.map(fresh).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+/// What is left of the errors of healthy drives beyond noise [W].
+fn usual_w(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
+    let healthy = |i: &usize| !series.averages[*i].suspect && series.is_power(*i);
+    let beyond = |i: usize| {
+        let fresh_w = base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]);
+        errors_w[i].powi(2) - fresh_w.powi(2)
+    };
+    let beyond: Vec<f64> = (0..series.averages.len()).filter(healthy).map(beyond).collect();
+    (beyond.iter().sum::<f64>() / beyond.len().max(1) as f64).max(0.0).sqrt()
+}
+
+fn finding(found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
+    let applied = &found.applied;
+    let mechanism = applied.mechanism;
+    let numbers = mechanism.parameters().iter().zip(applied.values.iter().zip(&found.half_widths));
+    let mut parameters: Vec<FoundParameter> = numbers
+        .map(|(parameter, (&value, half))| FoundParameter {
+            name: parameter.name,
+            value,
+            unit: parameter.unit,
+            interval_95: half.map(|half| [value - half, value + half]),
+        })
+        .collect();
+    let mut statement = words::capital(&mechanism.statement(&applied.values));
+    if applied.from_s > 0.0 {
+        parameters.push(FoundParameter {
+            name: "from_s",
+            value: applied.from_s,
+            unit: "s",
+            interval_95: found.onset_95_s,
+        });
+        statement += &format!(", from about {:.0} s on", applied.from_s);
+    }
+    Finding {
+        mechanism: mechanism.name().to_owned(),
+        statement,
+        equation: mechanism.equation().to_owned(),
+        parameters,
+        evidence: EvidenceFigures {
+            p_value: found.p_value,
+            delta_bic: found.delta_bic,
+            held_out_gain: found.held_out_gain,
+        },
+        indistinguishable_from: found.indistinguishable_from.clone(),
+        fit: FindingFit { held_out_rmse_before_w: before_w, held_out_rmse_after_w: after_w },
+    }
+}
