@@ -29,10 +29,10 @@ impl Mechanism for SurfaceChange {
     }
 
     fn statement(&self, values: &[f64]) -> String {
+        // Adding nothing makes a zero of either sign positive.
+        let [rolls, skids] = [values[0], values[1]].map(|change| (100.0 * change).round() + 0.0);
         format!(
-            "the ground is another: it rolls {:+.0} % and skids {:+.0} % against what was fitted",
-            100.0 * values[0],
-            100.0 * values[1]
+            "the ground is another: it rolls {rolls:+.0} % and skids {skids:+.0} % against what was fitted"
         )
     }
 
@@ -42,5 +42,16 @@ impl Mechanism for SurfaceChange {
             mu_skid: 1.0 + values[1],
             ..Adjustment::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_has_no_sign() {
+        let statement = SurfaceChange.statement(&[0.57, -0.001]);
+        assert!(statement.contains("rolls +57 % and skids +0 %"), "{statement}");
     }
 }
