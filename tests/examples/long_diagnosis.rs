@@ -29,7 +29,7 @@ fn main() {
         suspect.rows(),
         healthy.rows(),
         began.elapsed().as_secs_f64(),
-        peak_mb()
+        joulepath_tests::peak_memory_bytes("self").map_or(f64::NAN, |bytes| bytes as f64 / 1e6)
     );
     println!("{}: {}", found.verdict, found.sentence);
 }
@@ -45,11 +45,4 @@ fn record(folder: &Path, seed: u64, effects: Vec<Effect>, duration_s: f64) -> Re
         .write_csv(std::fs::File::create(&path).unwrap())
         .unwrap();
     read_paths(&[path], None).unwrap().0
-}
-
-/// The most memory that the process has held; Linux tells.
-fn peak_mb() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok()).map_or(f64::NAN, |kb| kb / 1024.0)
 }

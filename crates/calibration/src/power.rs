@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use model::{
-    Attitude, Friction, FrictionShape, Grade, Manoeuvre, Motion, Power, Robot, Sides,
+    Friction, FrictionShape, Grade, Manoeuvre, Motion, Power, Robot,
     mechanism::{Adjustment, Moment},
     robot::Surface,
 };
@@ -38,7 +38,7 @@ const KEPT_SHAPES: usize = 3;
 impl<'a> PowerModel<'a> {
     /// Prepares drives.
     pub fn new(drives: &'a Drives) -> Self {
-        let grade = drives.rows.par_iter().map(grade).collect();
+        let grade = drives.rows.par_iter().map(|row| row.attitude().grade()).collect();
         PowerModel { drives, surface: surface_of_rows(drives), grade, shapes: RefCell::default() }
     }
 
@@ -60,7 +60,7 @@ impl<'a> PowerModel<'a> {
             let ground = &ground[average.surface];
             drives.mean(average, |i| {
                 let row = &drives.rows[i];
-                wanted(row, &power(robot, ground, row, motion(robot, row), &shapes[i], grade[i]))
+                wanted(row, &power(robot, ground, row, row.motion(robot), &shapes[i], grade[i]))
             })
         };
         Ok(drives.averages.par_iter().with_min_len(LEAST_AVERAGES).map(mean).collect())
@@ -92,7 +92,7 @@ impl<'a> PowerModel<'a> {
         shapes.by_row.par_iter_mut().enumerate().for_each(|(i, shape)| {
             let at = surface[i] as usize;
             if known[at] != scales_rad[at] {
-                *shape = FrictionShape::new(robot, scales_rad[at], &motion(robot, &rows[i]));
+                *shape = FrictionShape::new(robot, scales_rad[at], &rows[i].motion(robot));
             }
         });
         shapes.scales_rad = scales_rad;
@@ -163,9 +163,9 @@ impl<'r> Ground<'r> {
 
     /// Power of one row.
     pub(crate) fn power(&self, robot: &Robot, row: &Row) -> Power {
-        let motion = motion(robot, row);
+        let motion = row.motion(robot);
         let shape = FrictionShape::new(robot, self.surface.slip_angle_scale_rad, &motion);
-        power(robot, self, row, motion, &shape, grade(row))
+        power(robot, self, row, motion, &shape, row.attitude().grade())
     }
 }
 
@@ -189,10 +189,6 @@ fn unknown_surface(drives: &Drives, robot: &Robot, surface: usize) -> Error {
     }
 }
 
-fn grade(row: &Row) -> Grade<f64> {
-    Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad }.grade()
-}
-
 /// The power of one row, by the model's one function.
 #[inline]
 fn power(
@@ -205,7 +201,7 @@ fn power(
 ) -> Power {
     let acceleration = row.acceleration(robot);
     let adjustment = if ground.adjusted {
-        let attitude = Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad };
+        let attitude = row.attitude();
         let (rim_mps2, loss_w) = (row.rim_mps2, row.loss_w);
         let moment =
             Moment { motion: motion.heading(row.heading_rad), acceleration, rim_mps2, attitude, loss_w };
@@ -215,11 +211,6 @@ fn power(
     };
     let manoeuvre = Manoeuvre::adjusted(robot, &ground.friction, motion, shape, row.motor_c, &adjustment);
     manoeuvre.power_on_grade(grade, acceleration)
-}
-
-/// Encoders dither about zero while a robot stands; rolling resistance would follow them.
-fn motion(robot: &Robot, row: &Row) -> Motion {
-    Motion::of_wheels(robot, if row.stands() { Sides::both(0.0) } else { row.rim_mps })
 }
 
 /// What a recording of a form would show of a power: left and right, or battery alone (the second value is then 0) \[W\].

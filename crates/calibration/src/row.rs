@@ -1,6 +1,6 @@
 //! One row of a recording: what the model is asked about.
 
-use model::{Acceleration, Robot, Sides};
+use model::{Acceleration, Attitude, Motion, Robot, Sides};
 use rayon::prelude::*;
 use recording::{Channel, Recording};
 
@@ -54,6 +54,16 @@ impl Row {
             forward_mps2: moved * self.rim_mps2.sum() / 2.0,
             yaw_radps2: moved * (self.rim_mps2.right - self.rim_mps2.left) / robot.slip_track_m,
         }
+    }
+
+    /// How the robot moves. Encoders dither about zero while it stands; rolling resistance would follow them.
+    pub fn motion(&self, robot: &Robot) -> Motion {
+        Motion::of_wheels(robot, if self.stands() { Sides::both(0.0) } else { self.rim_mps })
+    }
+
+    /// How it stands on the ground.
+    pub fn attitude(&self) -> Attitude {
+        Attitude { pitch_rad: self.pitch_rad, roll_rad: self.roll_rad }
     }
 
     /// Both sides stand.

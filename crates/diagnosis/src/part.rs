@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use calibration::{Drives, average, drives::Stretch, losses, power::seen_w, row::Row};
 use model::{
-    Attitude, Friction, FrictionShape, Grade, Manoeuvre, Motion, Robot, Sides, mechanism::Moment,
-    robot::Surface,
+    Friction, FrictionShape, Grade, Manoeuvre, Motion, Robot, Sides, mechanism::Moment, robot::Surface,
 };
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
@@ -75,7 +74,7 @@ impl Part {
             None => vec![f64::NAN; drives.averages.len()],
         };
         let height_m = ground::heights_m(recording);
-        let grade = drives.rows.par_iter().map(|row| attitude(row).grade()).collect();
+        let grade = drives.rows.par_iter().map(|row| row.attitude().grade()).collect();
         let shapes = Shapes::default();
         Ok(Part {
             heading_rad,
@@ -233,7 +232,7 @@ impl Part {
             for stretch in &self.drives.stretches {
                 let scale_rad = scales_rad[stretch.surface];
                 let rows = &self.drives.rows[stretch.rows.clone()];
-                let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &motion(robot, row));
+                let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &row.motion(robot));
                 let shapes = &mut shapes[stretch.rows.clone()];
                 shapes.par_iter_mut().zip(rows).with_min_len(512).for_each(|(to, row)| *to = shape(row));
             }
@@ -262,10 +261,10 @@ impl Part {
         let On { robot, surface, friction, shapes, meters } = on;
         let row: &Row = &self.drives.rows[i];
         let driven = Moment {
-            motion: motion(robot, row).heading(self.heading_rad[i]),
+            motion: row.motion(robot).heading(self.heading_rad[i]),
             acceleration: row.acceleration(robot),
             rim_mps2: row.rim_mps2,
-            attitude: attitude(row),
+            attitude: row.attitude(),
             loss_w,
         };
         let acting = || applied.iter().filter(|a| t_s >= a.from_s);
@@ -325,13 +324,4 @@ impl<'a> On<'a> {
         let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
         Ok(On { robot, surface, friction: Friction::new(robot, surface), shapes, meters })
     }
-}
-
-/// Encoders dither about zero while a robot stands.
-fn motion(robot: &Robot, row: &Row) -> Motion {
-    Motion::of_wheels(robot, if row.stands() { Sides::both(0.0) } else { row.rim_mps })
-}
-
-fn attitude(row: &Row) -> Attitude {
-    Attitude { pitch_rad: row.pitch_rad, roll_rad: row.roll_rad }
 }
