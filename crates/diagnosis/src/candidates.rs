@@ -22,6 +22,15 @@ pub(crate) struct Candidate {
 const ONSETS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Time constants of heat that are tried [s].
 const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
+/// Range of a value that power does not follow in proportion, where the drives themselves would lead it away: heat that comes
+/// and goes within seconds is no heat, but power by another name.
+pub(crate) fn range(mechanism: &dyn mechanism::Mechanism, robot: &Robot, parameter: usize) -> [f64; 2] {
+    match (mechanism.name(), parameter) {
+        ("motor_heating", 1) => [MEMORIES_S[0], MEMORIES_S[MEMORIES_S.len() - 1]],
+        _ => mechanism.bounds(robot, parameter),
+    }
+}
+
 /// Winds that are tried [m/s], in eight directions.
 const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
 
@@ -163,6 +172,8 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
             }
             winds
         }
+        // To the side alone as well: how far forward it lies can only add.
+        "center_of_mass" => vec![(vec![0.0; 2], vec![0, 1]), (vec![0.0; 2], vec![1])],
         _ => {
             let count = mechanism.parameters().len();
             vec![(vec![0.0; count], (0..count).collect())]

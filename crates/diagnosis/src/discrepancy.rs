@@ -62,6 +62,11 @@ impl Discrepancy {
         Discrepancy { channels: means.iter().enumerate().map(process).collect() }
     }
 
+    /// Size of the largest function of so many first channels, as a share of the channel's mean.
+    pub(crate) fn share(&self, channels: usize) -> f64 {
+        self.channels.iter().take(channels).map(|process| process.share).fold(0.0, f64::max)
+    }
+
     /// Columns with weights of one sigma 1, by the mean size of each channel.
     pub(crate) fn columns(&self, averages: &[Average], means: &[f64]) -> Vec<Vec<f64>> {
         let told =

@@ -2,6 +2,11 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::{
+    regime::{self, Regime},
+    shared::Shared,
+};
+
 /// Whitened errors, everything that is fitted whatever the candidate, and the blocks that count as one piece of evidence each.
 ///
 /// Rows are those that are recorded, then one for what is known before of each column, then one for each shared column.
@@ -15,6 +20,8 @@ pub(crate) struct System {
     rows: usize,
     /// Block by row.
     block: Vec<usize>,
+    /// Regime by row.
+    regime: Vec<Regime>,
     blocks: usize,
     /// The columns that shared ones do not explain.
     own: DMatrix<f64>,
@@ -22,17 +29,6 @@ pub(crate) struct System {
     inverse: DMatrix<f64>,
     /// The errors that are left when nothing but what is fitted always is.
     left: DVector<f64>,
-}
-
-/// Columns of one channel whose weights have a width of 1, about 0.
-struct Shared {
-    /// Rows of the channel.
-    places: Vec<usize>,
-    columns: DMatrix<f64>,
-    /// Of their products, with what is known before.
-    root: Cholesky<f64, Dyn>,
-    /// Row of the first of them.
-    first: usize,
 }
 
 /// What is fitted whatever the candidate, whitened.
@@ -56,11 +52,19 @@ pub(crate) struct Evidence {
     pub(crate) wald: f64,
     /// The whitened sensitivities that nothing else explains.
     pub(crate) own: DMatrix<f64>,
+    /// Scatter of its size from regime to regime, over what chance makes of it, squared; 1 where they agree (Birge, Phys. Rev. 40,
+    /// 1932).
+    pub(crate) discord: f64,
 }
 
 impl System {
     /// Puts a system together of errors, whose rows belong to channels and blocks.
-    pub(crate) fn new(errors: Vec<f64>, fitted: &Fitted<'_>, channel: &[usize], block: Vec<usize>) -> Self {
+    pub(crate) fn new(
+        errors: Vec<f64>,
+        fitted: &Fitted<'_>,
+        channel: &[usize],
+        (block, regime): (Vec<usize>, Vec<Regime>),
+    ) -> Self {
         let (rows, count) = (errors.len(), fitted.columns.len());
         let shared = Shared::of(fitted.shared, channel, rows + count);
         let all = rows + count + fitted.shared.len();
@@ -80,7 +84,7 @@ impl System {
         let inverse = inverse(own.tr_mul(&own));
         let left = left.column(0) - &own * (&inverse * own.tr_mul(&left.column(0)));
         let blocks = block.iter().max().map_or(0, |b| b + 1);
-        System { errors, columns, shared, rows, block, blocks, own, inverse, left }
+        System { errors, columns, shared, rows, block, regime, blocks, own, inverse, left }
     }
 
     /// Number of blocks.
@@ -141,7 +145,9 @@ impl System {
         let covariance =
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| robust[(i, j)] * stretch[i] * stretch[j]);
         let wald = (values.transpose() * covariance.clone().try_inverse()? * &values)[(0, 0)];
-        Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own })
+        let rows = self.block.iter().copied().zip(self.regime.iter().copied());
+        let discord = regime::discord(&rows, &(&own * &values), &after, self.blocks);
+        Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own, discord })
     }
 
     /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
@@ -208,37 +214,6 @@ impl System {
             }
         }
         gains
-    }
-}
-
-impl Shared {
-    /// Columns by channel; rows of what is known before begin at `first`.
-    fn of(columns: &[Vec<f64>], channel: &[usize], mut first: usize) -> Vec<Shared> {
-        let of_channel = |column: &Vec<f64>| column.iter().position(|x| *x != 0.0).map(|i| channel[i]);
-        let names: Vec<Option<usize>> = columns.iter().map(of_channel).collect();
-        let mut all = Vec::new();
-        for name in 0..channel.iter().max().map_or(0, |c| c + 1) {
-            let own: Vec<&Vec<f64>> =
-                columns.iter().zip(&names).filter(|(_, n)| **n == Some(name)).map(|(c, _)| c).collect();
-            let places: Vec<usize> = (0..channel.len()).filter(|i| channel[*i] == name).collect();
-            let columns = DMatrix::from_fn(places.len(), own.len(), |i, j| own[j][places[i]]);
-            let square = columns.transpose() * &columns + DMatrix::identity(own.len(), own.len());
-            let Some(root) = Cholesky::new(square) else { continue };
-            all.push(Shared { places, columns, root, first });
-            first += own.len();
-        }
-        all
-    }
-
-    /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
-    fn take(&self, columns: &mut DMatrix<f64>) {
-        for mut column in columns.column_iter_mut() {
-            let own = DVector::from_fn(self.places.len(), |i, _| column[self.places[i]]);
-            let weights = self.root.solve(&self.columns.tr_mul(&own));
-            let left = own - &self.columns * &weights;
-            self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
-            column.rows_mut(self.first, weights.len()).copy_from(&-weights);
-        }
     }
 }
 

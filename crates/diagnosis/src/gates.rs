@@ -23,7 +23,7 @@ const FOLDS: usize = 10;
 const MOST_RIVALS: usize = 6;
 /// Least cosine between what rivals explain.
 const KIN: f64 = 0.5;
-/// Least share of the best's score that a rival's has to reach.
+/// Least share of the chosen one's rank that a rival's has to reach.
 const CONTENDER: f64 = 0.3;
 
 /// The best mechanism that passes every gate, followed by others that may explain the same, and the gain on held-out blocks.
@@ -49,9 +49,10 @@ pub(crate) fn best(
     let chosen = weighed.remove(place);
     let rows = series.recorded.len();
     let is_rival = |other: &Weighed| {
-        other.score > CONTENDER * chosen.score && cosine(&chosen.evidence, &other.evidence, rows) > KIN
+        other.rank > CONTENDER * chosen.rank && cosine(&chosen.evidence, &other.evidence, rows) > KIN
     };
     weighed.retain(is_rival);
+    weighed.sort_by(|a, b| b.rank.total_cmp(&a.rank));
     weighed.truncate(MOST_RIVALS);
     weighed.insert(0, chosen);
     Ok(Some((weighed, gain)))
@@ -65,7 +66,8 @@ pub(crate) fn passes(
     columns: &[Vec<f64>],
 ) -> Option<f64> {
     let acts = acting(system, series, evidence);
-    if acts.iter().filter(|acts| **acts).count() < LEAST_VISITS {
+    let is_suspect = suspects(system, series);
+    if acts.iter().zip(&is_suspect).filter(|(acts, suspect)| **acts && **suspect).count() < LEAST_VISITS {
         return None;
     }
     let gains = system.held_out(columns, FOLDS);
@@ -79,18 +81,21 @@ pub(crate) fn cosine(a: &Evidence, b: &Evidence, rows: usize) -> f64 {
     a.dot(&b).abs() / (a.norm() * b.norm()).max(1e-300)
 }
 
-/// Blocks of the suspect drives in which a candidate acts: where it changes more than a tenth of what it does in a mean block.
+/// Blocks in which a candidate acts: where it changes more than a tenth of what it does in a mean block. What acts all the time in
+/// suspect drives changes what is expected of healthy ones as well, which speak against it as much.
 fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
     let along = &one.own * DVector::from_column_slice(&one.values);
-    let block = blocks(series);
     let mut size = vec![0.0; system.blocks()];
-    let mut suspect = vec![false; system.blocks()];
-    for (i, b) in block.iter().enumerate() {
-        size[*b] += along[i] * along[i];
-        suspect[*b] |= series.averages[i].suspect;
-    }
+    blocks(series).iter().enumerate().for_each(|(i, b)| size[*b] += along[i] * along[i]);
     let mean = size.iter().sum::<f64>() / size.len().max(1) as f64;
-    size.iter().zip(suspect).map(|(size, suspect)| suspect && *size > 0.1 * mean).collect()
+    size.iter().map(|size| *size > 0.1 * mean).collect()
+}
+
+/// Blocks of the suspect drives.
+fn suspects(system: &System, series: &Series) -> Vec<bool> {
+    let mut suspect = vec![false; system.blocks()];
+    blocks(series).iter().zip(&series.averages).for_each(|(b, average)| suspect[*b] |= average.suspect);
+    suspect
 }
 
 /// The gain as a share of the errors, if it is significant over the blocks in which the mechanism acts.

@@ -5,7 +5,7 @@ use model::{
     robot::Surface,
 };
 
-use crate::{alternatives::Explanation, noise::Noise};
+use crate::{alternatives::Explanation, noise::Noise, series::Input};
 
 /// A manoeuvre that anyone can drive.
 struct Figure {
@@ -22,6 +22,17 @@ struct Figure {
     heading_rad: f64,
     /// After so long a drive that motors have reached their temperature.
     warm: bool,
+}
+
+impl Figure {
+    /// What an average of it has for inputs that scatter hangs on.
+    fn input(&self, robot: &Robot) -> Input {
+        Input {
+            difference_mps: self.yaw * 2.0 * robot.max_wheel_speed_mps,
+            accel_mps2: self.gain_mps2,
+            ..Input::default()
+        }
+    }
 }
 
 const PLAIN: Figure =
@@ -71,7 +82,9 @@ pub(crate) fn next_drive(
         let own_w = powers_w(best, figure, surface, by_side)?;
         let apart = |other: &Explanation| {
             let other_w = powers_w(other, figure, surface, by_side)?;
-            let differ = |c: usize| (own_w[c] - other_w[c]).abs() / noise.sigma_of(c, own_w[c]);
+            let differ = |c: usize| {
+                (own_w[c] - other_w[c]).abs() / noise.sigma_of(c, &figure.input(&best.robot), own_w[c])
+            };
             let channel = if differ(1) > differ(0) { 1 } else { 0 };
             Some((differ(channel), own_w[channel] - other_w[channel], channel, other.name))
         };

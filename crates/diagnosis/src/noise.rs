@@ -1,6 +1,6 @@
 //! How far averages scatter about a model that is right, and how they hang together in time.
 
-use crate::series::Average;
+use crate::series::{Average, Input};
 
 /// Scatter of each channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,15 +10,26 @@ pub(crate) struct Noise {
     suspect: Vec<f64>,
 }
 
-/// Variance floor² + (gain P)², with errors of neighbours correlated by ρ.
+/// Variance a² + (b P)² + (c d)² + (e v̇)² + (f ḋ)², with errors of neighbours correlated by ρ.
+///
+/// P is what is predicted, d the difference of both rim speeds, v̇ and ḋ how fast speed and difference change: what models miss of
+/// turns and of gaining speed scatters more than what they miss of driving straight on, at the same power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scatter {
-    /// What remains at no power, in the channel's unit.
-    floor: f64,
-    /// Growth with power [-].
-    gain: f64,
+    /// a², in the channel's unit squared.
+    floor2: f64,
+    /// b², c², e², f².
+    growth2: [f64; GROWTHS],
     /// Correlation from one average to the next.
     rho: f64,
+}
+
+/// What scatter grows with.
+const GROWTHS: usize = 4;
+
+/// Squares of it.
+fn squares(input: &Input, predicted: f64) -> [f64; GROWTHS] {
+    [predicted, input.difference_mps, input.accel_mps2, input.swing_mps2].map(|x| x * x)
 }
 
 /// Most of a correlation that is taken out before fitting; what is left is the blocks' business.
@@ -41,7 +52,7 @@ impl Noise {
         let jumps = |channel: usize, of_trusted: bool| {
             let places =
                 of_channel(channel).filter(|i| *i > 0 && follows(averages, *i) && trusted[*i] == of_trusted);
-            let scaled = |i: usize| errors[i] / channels[channel].sigma(predicted[i]);
+            let scaled = |i: usize| errors[i] / channels[channel].sigma(&averages[i].input, predicted[i]);
             median(&mut places.map(|i| (scaled(i) - scaled(i - 1)).abs()).collect::<Vec<f64>>())
         };
         let more = |channel: usize| {
@@ -53,14 +64,14 @@ impl Noise {
     }
 
     /// One-sigma scatter of a channel about a prediction, in drives that are trusted.
-    pub(crate) fn sigma_of(&self, channel: usize, predicted: f64) -> f64 {
-        self.channels[channel].sigma(predicted)
+    pub(crate) fn sigma_of(&self, channel: usize, input: &Input, predicted: f64) -> f64 {
+        self.channels[channel].sigma(input, predicted)
     }
 
     /// One-sigma scatter of an average about its prediction.
     pub(crate) fn sigma(&self, average: &Average, predicted: f64) -> f64 {
         let more = if average.suspect { self.suspect[average.channel] } else { 1.0 };
-        more * self.sigma_of(average.channel, predicted)
+        more * self.sigma_of(average.channel, &average.input, predicted)
     }
 
     /// What the average before does not tell of an error, one sigma.
@@ -98,47 +109,78 @@ impl Whitening {
 }
 
 impl Scatter {
-    fn sigma(&self, predicted: f64) -> f64 {
-        self.floor.hypot(self.gain * predicted)
+    fn sigma(&self, input: &Input, predicted: f64) -> f64 {
+        let growth = squares(input, predicted).iter().zip(self.growth2).map(|(x, by)| x * by).sum::<f64>();
+        (self.floor2 + growth).sqrt()
     }
 
-    /// Where power is lowest the floor shows, where it is highest the gain; medians, so that what mechanisms do now and then
-    /// matters little.
-    fn of(errors: &[f64], predicted: &[f64], averages: &[Average], mut places: Vec<usize>) -> Self {
-        let in_time = places.clone();
-        places.sort_by(|a, b| predicted[*a].abs().total_cmp(&predicted[*b].abs()));
-        let third = (places.len() / 3).max(1).min(places.len());
-        let spread = |places: &[usize]| {
-            let mut sizes: Vec<f64> = places.iter().map(|i| errors[*i].abs()).collect();
-            // The median of a normal distribution's size is 0.6745 σ.
-            median(&mut sizes) / 0.6745
-        };
-        let level = |places: &[usize]| {
-            let mut sizes: Vec<f64> = places.iter().map(|i| predicted[*i].abs()).collect();
-            median(&mut sizes)
-        };
-        let (low, high) = (&places[..third], &places[places.len() - third..]);
-        let (a, b) = (spread(low).powi(2), spread(high).powi(2));
-        let (p, q) = (level(low).powi(2), level(high).powi(2));
-        // A channel that hardly changes does not tell.
-        let gain2 = if q > VARIES * p { ((b - a) / (q - p)).max(0.0) } else { 0.0 };
-        let floor2 = (a - gain2 * p).max(0.05 * a).max(LEAST_VARIANCE);
-        let sigma = |i: usize| (floor2 + gain2 * predicted[i] * predicted[i]).sqrt();
+    /// Squared errors by their size, large ones cut, so that what mechanisms do now and then matters little (Huber's second
+    /// proposal, Ann. Math. Stat. 35, 1964).
+    fn of(errors: &[f64], predicted: &[f64], averages: &[Average], places: Vec<usize>) -> Self {
+        let mut sizes: Vec<f64> = places.iter().map(|i| errors[*i].abs()).collect();
+        // The median of a normal distribution's size is 0.6745 σ.
+        let usual2 = (median(&mut sizes) / 0.6745).powi(2).max(LEAST_VARIANCE);
+        let mut scatter = Scatter { floor2: usual2, growth2: [0.0; GROWTHS], rho: 0.0 };
+        let rows: Vec<[f64; GROWTHS + 1]> = places
+            .iter()
+            .map(|i| {
+                let [power, turn, accel, swing] = squares(&averages[*i].input, predicted[*i]);
+                [1.0, power, turn, accel, swing]
+            })
+            .collect();
+        for _ in 0..ROUNDS {
+            let one = |(row, i): (&[f64; GROWTHS + 1], &usize)| {
+                let variance = scatter.sigma(&averages[*i].input, predicted[*i]).powi(2);
+                (*row, errors[*i].powi(2).min(LARGE * LARGE * variance) / WITHIN, variance.powi(-2))
+            };
+            let [floor2, growth2 @ ..] = not_negative(rows.iter().zip(&places).map(one));
+            scatter.growth2 = growth2;
+            scatter.floor2 = floor2.max(LEAST_SHARE * usual2);
+        }
         let (mut both, mut own) = (0.0, 0.0);
-        for i in in_time.into_iter().filter(|i| *i > 0 && follows(averages, *i)) {
+        for i in places.into_iter().filter(|i| *i > 0 && follows(averages, *i)) {
+            let sigma = |i: usize| scatter.sigma(&averages[i].input, predicted[i]);
             let [a, b] = [i - 1, i].map(|i| (errors[i] / sigma(i)).clamp(-3.0, 3.0));
             both += a * b;
             own += a * a;
         }
-        let rho = if own > 0.0 { (both / own).clamp(0.0, MOST_RHO) } else { 0.0 };
-        Scatter { floor: floor2.sqrt(), gain: gain2.sqrt(), rho }
+        scatter.rho = if own > 0.0 { (both / own).clamp(0.0, MOST_RHO) } else { 0.0 };
+        scatter
     }
 }
 
-/// How much larger the square of a channel's upper third has to be than that of its lower for growth of noise to be told.
-const VARIES: f64 = 1.5;
+/// Rounds in which variances are fitted and squared errors weighed by them in turn.
+const ROUNDS: usize = 12;
+/// Errors beyond so many sigma count as so many, and the mean square of what is so cut of a normal distribution.
+const LARGE: f64 = 1.5;
+const WITHIN: f64 = 0.778_465;
+/// Sweeps over the coefficients, one after the other, within a round.
+const SWEEPS: usize = 200;
+/// Least share of the usual variance that is there whatever the robot does.
+const LEAST_SHARE: f64 = 0.05;
 /// A channel that never changes has this variance, of watts or metres per second: no meter is closer.
 const LEAST_VARIANCE: f64 = 1e-6;
+
+/// Coefficients, none below 0, of the weighted least squares of values by rows, by descent along each in turn.
+fn not_negative<const N: usize>(rows: impl Iterator<Item = ([f64; N], f64, f64)>) -> [f64; N] {
+    let (mut square, mut right) = ([[0.0; N]; N], [0.0; N]);
+    for (row, value, weight) in rows {
+        for i in 0..N {
+            right[i] += weight * row[i] * value;
+            (0..N).for_each(|j| square[i][j] += weight * row[i] * row[j]);
+        }
+    }
+    let mut found = [0.0; N];
+    for _ in 0..SWEEPS {
+        for i in 0..N {
+            if square[i][i] > 0.0 {
+                let others: f64 = (0..N).filter(|j| *j != i).map(|j| square[i][j] * found[j]).sum();
+                found[i] = ((right[i] - others) / square[i][i]).max(0.0);
+            }
+        }
+    }
+    found
+}
 
 /// Whether an average comes right after the one before it.
 fn follows(averages: &[Average], i: usize) -> bool {
@@ -150,4 +192,36 @@ fn follows(averages: &[Average], i: usize) -> bool {
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     if values.is_empty() { 0.0 } else { values[values.len() / 2] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scatter_is_told_apart_by_what_it_grows_with() {
+        let average = |i: usize| {
+            let input = Input {
+                difference_mps: if i.is_multiple_of(3) { 0.4 } else { 0.0 },
+                accel_mps2: 0.1 * (i % 7) as f64,
+                ..Input::default()
+            };
+            Average { channel: 0, run: 0, suspect: false, t_s: i as f64, input }
+        };
+        let averages: Vec<Average> = (0..4000).map(average).collect();
+        let predicted: Vec<f64> = (0..4000).map(|i| 10.0 + 40.0 * (0.37 * i as f64).sin()).collect();
+        // Signs alternate and sizes run through those of a normal distribution.
+        let normal = |i: usize| {
+            let share = ((i as f64 * 0.618_033_988_75) % 1.0).clamp(1e-4, 1.0 - 1e-4);
+            2.0_f64.sqrt() * statrs::function::erf::erf_inv(2.0 * share - 1.0)
+        };
+        let truth = Scatter { floor2: 0.25, growth2: [4e-4, 9.0, 0.0, 0.0], rho: 0.0 };
+        let errors: Vec<f64> =
+            (0..4000).map(|i| truth.sigma(&averages[i].input, predicted[i]) * normal(i)).collect();
+        let found = Scatter::of(&errors, &predicted, &averages, (0..4000).collect());
+        let is_near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.1;
+        assert!(is_near(found.floor2, 0.25), "{found:?}");
+        assert!(is_near(found.growth2[0], 4e-4) && is_near(found.growth2[1], 9.0), "{found:?}");
+        assert!(found.growth2[2] < 0.05, "{found:?}");
+    }
 }

@@ -66,8 +66,9 @@ pub(crate) fn refine(
         linear: first.candidate.linear.clone(),
         columns,
     };
-    let score = first.score + (evidence.wald - first.evidence.wald) / discount;
-    let weighed = Weighed { candidate, evidence, tried: first.tried, score, p_value: first.p_value };
+    let more = (evidence.wald - first.evidence.wald) / discount;
+    let (score, rank) = (first.score + more, first.rank + more);
+    let weighed = Weighed { candidate, evidence, tried: first.tried, score, rank, p_value: first.p_value };
     // A step is as close as a time is told.
     let interval_s = [interval_s[0] - step_s, interval_s[1] + step_s];
     Ok(Some(Onset { weighed, interval_s: interval_s.map(|s| s.max(0.0)) }))

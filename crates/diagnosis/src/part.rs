@@ -21,7 +21,7 @@ pub(crate) struct Part {
     pub(crate) drives: Drives,
     pub(crate) suspect: bool,
     /// By row [rad].
-    heading_rad: Vec<f64>,
+    pub(crate) heading_rad: Vec<f64>,
     /// By row, above the mean [m].
     height_m: Vec<f64>,
     /// By row: beginning of the run [s].
@@ -155,6 +155,7 @@ impl Part {
             mean(&|i| self.heading_rad[i].cos()),
             mean(&|i| self.heading_rad[i].sin()),
             mean(&|i| self.height_m[i]),
+            mean(&|i| rows[i].rim_mps2.right - rows[i].rim_mps2.left),
         ];
         let of = |(i, average): (usize, &average::Average)| Average {
             channel: meter.channel(),
@@ -170,6 +171,7 @@ impl Part {
                 accel_mps2: inputs[5][i],
                 heading_rad: inputs[7][i].atan2(inputs[6][i]),
                 height_m: inputs[8][i],
+                swing_mps2: inputs[9][i],
             },
         };
         let all: Vec<Average> = self.drives.averages.iter().enumerate().map(of).collect();

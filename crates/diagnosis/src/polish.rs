@@ -22,6 +22,8 @@ pub(crate) struct Polished {
 
 /// Rounds in which robot and mechanism are fitted in turn.
 const POLISHES: usize = 3;
+/// Shares of a step that are tried: beyond a kink, as where wheels begin to be driven, a whole one leads away.
+const SHARES: [f64; 3] = [1.0, 0.3, 0.1];
 /// Drop of squared errors, in sigma, that a move has to bring.
 const LEAST_GAIN: f64 = 1.0;
 /// 97.5 % quantile of the normal distribution.
@@ -38,10 +40,11 @@ pub(crate) fn polish(
     one: &Weighed,
 ) -> Result<Polished, Error> {
     let linear = one.candidate.linear.clone();
+    let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
+    let fitted_with = |applied: &Applied| Baseline::fit(series, file, &with(applied));
     let mut applied = one.candidate.applied.clone();
     add(&mut applied, file, &linear, &one.evidence.values);
-    let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
-    let mut base = Baseline::fit(series, file, &with(&applied))?;
+    let mut base = fitted_with(&applied)?;
     let mut covariance = one.evidence.covariance.clone();
     for _ in 0..POLISHES {
         // Sensitivities are differences from what is predicted with the mechanism as it stands.
@@ -49,9 +52,21 @@ pub(crate) fn polish(
         let white = base.whitening(series);
         let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
         let Some(evidence) = system(series, &base).weigh(&columns) else { break };
-        add(&mut applied, file, &linear, &evidence.values);
         covariance = evidence.covariance;
-        base = Baseline::fit(series, file, &with(&applied))?;
+        let before = misfit(series, &base, &base);
+        let mut better = None;
+        for share in SHARES {
+            let by: Vec<f64> = evidence.values.iter().map(|value| share * value).collect();
+            let mut moved = applied.clone();
+            add(&mut moved, file, &linear, &by);
+            let next = fitted_with(&moved)?;
+            if misfit(series, &next, &base) < before {
+                better = Some((moved, next));
+                break;
+            }
+        }
+        let Some(next) = better else { break };
+        (applied, base) = next;
     }
     let mut fitted = linear;
     // Values from a grid are freed at last, as long as that explains more.
@@ -82,7 +97,7 @@ fn freed(
 ) -> Result<Option<Freed>, Error> {
     let all: Vec<usize> = (0..applied.values.len()).collect();
     let is_within = |parameter: &usize| {
-        let [low, high] = applied.mechanism.bounds(file, *parameter);
+        let [low, high] = candidates::range(applied.mechanism, file, *parameter);
         (low..high).contains(&applied.values[*parameter]) && applied.values[*parameter] > low
     };
     let within: Vec<usize> = all.iter().copied().filter(is_within).collect();
@@ -113,7 +128,7 @@ fn limited(applied: &Applied, free: &[usize], by: &[f64], linear: &[usize]) -> V
 /// Moves values, within what a mechanism can have.
 fn add(applied: &mut Applied, robot: &Robot, linear: &[usize], by: &[f64]) {
     for (parameter, by) in linear.iter().zip(by) {
-        let [low, high] = applied.mechanism.bounds(robot, *parameter);
+        let [low, high] = candidates::range(applied.mechanism, robot, *parameter);
         applied.values[*parameter] = (applied.values[*parameter] + by).clamp(low, high);
     }
 }

@@ -76,6 +76,8 @@ pub struct Input {
     pub roll_rad: f64,
     /// Rate of change of speed [m/s²].
     pub accel_mps2: f64,
+    /// Rate of change of the difference [m/s²].
+    pub swing_mps2: f64,
     /// Heading; NaN where unknown [rad].
     pub heading_rad: f64,
     /// Height above the mean of the drives of the same kind; NaN where unknown [m].

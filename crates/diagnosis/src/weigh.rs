@@ -14,6 +14,7 @@ use crate::{
     evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
+    regime::Regime,
     secant,
     series::{Applied, Average, Series},
 };
@@ -64,9 +65,10 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, bes
     offset.resize(columns.len(), 0.0);
     let shared: Vec<Vec<f64>> = by.shared(series).iter().map(|c| white.of(c)).collect();
     let errors = white.of(&differences(&series.recorded, &base.predicted_w));
+    let regimes = series.averages.iter().map(Regime::of).collect();
     let channel: Vec<usize> = series.averages.iter().map(|a| a.channel).collect();
     let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &shared };
-    System::new(errors, &fitted, &channel, blocks(series))
+    System::new(errors, &fitted, &channel, (blocks(series), regimes))
 }
 
 /// Blocks of neighbouring averages of a drive; channels of the same time share one.
@@ -88,8 +90,27 @@ pub(crate) struct Weighed {
     pub(crate) tried: u32,
     /// Discounted evidence less what its parameters cost.
     pub(crate) score: f64,
+    /// The same with one discount for all mechanisms, by which they are held against each other.
+    pub(crate) rank: f64,
     /// Chance of as much, corrected for all that was tried.
     pub(crate) p_value: f64,
+}
+
+impl Weighed {
+    /// Whose it is.
+    pub(crate) fn name(&self) -> &'static str {
+        name(&self.candidate)
+    }
+
+    /// It with values of its linear parameters, within what a robot can have.
+    pub(crate) fn at(&self, base: &Baseline, values: &[f64]) -> Applied {
+        let mut applied = self.candidate.applied.clone();
+        for (parameter, by) in self.candidate.linear.iter().zip(values) {
+            let [low, high] = applied.mechanism.bounds(&base.robot, *parameter);
+            applied.values[*parameter] = (applied.values[*parameter] + by).clamp(low, high);
+        }
+        applied
+    }
 }
 
 /// The best candidate of every mechanism, best first, and the number of blocks.
@@ -136,6 +157,12 @@ fn name(candidate: &Candidate) -> &'static str {
     candidate.applied.mechanism.name()
 }
 
+/// Whether it has values that power does not follow in proportion, at some point of their grid.
+fn is_from_grid(candidate: &Candidate) -> bool {
+    let values = candidate.applied.values.iter().enumerate();
+    values.into_iter().any(|(i, value)| *value != 0.0 && !candidate.linear.contains(&i))
+}
+
 /// What candidates are weighed on.
 struct Scales<'a> {
     series: &'a Series,
@@ -169,7 +196,12 @@ impl<'a> Scales<'a> {
     fn weigh(&self, candidate: Candidate) -> Option<Weighed> {
         let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| self.white.of(c)).collect();
         let is_delay = name(&candidate) == "clock_offset";
-        let evidence = (if is_delay { &self.delay_apart } else { &self.all_fitted }).weigh(&columns)?;
+        let mut evidence = (if is_delay { &self.delay_apart } else { &self.all_fitted }).weigh(&columns)?;
+        // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
+        // is not in proportion to its size, and more than models miss.
+        if is_from_grid(&candidate) || self.share(&candidate, &evidence) > STRONG {
+            evidence.discord = 1.0;
+        }
         if !is_plausible(&self.base.robot, &candidate, &evidence)
             || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * self.series.row_s()
         {
@@ -177,26 +209,55 @@ impl<'a> Scales<'a> {
         }
         let blocks = self.all_fitted.blocks();
         let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
-        let score = wald - columns.len() as f64 * (blocks as f64).ln();
+        let cost = columns.len() as f64 * (blocks as f64).ln();
+        let (score, rank) = (wald - cost, by_all(&evidence, name(&candidate), self.null, blocks)? - cost);
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
-        Some(Weighed { candidate, evidence, tried, score, p_value: (chance * self.all).min(1.0) })
+        Some(Weighed { candidate, evidence, tried, score, rank, p_value: (chance * self.all).min(1.0) })
+    }
+
+    /// Change of power that a candidate stands for, over the power, both root mean square over the suspect drives.
+    fn share(&self, candidate: &Candidate, evidence: &Evidence) -> f64 {
+        let (mut change, mut whole) = (0.0, 0.0);
+        for (i, predicted_w) in self.base.predicted_w.iter().enumerate() {
+            if self.series.is_power(i) && self.series.averages[i].suspect {
+                let parts =
+                    candidate.columns.iter().zip(&evidence.values).map(|(column, value)| column[i] * value);
+                change += parts.sum::<f64>().powi(2);
+                whole += predicted_w * predicted_w;
+            }
+        }
+        f64::sqrt(change / whole.max(1e-300))
     }
 }
+
+/// Changes of power beyond this share of it are not what a model misses of a robot in order.
+const STRONG: f64 = 0.05;
 
 /// Evidence beyond what models miss of healthy drives, and the chance of as much.
 pub(crate) fn judged(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<(f64, f64)> {
     let parameters = evidence.values.len();
     let freedom = (blocks as f64 - parameters as f64 - 1.0).max(2.0);
     let wald = match null.variance(name, parameters) {
-        Some(misfit) => {
-            let values = DVector::from_column_slice(&evidence.values);
-            let covariance = &evidence.covariance + DMatrix::from_diagonal(&DVector::from_vec(misfit));
-            values.dot(&(covariance.try_inverse()? * &values))
-        }
+        Some(misfit_variance) => beyond(evidence, misfit_variance)?,
         None => evidence.wald / null.discount(name, blocks),
     };
-    let count = parameters as f64;
+    let (wald, count) = (wald / evidence.discord, parameters as f64);
     Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
+}
+
+/// Evidence beyond what models miss on the whole.
+fn by_all(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<f64> {
+    match null.common_variance(name, evidence.values.len()) {
+        Some(misfit_variance) => beyond(evidence, misfit_variance),
+        None => Some(evidence.wald / null.common_discount(blocks)),
+    }
+}
+
+/// How many standard errors values are from nothing, squared, where misfit adds to their variance.
+fn beyond(evidence: &Evidence, misfit_variance: Vec<f64>) -> Option<f64> {
+    let values = DVector::from_column_slice(&evidence.values);
+    let covariance = &evidence.covariance + DMatrix::from_diagonal(&DVector::from_vec(misfit_variance));
+    Some(values.dot(&(covariance.try_inverse()? * &values)))
 }
 
 /// A delay of less than a row, but for rounding, is the sensors' business.

@@ -24,6 +24,18 @@ impl Mechanism for CenterOfMass {
         ]
     }
 
+    /// Forward or backward by as much shows alike: only how far it is from the middle tells, so that it is told in the direction of
+    /// the file's.
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        let [low, high] = self.parameters()[parameter].bounds;
+        let filed_m = robot.center_of_mass.forward_m;
+        match parameter {
+            0 if filed_m >= 0.0 => [-filed_m, high],
+            0 => [low, -filed_m],
+            _ => [low, high],
+        }
+    }
+
     fn equation(&self) -> &'static str {
         "eqs. 14-16 at δx + Δx, δy + Δy; gravity turns the robot by m g sin γ sin β Δy"
     }
@@ -45,5 +57,22 @@ impl Mechanism for CenterOfMass {
     fn adjust(&self, robot: &Robot, values: &[f64], _: &Moment) -> Adjustment {
         let turn_n = robot.mass_kg * STANDARD_GRAVITY_MPS2 * values[1] / robot.track_m;
         Adjustment { lifting_n: Sides { left: turn_n, right: -turn_n }, ..Adjustment::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forward_it_may_only_go_to_where_it_shows_alike_again() {
+        let at = |forward_m: f64| {
+            let mut robot = crate::builtin::husky_a200();
+            robot.center_of_mass.forward_m = forward_m;
+            CenterOfMass.bounds(&robot, 0)
+        };
+        assert_eq!(at(0.0), [0.0, 0.25]);
+        assert_eq!(at(0.02), [-0.02, 0.25]);
+        assert_eq!(at(-0.02), [-0.25, 0.02]);
     }
 }

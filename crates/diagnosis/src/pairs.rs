@@ -1,0 +1,162 @@
+//! Two mechanisms at once: each may hide the other, or a third may pass for both.
+
+use model::Robot;
+use nalgebra::{DMatrix, DVector};
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    gates::best,
+    null::Null,
+    search::{AS_GOOD, State, decide, drop_one, is_told},
+    series::{Applied, Series},
+    weigh::{Weighed, misfit, system, weigh_all},
+};
+
+/// Mechanisms of which pairs are tried, those that explain most by themselves.
+const TRIED: usize = 12;
+/// By how much a pair has to explain more than any mechanism by itself: a χ² that one of 66 pairs reaches by chance once in 100 drives.
+const SECOND: f64 = 14.4;
+/// The same as a share of what that explains, where the model misses something itself: less may be just that.
+const MORE: f64 = 0.25;
+/// Least share of the squares of what two mechanisms do that both together do.
+const LEFT_OF_BOTH: f64 = 0.5;
+
+/// What was found, or two mechanisms that explain more together; each is weighed again beside the other.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn tried(
+    series: &Series,
+    file: &Robot,
+    before: &Baseline,
+    state: State,
+    null: &Null,
+) -> Result<State, Error> {
+    let revised =
+        if state.found.len() == 2 { revise(series, file, before, &state.applied(), null)? } else { None };
+    let mut state = better(series, before, [Some(state), revised], null);
+    let is_delayed = state.found.iter().any(|f| f.applied.mechanism.name() == "clock_offset");
+    if state.found.len() < 3
+        && !is_delayed
+        && let Some(pair) = pair(series, before, &state.applied(), null)?
+    {
+        let other = revise(series, file, before, &pair, null)?;
+        state = better(series, before, [Some(state), other], null);
+    }
+    Ok(state)
+}
+
+/// The state that explains most for its parameters.
+fn better(series: &Series, before: &Baseline, states: [Option<State>; 2], null: &Null) -> State {
+    let blocks = system(series, before).blocks();
+    let cost = |state: &State| {
+        let count: usize = state.found.iter().map(|f| f.half_widths.iter().flatten().count()).sum();
+        misfit(series, &state.fit, before) / null.common_discount(blocks)
+            + count as f64 * (blocks as f64).ln()
+    };
+    let [first, other] = states;
+    match (first, other) {
+        (Some(first), Some(other)) if cost(&other) < cost(&first) => other,
+        (Some(first), _) => first,
+        (None, Some(other)) => other,
+        (None, None) => unreachable!("one of them is what was found"),
+    }
+}
+
+/// The pair that explains clearly more, by sensitivities, than what was found does.
+fn pair(
+    series: &Series,
+    before: &Baseline,
+    found: &[Applied],
+    null: &Null,
+) -> Result<Option<[Applied; 2]>, Error> {
+    let (mut weighed, blocks) = weigh_all(series, before, &[], null)?;
+    weighed.sort_by(|a, b| b.rank.total_cmp(&a.rank));
+    let left = system(series, before).left().clone();
+    // A delay is weighed beside less than everything else, and hides nothing.
+    weighed.retain(|one| one.evidence.own.nrows() == left.len());
+    let score = |set: &[&Weighed]| -> Option<(f64, Vec<f64>)> {
+        if set.is_empty() {
+            return None;
+        }
+        let columns: Vec<_> = set.iter().flat_map(|one| one.evidence.own.column_iter()).collect();
+        let own = DMatrix::from_columns(&columns);
+        let right = own.tr_mul(&left);
+        let values = own.tr_mul(&own).cholesky()?.solve(&right);
+        let explained = values.dot(&right) / null.common_discount(blocks);
+        Some((explained - columns.len() as f64 * (blocks as f64).ln(), values.iter().copied().collect()))
+    };
+    let is_found = |one: &&Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
+    let so_far: Vec<&Weighed> = weighed.iter().filter(is_found).collect();
+    let single = weighed.iter().filter_map(|one| score(&[one])).map(|(score, _)| score).fold(0.0, f64::max);
+    let so_far = score(&so_far).filter(|_| so_far.len() > 1).map_or(0.0, |(score, _)| score + AS_GOOD);
+    // Where nothing passes by itself, nothing is replaced.
+    let more = if found.is_empty() || is_told(series) { 0.0 } else { MORE };
+    let least = f64::max((1.0 + more) * single + SECOND, so_far);
+    weighed.truncate(TRIED);
+    let mut most: Option<(f64, [Applied; 2])> = None;
+    for (i, a) in weighed.iter().enumerate() {
+        for b in &weighed[i + 1..] {
+            let Some((score, values)) = score(&[a, b]) else { continue };
+            let [own_w, other_w] = parts(&[a, b], &values);
+            if undo(&own_w, &other_w) {
+                continue;
+            }
+            if score > least && most.as_ref().is_none_or(|(best, _)| score > *best) {
+                let (own, other) = values.split_at(a.candidate.linear.len());
+                most = Some((score, [a.at(before, own), b.at(before, other)]));
+            }
+        }
+    }
+    let is_new = |pair: &[Applied; 2]| {
+        pair.iter().any(|one| found.iter().all(|f| f.mechanism.name() != one.mechanism.name()))
+    };
+    Ok(most.map(|(_, pair)| pair).filter(is_new))
+}
+
+/// What each of two mechanisms explains.
+fn parts(pair: &[&Weighed; 2], values: &[f64]) -> [DVector<f64>; 2] {
+    let (first, second) = values.split_at(pair[0].candidate.linear.len());
+    let of = |one: &Weighed, values: &[f64]| &one.evidence.own * DVector::from_column_slice(values);
+    [of(pair[0], first), of(pair[1], second)]
+}
+
+/// Whether two changes mostly undo each other: what is left of them is a third thing, a pulse between two times, say.
+fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
+    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
+}
+
+/// Whether two mechanisms that were found do.
+fn undo_each_other(series: &Series, state: &State) -> Result<bool, Error> {
+    let applied = state.applied();
+    let [a, b] = &applied[..] else { return Ok(false) };
+    let predict = |applied: &[Applied]| series.predict(&state.fit.robot, applied).map(DVector::from_vec);
+    let none = predict(&[])?;
+    Ok(undo(&(predict(std::slice::from_ref(a))? - &none), &(predict(std::slice::from_ref(b))? - &none)))
+}
+
+/// Weighs each of two mechanisms beside the other; `None` if one of them is not needed.
+fn revise(
+    series: &Series,
+    file: &Robot,
+    before: &Baseline,
+    pair: &[Applied],
+    null: &Null,
+) -> Result<Option<State>, Error> {
+    let mut beside = pair.to_vec();
+    let mut state: Option<State> = None;
+    for _ in 0..2 {
+        beside.remove(0);
+        let fit = Baseline::fit(series, file, &beside)?;
+        let Some((rivals, gain)) = best(series, &fit, &beside, null)? else { return Ok(None) };
+        let (next, fit) = decide(series, file, &beside, (&rivals, gain), &fit, null)?;
+        beside.push(next.applied.clone());
+        let mut found = state.map_or_else(Vec::new, |state| state.found);
+        found.push(next);
+        state = Some(State { found, fit });
+    }
+    let Some(mut state) = state else { return Ok(None) };
+    let is_needed = !drop_one(series, file, &mut state, before, null)? && !undo_each_other(series, &state)?;
+    Ok(is_needed.then_some(state))
+}

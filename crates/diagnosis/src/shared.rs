@@ -1,0 +1,45 @@
+//! What models miss, channel by channel: many columns that are taken out of all others.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// Columns of one channel whose weights have a width of 1, about 0.
+pub(crate) struct Shared {
+    /// Rows of the channel.
+    pub(crate) places: Vec<usize>,
+    pub(crate) columns: DMatrix<f64>,
+    /// Of their products, with what is known before.
+    root: Cholesky<f64, Dyn>,
+    /// Row of the first of them.
+    first: usize,
+}
+
+impl Shared {
+    /// Columns by channel; rows of what is known before begin at `first`.
+    pub(crate) fn of(columns: &[Vec<f64>], channel: &[usize], mut first: usize) -> Vec<Shared> {
+        let of_channel = |column: &Vec<f64>| column.iter().position(|x| *x != 0.0).map(|i| channel[i]);
+        let names: Vec<Option<usize>> = columns.iter().map(of_channel).collect();
+        let mut all = Vec::new();
+        for name in 0..channel.iter().max().map_or(0, |c| c + 1) {
+            let own: Vec<&Vec<f64>> =
+                columns.iter().zip(&names).filter(|(_, n)| **n == Some(name)).map(|(c, _)| c).collect();
+            let places: Vec<usize> = (0..channel.len()).filter(|i| channel[*i] == name).collect();
+            let columns = DMatrix::from_fn(places.len(), own.len(), |i, j| own[j][places[i]]);
+            let square = columns.transpose() * &columns + DMatrix::identity(own.len(), own.len());
+            let Some(root) = Cholesky::new(square) else { continue };
+            all.push(Shared { places, columns, root, first });
+            first += own.len();
+        }
+        all
+    }
+
+    /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
+    pub(crate) fn take(&self, columns: &mut DMatrix<f64>) {
+        for mut column in columns.column_iter_mut() {
+            let own = DVector::from_fn(self.places.len(), |i, _| column[self.places[i]]);
+            let weights = self.root.solve(&self.columns.tr_mul(&own));
+            let left = own - &self.columns * &weights;
+            self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
+            column.rows_mut(self.first, weights.len()).copy_from(&-weights);
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! A few of the concealed cases that `--example matched_world` scores in full: drives in a world that is the model's own.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "../examples/matched_world/case.rs"]
+mod case;
+#[path = "../examples/matched_world/score.rs"]
+mod score;
+
+use case::{Case, Kind, draw};
+use diagnosis::{Diagnosis, Question, Verdict, diagnose};
+use model::mechanism;
+use score::{Board, is_in_two};
+
+/// Strength that an ideal detector sees, some 1.2 % of power.
+const Z: f64 = 32.0;
+
+fn said(case: &Case) -> Diagnosis {
+    diagnose(&Question::new(&case.robot, &case.suspect, Some(&case.healthy)), &|_, _| {}).unwrap()
+}
+
+fn concealing(seed: u64, names: &[&str]) -> (Case, Diagnosis) {
+    let all = names.iter().map(|name| mechanism::by_name(name).unwrap()).collect();
+    let case = draw(seed, &Kind::Conceals(all), Z);
+    let found = said(&case);
+    (case, found)
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is_concealed() {
+    for (seed, kind) in [(1000, Kind::Healthy), (1001, Kind::Healthy), (1002, Kind::Decoy)] {
+        let case = draw(seed, &kind, Z);
+        let found = said(&case);
+        assert_eq!(found.verdict, Verdict::Consistent, "{}: {}", case.name, found.sentence);
+    }
+}
+
+#[test]
+fn one_per_cent_of_power_is_named_with_its_size() {
+    let mut board = Board::default();
+    for (seed, name) in
+        [(1006, "drivetrain_drag"), (1012, "grade_dependent_friction"), (1010, "load_transfer")]
+    {
+        let (case, found) = concealing(seed, &[name]);
+        assert!(is_in_two(name, &found), "{:?}: {}", case.truths, found.sentence);
+        board.add(&case, &found);
+    }
+    let printed = board.to_string();
+    assert!(printed.contains("effects named, set of two at most: 3 of 3"), "{printed}");
+}
+
+/// Forward and backward by as much is alike, so that the power has a kink at nothing.
+#[test]
+fn a_centre_of_mass_ahead_is_not_taken_for_drag() {
+    let (case, found) = concealing(1016, &["center_of_mass"]);
+    assert_eq!(found.findings[0].mechanism, "center_of_mass", "{:?}: {}", case.truths, found.sentence);
+}
+
+#[test]
+fn two_at_once_are_both_named() {
+    let names = ["towed_load", "grade_dependent_friction"];
+    let (case, found) = concealing(2075, &names);
+    for name in names {
+        assert!(is_in_two(name, &found), "{:?}: {}", case.truths, found.sentence);
+    }
+}
