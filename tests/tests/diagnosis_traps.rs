@@ -1,11 +1,6 @@
-//! Traps for a diagnosis: differences that follow nothing, and drives of a real robot on other ground.
+//! Traps for a diagnosis: differences that follow nothing, and effects that the library does not hold.
 
-#![allow(clippy::unwrap_used, clippy::print_stderr)]
-
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+#![allow(clippy::unwrap_used)]
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
 use model::Robot;
@@ -84,76 +79,4 @@ fn what_is_ruled_out_is_missed_and_not_given_another_name() {
         assert_eq!(without.verdict, Verdict::Unexplained, "{name} ruled out: {}", without.sentence);
         assert!(!names(&without).contains(&name), "{}", without.sentence);
     }
-}
-
-/// The real recordings: beside the workspace, or where `JOULEPATH_RECORDINGS` says.
-fn real_recordings() -> Option<PathBuf> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
-    let folder = std::env::var_os("JOULEPATH_RECORDINGS").map_or(beside, PathBuf::from);
-    if folder.join("husky-flooring.csv").exists() {
-        return Some(folder);
-    }
-    eprintln!("SKIPPED: the real recordings are not in {}", folder.display());
-    None
-}
-
-/// Some drives of a real recording, without the name of the ground.
-fn unlabelled(folder: &Path, ground: &str, wanted: impl Fn(usize) -> bool) -> Recording {
-    let mut whole = read_paths(&[folder.join(format!("husky-{ground}.csv"))], None).unwrap().0;
-    whole.surface = None;
-    let runs: Vec<_> =
-        whole.runs.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, r)| r.clone()).collect();
-    let pick = |values: &[f64]| -> Vec<f64> {
-        runs.iter().flat_map(|run| values[run.rows.clone()].iter().copied()).collect()
-    };
-    let mut at = 0;
-    let moved = runs.iter().map(|run| {
-        let rows = at..at + run.rows.len();
-        at = rows.end;
-        recording::Run { rows, ..run.clone() }
-    });
-    let channels: BTreeMap<_, _> = whole.channels.iter().map(|(c, values)| (*c, pick(values))).collect();
-    Recording { t_s: pick(&whole.t_s), channels, runs: moved.collect(), ..Recording::default() }
-}
-
-#[test]
-fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
-    let Some(folder) = real_recordings() else { return };
-    let labelled = read_paths(&[folder.join("husky-flooring.csv")], None).unwrap().0;
-    let options = calibration::Options::default();
-    let mut robot = calibration::calibrate(&model::builtin::husky_a200(), &labelled, &options).unwrap().robot;
-    robot.default_surface = "flooring".into();
-    let flooring = unlabelled(&folder, "flooring", |_| true);
-    // Other drives on the same floor.
-    let (even, odd) =
-        (unlabelled(&folder, "flooring", |i| i % 2 == 0), unlabelled(&folder, "flooring", |i| i % 2 == 1));
-    let found = said(&robot, &odd, &even);
-    say("flooring", &found);
-    assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
-    // On ice, where spinning takes 7 A instead of 19, skid friction is a fifth.
-    let found = said(&robot, &unlabelled(&folder, "ice", |_| true), &flooring);
-    say("ice", &found);
-    assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
-    let skid_change = found.findings[0].parameters.iter().find(|p| p.name == "skid_change").unwrap();
-    assert!((-0.9..-0.6).contains(&skid_change.value), "{skid_change:?}");
-    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
-    assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
-    // On snow the wheels often turn and the robot does not.
-    let found = said(&robot, &unlabelled(&folder, "snow", |_| true), &flooring);
-    say("snow", &found);
-    assert_ne!(found.verdict, Verdict::Consistent);
-    let stuck = found.notes.iter().find(|note| note.contains("the robot does not")).unwrap();
-    assert!(stuck.contains("100 % of snow-02") && stuck.contains("100 % of snow-04"), "{stuck}");
-    say("sandy loam", &said(&robot, &unlabelled(&folder, "sandy-loam", |_| true), &flooring));
-}
-
-fn say(ground: &str, found: &Diagnosis) {
-    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
-    let floor_w = found.baseline.noise_floor_w;
-    eprintln!(
-        "{ground}: {:?}: {} Held out {before_w:.1} W before, {after_w:.1} W after, {floor_w:.1} W is noise. {}",
-        found.verdict,
-        found.sentence,
-        found.notes.join("; ")
-    );
 }

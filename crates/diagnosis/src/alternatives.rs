@@ -10,6 +10,7 @@ use crate::{
     report::Detectable,
     search::Found,
     series::{Applied, Series},
+    span::Span,
     weigh::system,
 };
 
@@ -42,8 +43,8 @@ pub(crate) fn alternatives(
     let mut explanations = Vec::new();
     for name in found[which].indistinguishable_from.iter().take(MOST_ALTERNATIVES) {
         let Some(mechanism) = mechanism::by_name(name) else { continue };
-        let from_s = found[which].applied.from_s;
-        let Some(applied) = fitted(series, &without, &others, mechanism, from_s)? else { continue };
+        let span = found[which].applied.span;
+        let Some(applied) = fitted(series, &without, &others, mechanism, span)? else { continue };
         let mut all = others.clone();
         all.push(applied);
         let robot = Baseline::fit(series, file, &all)?.robot;
@@ -58,20 +59,16 @@ fn fitted(
     base: &Baseline,
     others: &[Applied],
     mechanism: &'static dyn mechanism::Mechanism,
-    from_s: f64,
+    span: Span,
 ) -> Result<Option<Applied>, Error> {
     let system = system(series, base);
     let mut best: Option<(f64, Applied)> = None;
     for (values, linear) in candidates::grids(mechanism) {
-        let probe = Applied { mechanism, values, from_s };
+        let probe = Applied { mechanism, values, span };
         let at = candidates::of(series, &base.robot, others, &base.predicted_w, probe, linear)?;
         let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) else { continue };
         if best.as_ref().is_none_or(|(wald, _)| evidence.wald > *wald) {
-            let mut applied = at.applied;
-            for (parameter, value) in at.linear.iter().zip(&evidence.values) {
-                let [low, high] = mechanism.bounds(&base.robot, *parameter);
-                applied.values[*parameter] = (applied.values[*parameter] + value).clamp(low, high);
-            }
+            let applied = candidates::moved(&at.applied, &base.robot, &at.linear, &evidence.values);
             best = Some((evidence.wald, applied));
         }
     }
@@ -119,7 +116,7 @@ fn least_size(
     let parameter = &mechanism.parameters()[0];
     let mut least = parameter.bounds[1];
     for (values, _) in candidates::grids(mechanism) {
-        let probe = Applied { mechanism, values, from_s: 0.0 };
+        let probe = Applied { mechanism, values, span: Span::ALL };
         let at = candidates::of(series, &base.robot, applied, &base.predicted_w, probe, vec![0])?;
         if let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) {
             least = least.min(NOTICED_SIGMAS * evidence.covariance[(0, 0)].max(0.0).sqrt());

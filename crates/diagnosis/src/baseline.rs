@@ -10,6 +10,7 @@ use crate::{
     noise::{Noise, Whitening},
     nuisance,
     series::{Applied, Series},
+    span::Span,
 };
 
 /// A robot at its best fit, with the sensitivities that a linear search needs.
@@ -108,7 +109,7 @@ fn delays(
     predicted_w: &[f64],
 ) -> Result<[Vec<f64>; 2], Error> {
     let Some(mechanism) = mechanism::by_name("clock_offset") else { return Ok([Vec::new(), Vec::new()]) };
-    let delay = Applied { mechanism, values: vec![0.5 * series.row_s()], from_s: 0.0 };
+    let delay = Applied { mechanism, values: vec![0.5 * series.row_s()], span: Span::ALL };
     let mut with = applied.to_vec();
     with.push(delay.clone());
     let seen = [series.predict(robot, &with)?, series.predict_with(robot, applied, &[delay])?];

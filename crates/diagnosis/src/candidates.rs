@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::{
     Error,
     series::{Applied, Series},
+    span::{Span, Timeline},
 };
 
 /// A mechanism with its sensitivities: the change of every prediction per unit of each of its linear parameters.
@@ -18,8 +19,10 @@ pub(crate) struct Candidate {
     pub(crate) columns: Vec<Vec<f64>>,
 }
 
-/// Times from which a mechanism may act, as shares of the longest suspect drive; the first is its beginning.
-const ONSETS: [f64; 10] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Moments at which a mechanism may set in, as shares of the time driven.
+const ONSETS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Beginnings of drives that are tried one by one; of more, the nearest will be found from the shares.
+const MOST_BORDERS: usize = 16;
 /// Time constants of heat that are tried [s].
 const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
 /// Range of a value that power does not follow in proportion, where the drives themselves would lead it away: heat that comes
@@ -31,14 +34,24 @@ pub(crate) fn range(mechanism: &dyn mechanism::Mechanism, robot: &Robot, paramet
     }
 }
 
+/// A mechanism with some of its values moved, within what the robot can have and what drives may tell.
+pub(crate) fn moved(applied: &Applied, robot: &Robot, parameters: &[usize], by: &[f64]) -> Applied {
+    let mut moved = applied.clone();
+    for (&parameter, by) in parameters.iter().zip(by) {
+        let [low, high] = range(applied.mechanism, robot, parameter);
+        moved.values[parameter] = (moved.values[parameter] + by).clamp(low, high);
+    }
+    moved
+}
+
 /// Winds that are tried [m/s], in eight directions.
 const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
 
-/// A mechanism with its sensitivities, and the times from which it may act.
+/// A mechanism with its sensitivities, and the spans in which it may act.
 pub(crate) struct Family {
-    /// From the beginning of the drives on.
+    /// All the time.
     always: Candidate,
-    onsets_s: Vec<f64>,
+    spans: Vec<Span>,
 }
 
 impl Family {
@@ -49,20 +62,20 @@ impl Family {
 
     /// Number of its candidates.
     pub(crate) fn count(&self) -> usize {
-        self.onsets_s.len()
+        self.spans.len()
     }
 
     /// Its candidates, one by one.
     ///
     /// What shifts in time or remembers has no onset but the beginning; all else does from some time on what it would always do.
     pub(crate) fn candidates<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Candidate> + 'a {
-        self.onsets_s.iter().map(|&from_s| {
+        self.spans.iter().map(|&span| {
             let from = |column: &Vec<f64>| {
-                let acts = series.averages.iter().map(|average| average.t_s >= from_s);
+                let acts = series.averages.iter().map(|average| span.acts(average.run, average.t_s));
                 column.iter().zip(acts).map(|(by, acts)| if acts { *by } else { 0.0 }).collect()
             };
             Candidate {
-                applied: Applied { from_s, ..self.always.applied.clone() },
+                applied: Applied { span, ..self.always.applied.clone() },
                 linear: self.always.linear.clone(),
                 columns: self.always.columns.iter().map(from).collect(),
             }
@@ -82,15 +95,19 @@ pub(crate) fn all(
 ) -> Result<Vec<Family>, Error> {
     let probes: Vec<(Applied, Vec<usize>)> = series
         .others(applied)
+        .chain(other_ground(series, applied))
         .flat_map(|mechanism| {
             grids(mechanism)
                 .into_iter()
-                .map(move |(values, linear)| (Applied { mechanism, values, from_s: 0.0 }, linear))
+                .map(move |(values, linear)| (Applied { mechanism, values, span: Span::ALL }, linear))
         })
         .collect();
     let family = |(probe, linear): (Applied, Vec<usize>)| {
-        let onsets_s = onsets(series, probe.mechanism.name());
-        Ok(Family { always: of(series, robot, applied, predicted_w, probe, linear)?, onsets_s })
+        let is_new = |span: &Span| {
+            applied.iter().all(|a| a.mechanism.name() != probe.mechanism.name() || a.span != *span)
+        };
+        let spans = spans(series, probe.mechanism.name()).into_iter().filter(is_new).collect();
+        Ok(Family { always: of(series, robot, applied, predicted_w, probe, linear)?, spans })
     };
     probes.into_par_iter().map(family).collect()
 }
@@ -134,14 +151,22 @@ pub(crate) fn of_more(
     Ok(columns)
 }
 
-/// Times from which a mechanism is tried.
+/// Ground on which one change was found, which may change once more.
+fn other_ground(series: &Series, applied: &[Applied]) -> Option<&'static dyn mechanism::Mechanism> {
+    let changes = applied.iter().filter(|a| a.mechanism.name() == GROUND);
+    (changes.count() == 1).then(|| series.others(&[]).find(|one| one.name() == GROUND)).flatten()
+}
+
+const GROUND: &str = "surface_change";
+
+/// Spans in which a mechanism is tried: from the beginning, shares of each drive, and of several drives their beginnings and shares
+/// of all the time driven, since what happens to a robot stays with it in the drives that follow.
 ///
 /// Without healthy drives to compare with, what acts all the time looks like what the model itself misses; only what sets in,
 /// grows in time or shifts it can then be told.
-fn onsets(series: &Series, name: &str) -> Vec<f64> {
-    let longest_s = series.longest_s();
+fn spans(series: &Series, name: &str) -> Vec<Span> {
     let from_the_beginning = match name {
-        "motor_heating" | "clock_offset" => return vec![0.0],
+        "motor_heating" | "clock_offset" => return vec![Span::ALL],
         // These are how the robot or its sensors are built.
         "wheel_radius"
         | "center_of_mass"
@@ -153,9 +178,32 @@ fn onsets(series: &Series, name: &str) -> Vec<f64> {
         | "wheel_slip" => true,
         _ => false,
     };
-    let shares = if from_the_beginning { &ONSETS[..1] } else { &ONSETS[..] };
-    let tried = shares.iter().map(|share| share * longest_s);
-    tried.filter(|from_s| series.has_healthy() || *from_s > 0.0).collect()
+    let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
+    if from_the_beginning {
+        return tried;
+    }
+    let longest_s = series.longest_s();
+    tried.extend(ONSETS.map(|share| Span::EachDrive(share * longest_s)));
+    let line = series.timeline();
+    if line.drives() > 1 {
+        tried.extend(moments(&line));
+    }
+    if is_left_behind(name) {
+        tried.extend(moments(&line).into_iter().map(Span::until));
+    }
+    tried
+}
+
+/// Beginnings of drives, and shares of all the time driven.
+fn moments(line: &Timeline) -> Vec<Span> {
+    let borders_s = Some(line.borders_s()).filter(|borders_s| borders_s.len() <= MOST_BORDERS).unwrap_or(&[]);
+    let shares_s = ONSETS.map(|share| share * line.total_s());
+    borders_s.iter().chain(&shares_s).map(|driven_s| line.at(*driven_s)).collect()
+}
+
+/// Whether it may end during the drives: ground is left behind.
+fn is_left_behind(name: &str) -> bool {
+    name == GROUND || name == "soft_soil"
 }
 
 /// Values of the parameters that power does not follow in proportion, with the others at nothing.
@@ -174,6 +222,8 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
         }
         // To the side alone as well: how far forward it lies can only add.
         "center_of_mass" => vec![(vec![0.0; 2], vec![0, 1]), (vec![0.0; 2], vec![1])],
+        // One side drags; what holds both back alike is the ground.
+        "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {
             let count = mechanism.parameters().len();
             vec![(vec![0.0; count], (0..count).collect())]

@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::report::{Diagnosis, Place, Trace};
+use crate::{
+    report::{Diagnosis, Place, Trace},
+    span::{Span, Timeline},
+};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 300.0;
@@ -140,11 +143,17 @@ fn thinned(values: &[f64], every: usize) -> Vec<f64> {
 
 /// Ranges of seconds driven in which a place of time lies.
 fn shaded(trace: &Trace, places: &[Place]) -> Vec<[f64; 2]> {
+    let seconds = trace.run.iter().copied().zip(trace.t_s.iter().copied());
+    let line = Timeline::of(trace.runs.len(), seconds);
     let mut ranges: Vec<[f64; 2]> = Vec::new();
     for place in places.iter().filter(|place| place.kind == "time") {
         let range = &place.range;
         let is_inside = |i: usize| {
-            let t_s = trace.t_s[i];
+            let t_s = if range.quantity == "driven_s" {
+                line.driven_s(Span::From { run: trace.run[i], t_s: trace.t_s[i] })
+            } else {
+                trace.t_s[i]
+            };
             let own = range.name.as_ref().is_none_or(|name| trace.runs.get(trace.run[i]) == Some(name));
             own && range.from.is_none_or(|from| t_s >= from) && range.to.is_none_or(|to| t_s < to)
         };

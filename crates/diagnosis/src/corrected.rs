@@ -5,7 +5,14 @@ use model::{KnownMechanism, Robot, mechanism::Kind, robot::Surface};
 use crate::series::Applied;
 
 /// The corrected robot, and notes on what its file cannot hold.
-pub(crate) fn corrected(fitted: &Robot, applied: &[Applied], surfaces: &[String]) -> (Robot, Vec<String>) {
+///
+/// `names` are those of the drives under suspicion.
+pub(crate) fn corrected(
+    fitted: &Robot,
+    applied: &[Applied],
+    surfaces: &[String],
+    names: &[String],
+) -> (Robot, Vec<String>) {
     let mut robot = fitted.clone();
     let mut notes = Vec::new();
     for one in applied {
@@ -17,9 +24,9 @@ pub(crate) fn corrected(fitted: &Robot, applied: &[Applied], surfaces: &[String]
             continue;
         }
         apply(&mut robot, one, surfaces);
-        if one.from_s > 0.0 {
-            let from_s = one.from_s;
-            notes.push(format!("the corrected robot is as from {from_s:.0} s on, with `{name}`"));
+        if !one.span.is_all() {
+            let span = one.span.words(names);
+            notes.push(format!("the corrected robot is as it is {span}, with `{name}`"));
         }
     }
     keep_possible(&mut robot);
@@ -81,10 +88,12 @@ fn keep_possible(robot: &mut Robot) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Span;
     use model::{builtin, mechanism};
 
     fn applied(name: &str, values: Vec<f64>, from_s: f64) -> Applied {
-        Applied { mechanism: mechanism::by_name(name).unwrap_or(mechanism::ALL[0]), values, from_s }
+        let span = Span::EachDrive(from_s);
+        Applied { mechanism: mechanism::by_name(name).unwrap_or(mechanism::ALL[0]), values, span }
     }
 
     #[test]
@@ -97,12 +106,15 @@ mod tests {
             applied("soft_soil", vec![0.2], 0.0),
             applied("pitch_bias", vec![0.02], 0.0),
         ];
-        let (robot, notes) = corrected(&husky, &all, &["marble".into()]);
+        let (robot, notes) = corrected(&husky, &all, &["marble".into()], &["a".into()]);
         assert!((robot.mass_kg - husky.mass_kg - 12.0).abs() < 1e-9);
         let ratio = robot.surfaces["marble"].mu_roll / husky.surfaces["marble"].mu_roll;
         assert!((ratio - 1.5).abs() < 1e-9);
         assert_eq!(notes.len(), 2, "{notes:?}");
-        assert!(notes[0].contains("from 300 s") && notes[1].contains("fault of the recording"), "{notes:?}");
+        assert!(
+            notes[0].contains("from about 300 s") && notes[1].contains("fault of the recording"),
+            "{notes:?}"
+        );
         let names = |list: &[KnownMechanism]| list.iter().map(|k| k.mechanism().name()).collect::<Vec<_>>();
         assert_eq!(names(&robot.mechanisms), ["wind"]);
         assert_eq!(names(&robot.surfaces["marble"].mechanisms), ["soft_soil"]);
@@ -113,7 +125,7 @@ mod tests {
     #[test]
     fn a_robot_that_cannot_be_is_not_written() {
         let husky = builtin::husky_a200();
-        let (robot, notes) = corrected(&husky, &[applied("payload", vec![-500.0], 0.0)], &[]);
+        let (robot, notes) = corrected(&husky, &[applied("payload", vec![-500.0], 0.0)], &[], &[]);
         assert!(robot.validate().is_ok() && robot.mass_kg == husky.mass_kg);
         assert!(notes.iter().any(|note| note.contains("cannot be")), "{notes:?}");
     }

@@ -93,10 +93,11 @@ pub fn diagnose_watched(
         judged.take_up(&series, &found, discover(&series, &found.after, &applied, &found.null)?)?;
     }
     progress("locating the difference", 0.8);
-    let places = judged.places(&series, &found, suspect)?;
+    let places = judged.places(&series, &found)?;
     progress("planning the next drive", 0.85);
     let next_drive = decisive_drive(&series, robot, &found)?;
-    let (corrected_robot, mut notes) = corrected(&found.after.robot, &applied, &series.surfaces());
+    let (corrected_robot, mut notes) =
+        corrected(&found.after.robot, &applied, &series.surfaces(), &series.names);
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
     let mut doubts = doubts(robot, suspect, &series, &found.after)?;

@@ -7,7 +7,7 @@ use crate::{
     baseline::Baseline,
     candidates::{self, Family},
     evidence::Evidence,
-    gates::{LEVEL, cosine, passes},
+    gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes},
     null::Null,
     report::{EvidenceFigures, Finding, FindingFit, FoundParameter},
     series::{Applied, Series},
@@ -97,7 +97,7 @@ fn strongest(
         if p_value > LEVEL {
             return None;
         }
-        let gain = passes(&system, series, &evidence, &[white.of(&columns[i])])?;
+        let gain = passes(&system, series, &evidence, (&[white.of(&columns[i])], LEAST_GAIN_SIGMAS))?;
         Some(Discovered {
             term: terms[i].clone(),
             size: evidence.values[0],

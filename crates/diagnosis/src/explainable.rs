@@ -4,6 +4,7 @@ use crate::{
     baseline::Baseline,
     linear::{FOLDS, Folded},
     series::{Average, Series},
+    span::Span,
     weigh::blocks,
 };
 
@@ -59,7 +60,16 @@ fn squared(series: &Series, errors: &[f64], explained: Option<&[f64]>) -> f64 {
 /// Inputs, their squares and products, each channel's own, in sigma and of mean square 1.
 fn smooth(series: &Series, base: &Baseline) -> Vec<Vec<f64>> {
     let longest_s = series.longest_s().max(1.0);
-    let inputs: Vec<Vec<f64>> = standardised(&series.averages, longest_s);
+    let mut inputs: Vec<Vec<f64>> = standardised(&series.averages, longest_s);
+    let line = series.timeline();
+    if line.drives() > 1 {
+        // Healthy drives have no place among those under suspicion: half of the way.
+        let driven_s = |a: &Average| {
+            let span = Span::From { run: a.run, t_s: a.t_s };
+            if a.suspect { line.driven_s(span) } else { 0.5 * line.total_s() }
+        };
+        inputs.extend(spread(&series.averages, &driven_s));
+    }
     let mut products: Vec<Vec<f64>> = inputs.clone();
     for (i, a) in inputs.iter().enumerate() {
         for b in &inputs[i..] {
@@ -99,16 +109,15 @@ fn standardised(averages: &[Average], longest_s: f64) -> Vec<Vec<f64>> {
         &|a| if a.input.heading_rad.is_finite() { a.input.heading_rad.cos() } else { 0.0 },
         &|a| if a.input.heading_rad.is_finite() { a.input.heading_rad.sin() } else { 0.0 },
     ];
-    let mut inputs = Vec::new();
-    for of in of {
-        let values: Vec<f64> = averages.iter().map(of).collect();
-        let count = values.len().max(1) as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let spread = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
-        if spread > 1e-6 {
-            // Rare extremes would rule the products.
-            inputs.push(values.iter().map(|x| ((x - mean) / spread).clamp(-3.0, 3.0)).collect());
-        }
-    }
-    inputs
+    of.into_iter().filter_map(|of| spread(averages, of)).collect()
+}
+
+/// An input less its mean, over its spread; `None` where it does not change.
+fn spread(averages: &[Average], of: &dyn Fn(&Average) -> f64) -> Option<Vec<f64>> {
+    let values: Vec<f64> = averages.iter().map(of).collect();
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let spread = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
+    // Rare extremes would rule the products.
+    (spread > 1e-6).then(|| values.iter().map(|x| ((x - mean) / spread).clamp(-3.0, 3.0)).collect())
 }

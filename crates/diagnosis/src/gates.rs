@@ -16,7 +16,10 @@ pub(crate) const LEVEL: f64 = 0.01;
 /// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
 const LEAST_VISITS: usize = 6;
 /// Standard errors by which the fit of blocks that were held out has to gain.
-const LEAST_GAIN_SIGMAS: f64 = 2.5;
+pub(crate) const LEAST_GAIN_SIGMAS: f64 = 2.5;
+/// The same for changes of power that are more than what models miss: few blocks may hold all of it, as those in which a robot spins
+/// hold what ice does, and the mean over the others says little.
+const LEAST_GAIN_SIGMAS_IF_STRONG: f64 = 1.0;
 /// Tenths of the drives that are held out in turn.
 const FOLDS: usize = 10;
 /// Rivals that are looked at closely.
@@ -43,7 +46,8 @@ pub(crate) fn best(
         let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
         let system = if is_delay { &delay_apart } else { &all_fitted };
         let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
-        Some((place, passes(system, series, &one.evidence, &columns)?))
+        let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { LEAST_GAIN_SIGMAS };
+        Some((place, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
     let Some((place, gain)) = passing else { return Ok(None) };
     let chosen = weighed.remove(place);
@@ -58,12 +62,12 @@ pub(crate) fn best(
     Ok(Some((weighed, gain)))
 }
 
-/// The gain on held-out blocks of what has enough visits and gains significantly.
+/// The gain on held-out blocks of what has enough visits and gains by so many standard errors.
 pub(crate) fn passes(
     system: &System,
     series: &Series,
     evidence: &Evidence,
-    columns: &[Vec<f64>],
+    (columns, least_sigmas): (&[Vec<f64>], f64),
 ) -> Option<f64> {
     let acts = acting(system, series, evidence);
     let is_suspect = suspects(system, series);
@@ -71,7 +75,7 @@ pub(crate) fn passes(
         return None;
     }
     let gains = system.held_out(columns, FOLDS);
-    significant_gain(&gains, system, series, &acts)
+    significant_gain(&gains, system, series, &acts, least_sigmas)
 }
 
 /// Cosine between what two candidates explain of the rows.
@@ -99,7 +103,13 @@ fn suspects(system: &System, series: &Series) -> Vec<bool> {
 }
 
 /// The gain as a share of the errors, if it is significant over the blocks in which the mechanism acts.
-fn significant_gain(gains: &[f64], system: &System, series: &Series, acts: &[bool]) -> Option<f64> {
+fn significant_gain(
+    gains: &[f64],
+    system: &System,
+    series: &Series,
+    acts: &[bool],
+    least_sigmas: f64,
+) -> Option<f64> {
     let gains: Vec<f64> = gains.iter().zip(acts).filter(|(_, acts)| **acts).map(|(gain, _)| *gain).collect();
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;
@@ -108,5 +118,5 @@ fn significant_gain(gains: &[f64], system: &System, series: &Series, acts: &[boo
     let block = blocks(series);
     let whole: f64 =
         block.iter().enumerate().filter(|(_, b)| acts[**b]).map(|(i, _)| left[i] * left[i]).sum();
-    (mean > 0.0 && mean * count.sqrt() > LEAST_GAIN_SIGMAS * spread).then(|| mean * count / whole.max(1e-300))
+    (mean > 0.0 && mean * count.sqrt() > least_sigmas * spread).then(|| mean * count / whole.max(1e-300))
 }

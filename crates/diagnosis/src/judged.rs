@@ -16,6 +16,7 @@ use crate::{
     },
     search::{Found, Search},
     series::{Applied, Series},
+    span::Span,
     words,
 };
 
@@ -152,18 +153,13 @@ impl Judged {
     pub(crate) fn findings(&self, series: &Series, found: &Search) -> Vec<Finding> {
         let mut rmse_w = self.held_out_rmse_w.windows(2).map(|pair| [pair[0], pair[1]]);
         let mut findings: Vec<Finding> =
-            found.found.iter().zip(&mut rmse_w).map(|(f, rmse_w)| finding(f, rmse_w)).collect();
+            found.found.iter().zip(&mut rmse_w).map(|(f, rmse_w)| finding(series, f, rmse_w)).collect();
         findings.extend(self.discovered.iter().zip(rmse_w).map(|(d, rmse_w)| d.finding(series, rmse_w)));
         findings
     }
 
     /// Where the errors are that the findings take away; where nothing was found, those beyond noise.
-    pub(crate) fn places(
-        &self,
-        series: &Series,
-        found: &Search,
-        suspect: &Recording,
-    ) -> Result<Vec<Place>, Error> {
+    pub(crate) fn places(&self, series: &Series, found: &Search) -> Result<Vec<Place>, Error> {
         if self.verdict(found) == Verdict::Consistent {
             return Ok(Vec::new());
         }
@@ -178,8 +174,7 @@ impl Judged {
             let off = |i: usize| errors_w[i] + after.predicted_w[i] - without_w[i];
             (0..errors_w.len()).map(|i| (off(i).powi(2) - errors_w[i].powi(2)) / variance(i)).collect()
         };
-        let runs: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
-        let mut places = locate::places(series, &excess, &runs);
+        let mut places = locate::places(series, &excess);
         if places.is_empty() {
             let range = Range { quantity: "t_s", from: None, to: None, name: None };
             let statement = "all through the drives, nowhere in particular".into();
@@ -239,7 +234,7 @@ fn usual_w(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
     (beyond.iter().sum::<f64>() / beyond.len().max(1) as f64).max(0.0).sqrt()
 }
 
-fn finding(found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
+fn finding(series: &Series, found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
     let applied = &found.applied;
     let mechanism = applied.mechanism;
     let numbers = mechanism.parameters().iter().zip(applied.values.iter().zip(&found.half_widths));
@@ -252,14 +247,14 @@ fn finding(found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
         })
         .collect();
     let mut statement = words::capital(&mechanism.statement(&applied.values));
-    if applied.from_s > 0.0 {
+    if !applied.span.is_all() {
         parameters.push(FoundParameter {
-            name: "from_s",
-            value: applied.from_s,
+            name: if matches!(applied.span, Span::Until { .. }) { "until_s" } else { "from_s" },
+            value: series.timeline().driven_s(applied.span),
             unit: "s",
             interval_95: found.onset_95_s,
         });
-        statement += &format!(", from about {:.0} s on", applied.from_s);
+        statement += &format!(", {}", applied.span.words(&series.names));
     }
     Finding {
         mechanism: mechanism.name().to_owned(),

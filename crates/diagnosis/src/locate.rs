@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use crate::{
     report::{Place, Range},
     series::{Average, Series},
+    span::Span,
     weigh::blocks,
 };
 
@@ -12,6 +13,8 @@ use crate::{
 const LEVEL: f64 = 0.01;
 /// Parts that each drive's time is cut into; windows are runs of them.
 const PARTS: usize = 20;
+/// Drives whose sequences are looked at; of more there would be too many.
+const MOST_DRIVES: usize = 20;
 /// Blocks that a place needs for its scatter to be known.
 const LEAST_BLOCKS: usize = 4;
 /// Averages whose excess is greater count as this much, in variances: single spikes are no place.
@@ -40,11 +43,11 @@ struct Judged {
 
 /// Places with significantly more excess than the rest of the drives, the clearest of each kind first.
 ///
-/// `excess` is, by average, the squared error beyond what belongs there, in variances of the noise; `runs` names the drives.
-pub(crate) fn places(series: &Series, excess: &[f64], runs: &[String]) -> Vec<Place> {
+/// `excess` is, by average, the squared error beyond what belongs there, in variances of the noise.
+pub(crate) fn places(series: &Series, excess: &[f64]) -> Vec<Place> {
     let excess: Vec<f64> = excess.iter().map(|e| e.clamp(-MOST_VARIANCES, MOST_VARIANCES)).collect();
     let block = blocks(series);
-    let groups = [times(series, runs), regimes(), sides(series)];
+    let groups = [times(series), regimes(), sides(series)];
     let tried: usize = groups.iter().map(Vec::len).sum();
     let mut places = Vec::new();
     for cells in groups {
@@ -99,9 +102,9 @@ impl Mean {
     }
 }
 
-/// Windows of each drive's time.
-fn times(series: &Series, runs: &[String]) -> Vec<Cell> {
-    let mut cells = Vec::new();
+/// Windows of each drive's time, and drives that follow each other.
+fn times(series: &Series) -> Vec<Cell> {
+    let mut cells = sequences(series);
     let suspects = series.averages.iter().filter(|a| a.suspect);
     let count = suspects.clone().map(|a| a.run).max().map_or(0, |run| run + 1);
     for run in 0..count {
@@ -112,7 +115,7 @@ fn times(series: &Series, runs: &[String]) -> Vec<Cell> {
                     continue;
                 }
                 let [from_s, to_s] = [from, to].map(|part| (last_s * part as f64 / PARTS as f64).round());
-                let name = runs.get(run).cloned().unwrap_or_default();
+                let name = series.names.get(run).cloned().unwrap_or_default();
                 let whose = if count > 1 { format!(" of drive {name}") } else { String::new() };
                 let range = Range {
                     quantity: "t_s",
@@ -128,6 +131,35 @@ fn times(series: &Series, runs: &[String]) -> Vec<Cell> {
         }
     }
     cells
+}
+
+/// Some of several drives that follow each other.
+fn sequences(series: &Series) -> Vec<Cell> {
+    let line = series.timeline();
+    let count = line.drives();
+    if !(3..=MOST_DRIVES).contains(&count) {
+        // Of two, each is a window by itself.
+        return Vec::new();
+    }
+    let pairs = (0..count).flat_map(|from| (from + 1..count).map(move |to| (from, to)));
+    let cell = |(from, to): (usize, usize)| {
+        let name = |run: usize| &series.names[run];
+        let statement = match (from, to + 1 == count) {
+            (_, true) => format!("from drive {} on", name(from)),
+            (0, _) => format!("until the end of drive {}", name(to)),
+            _ => format!("from drive {} to the end of drive {}", name(from), name(to)),
+        };
+        let begins_s = |run: usize| line.driven_s(Span::From { run, t_s: 0.0 });
+        let range = Range {
+            quantity: "driven_s",
+            from: Some(begins_s(from)),
+            to: Some(begins_s(to + 1)),
+            name: None,
+        };
+        let inside = move |a: &Average| (from..=to).contains(&a.run);
+        Cell { place: place("time", statement, range), inside: Box::new(inside) }
+    };
+    pairs.filter(|pair| *pair != (0, count - 1)).map(cell).collect()
 }
 
 fn span(from_s: f64, to_s: f64, last_s: f64) -> String {

@@ -182,7 +182,7 @@ mod tests {
 
     fn explanation(name: &str, values: Vec<f64>) -> Explanation {
         let mechanism = mechanism::by_name(name).unwrap_or(mechanism::ALL[0]);
-        let applied = vec![Applied { mechanism, values, from_s: 0.0 }];
+        let applied = vec![Applied { mechanism, values, span: crate::Span::ALL }];
         Explanation { name: mechanism.name(), applied, robot: builtin::husky_a200() }
     }
 

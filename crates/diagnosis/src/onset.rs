@@ -1,4 +1,4 @@
-//! When a mechanism set in: the profile of its evidence over the time from which it acts.
+//! When a mechanism set in or ended: the profile of its evidence over that time.
 
 use rayon::prelude::*;
 
@@ -8,6 +8,7 @@ use crate::{
     candidates::{self, Candidate},
     evidence::Evidence,
     series::{Applied, Series},
+    span::Span,
     weigh::{Weighed, system},
 };
 
@@ -15,19 +16,21 @@ use crate::{
 const AROUND: f64 = 0.1;
 /// Number of times looked at on each side.
 const STEPS: i32 = 30;
-/// 95 % quantile of χ² of one degree of freedom: what evidence may fall short of the best within the interval.
-const CHI_SQUARED_95: f64 = 3.841;
+/// What evidence may fall short of the best within the interval. Where a jump lies, likelihoods have kinks and are not of χ²: their
+/// ratio is below x with the chance (1 − e^(−x/2))², of which this is the 95 % quantile, −2 ln(1 − √0.95) (Hansen, "Sample splitting
+/// and threshold estimation", Econometrica 68, 2000, theorem 2).
+const JUMP_95: f64 = 7.35;
 
-/// A candidate at the time from which its evidence is strongest.
+/// A candidate at the time at which its evidence is strongest.
 pub(crate) struct Onset {
     pub(crate) weighed: Weighed,
-    /// 95 % interval of the time, by the profile [s].
+    /// 95 % interval of the time, by the profile, in seconds driven [s].
     pub(crate) interval_s: [f64; 2],
 }
 
-/// Finds when a candidate that set in during the drives did so; `None` for one that acts from the beginning.
+/// Finds when a candidate that set in or ended during the drives did so; `None` for one that acts all the time.
 ///
-/// A mechanism acts on every second by itself, so what it does from some time on is what it does all the time, cut off there.
+/// A mechanism acts on every second by itself, so what it does in a part of the drives is what it does all the time, cut off there.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -39,43 +42,78 @@ pub(crate) fn refine(
     discount: f64,
 ) -> Result<Option<Onset>, Error> {
     let guess = &first.candidate.applied;
-    if guess.from_s == 0.0 {
+    if guess.span.is_all() {
         return Ok(None);
     }
     let linear = first.candidate.linear.clone();
-    let always = Applied { from_s: 0.0, ..guess.clone() };
+    let always = Applied { span: Span::ALL, ..guess.clone() };
     let all = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear)?.columns;
     let system = system(series, base);
-    let step_s = AROUND * series.longest_s() / f64::from(STEPS);
-    let at = |step: i32| -> Option<(f64, Vec<Vec<f64>>, Evidence)> {
-        let from_s = guess.from_s + f64::from(step) * step_s;
-        let columns: Vec<Vec<f64>> = all.iter().map(|column| cut(series, column, from_s)).collect();
+    let (times, step_s) = around(series, guess.span);
+    let at = |span: Span| -> Option<(Span, Vec<Vec<f64>>, Evidence)> {
+        let columns: Vec<Vec<f64>> = all.iter().map(|column| cut(series, column, span)).collect();
         let white = base.whitening(series);
         let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
-        Some((from_s, columns, system.weigh(&whitened)?)).filter(|_| from_s > 0.0)
+        Some((span, columns, system.weigh(&whitened)?))
     };
-    let profile: Vec<_> = (-STEPS..=STEPS).into_par_iter().filter_map(at).collect();
+    let profile: Vec<_> = times.into_par_iter().filter_map(at).collect();
     let best = profile.iter().map(|(_, _, evidence)| evidence.wald).fold(f64::NEG_INFINITY, f64::max);
-    let within = profile.iter().filter(|(_, _, e)| (best - e.wald) / discount <= CHI_SQUARED_95);
-    let interval_s = within.fold([f64::INFINITY, 0.0], |[low, high], (s, ..)| [s.min(low), s.max(high)]);
-    let Some((from_s, columns, evidence)) = profile.into_iter().find(|(_, _, e)| e.wald == best) else {
+    let line = series.timeline();
+    let is_within = |e: &Evidence| (best - e.wald) / discount <= JUMP_95;
+    let driven_s = profile.iter().filter(|(_, _, e)| is_within(e)).map(|(span, ..)| line.driven_s(*span));
+    let interval_s = driven_s.fold([f64::INFINITY, 0.0], |[low, high], s| [s.min(low), s.max(high)]);
+    // What happens to a robot happens between two drives rather than a second after.
+    let is_border = |span: &Span| matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. });
+    let likely = |(span, _, e): &&(Span, Vec<Vec<f64>>, Evidence)| is_border(span) && is_within(e);
+    let border = profile.iter().filter(likely).max_by(|a, b| a.2.wald.total_cmp(&b.2.wald)).map(|b| b.0);
+    let chosen =
+        |(span, _, e): &(Span, Vec<Vec<f64>>, Evidence)| border.map_or(e.wald == best, |b| b == *span);
+    let Some((span, columns, evidence)) = profile.into_iter().find(chosen) else {
         return Ok(None);
     };
     let candidate = Candidate {
-        applied: Applied { from_s, ..guess.clone() },
+        applied: Applied { span, ..guess.clone() },
         linear: first.candidate.linear.clone(),
         columns,
     };
     let more = (evidence.wald - first.evidence.wald) / discount;
     let (score, rank) = (first.score + more, first.rank + more);
-    let weighed = Weighed { candidate, evidence, tried: first.tried, score, rank, p_value: first.p_value };
+    let weighed = Weighed {
+        candidate,
+        evidence,
+        tried: first.tried,
+        score,
+        rank,
+        p_value: first.p_value,
+        is_strong: first.is_strong,
+    };
     // A step is as close as a time is told.
     let interval_s = [interval_s[0] - step_s, interval_s[1] + step_s];
     Ok(Some(Onset { weighed, interval_s: interval_s.map(|s| s.max(0.0)) }))
 }
 
-/// A column without what comes before a time.
-fn cut(series: &Series, column: &[f64], from_s: f64) -> Vec<f64> {
-    let acts = |(value, a): (&f64, &crate::series::Average)| if a.t_s >= from_s { *value } else { 0.0 };
+/// Moments about a first guess, beginnings of drives among them, and the step between them [s].
+fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
+    let line = series.timeline();
+    let is_in_each = matches!(guess, Span::EachDrive(_));
+    let (span_s, end_s) =
+        if is_in_each { (series.longest_s(), series.longest_s()) } else { (line.total_s(), line.total_s()) };
+    let step_s = AROUND * span_s / f64::from(STEPS);
+    let at_s = line.driven_s(guess);
+    let times_s =
+        (-STEPS..=STEPS).map(|step| at_s + f64::from(step) * step_s).filter(|s| *s > 0.0 && *s < end_s);
+    if is_in_each {
+        return (times_s.map(Span::EachDrive).collect(), step_s);
+    }
+    let near = |s: &&f64| (**s - at_s).abs() <= f64::from(STEPS) * step_s;
+    let times_s: Vec<f64> = times_s.chain(line.borders_s().iter().filter(near).copied()).collect();
+    let span = |s: f64| if matches!(guess, Span::Until { .. }) { line.at(s).until() } else { line.at(s) };
+    (times_s.into_iter().map(span).collect(), step_s)
+}
+
+/// A column without what lies beyond a span.
+fn cut(series: &Series, column: &[f64], span: Span) -> Vec<f64> {
+    let acts =
+        |(value, a): (&f64, &crate::series::Average)| if span.acts(a.run, a.t_s) { *value } else { 0.0 };
     column.iter().zip(&series.averages).map(acts).collect()
 }

@@ -126,8 +126,8 @@ fn finding(found: &Finding) -> String {
 
 /// A parameter's name as people say it; its unit stands beside its value.
 fn without_unit(name: &str) -> String {
-    if name == "from_s" {
-        return "acts from".into();
+    if let "from_s" | "until_s" = name {
+        return name.replace("_s", "").replacen("", "acts ", 1);
     }
     const UNITS: [&str; 11] =
         ["_kg", "_n", "_w", "_s", "_m", "_rad", "_mps", "_k_per_w", "_per_mps", "_kg_per_m", "_per_rad"];

@@ -35,32 +35,29 @@ pub(crate) fn tried(
 ) -> Result<State, Error> {
     let revised =
         if state.found.len() == 2 { revise(series, file, before, &state.applied(), null)? } else { None };
-    let mut state = better(series, before, [Some(state), revised], null);
+    let mut state = better(series, before, state, revised, null);
     let is_delayed = state.found.iter().any(|f| f.applied.mechanism.name() == "clock_offset");
     if state.found.len() < 3
         && !is_delayed
         && let Some(pair) = pair(series, before, &state.applied(), null)?
     {
         let other = revise(series, file, before, &pair, null)?;
-        state = better(series, before, [Some(state), other], null);
+        state = better(series, before, state, other, null);
     }
     Ok(state)
 }
 
-/// The state that explains most for its parameters.
-fn better(series: &Series, before: &Baseline, states: [Option<State>; 2], null: &Null) -> State {
+/// The other state, if there is one and it explains more for its parameters.
+fn better(series: &Series, before: &Baseline, state: State, other: Option<State>, null: &Null) -> State {
     let blocks = system(series, before).blocks();
     let cost = |state: &State| {
         let count: usize = state.found.iter().map(|f| f.half_widths.iter().flatten().count()).sum();
         misfit(series, &state.fit, before) / null.common_discount(blocks)
             + count as f64 * (blocks as f64).ln()
     };
-    let [first, other] = states;
-    match (first, other) {
-        (Some(first), Some(other)) if cost(&other) < cost(&first) => other,
-        (Some(first), _) => first,
-        (None, Some(other)) => other,
-        (None, None) => unreachable!("one of them is what was found"),
+    match other {
+        Some(other) if cost(&other) < cost(&state) => other,
+        _ => state,
     }
 }
 

@@ -186,32 +186,32 @@ impl Part {
         meters: &[Meter],
     ) -> Result<Vec<Seen>, Error> {
         self.drives.go_on()?;
-        let mut changed = robot.clone();
-        for applied in applied {
-            changed = applied.mechanism.robot(&changed, &applied.values).unwrap_or(changed);
-        }
         let memory_s = applied.iter().find_map(|a| a.mechanism.memory_s(&a.values));
         let loss_w = match memory_s {
             Some(memory_s) => losses::averaged(&self.drives, robot, memory_s),
             None => Vec::new(),
         };
         let delay_s: f64 = applied.iter().map(|a| a.mechanism.delay_s(&a.values)).sum();
-        let [plain_shapes, changed_shapes] = [robot, &changed].map(|robot| self.shapes_of(robot));
-        let (plain_shapes, changed_shapes) = (plain_shapes?, changed_shapes?);
+        let phase = self.phases(applied);
+        let phases = 1 + phase.iter().max().copied().unwrap_or(0);
+        let changed: Vec<Option<Changed<'_>>> = (0..phases)
+            .map(|which| phase.contains(&which).then(|| self.changed(robot, applied, which)).transpose())
+            .collect::<Result<_, _>>()?;
         let mut seen = vec![Seen::default(); self.drives.rows.len()];
         for stretch in &self.drives.stretches {
             let name = &self.drives.surfaces[stretch.surface];
-            let on = |robot, shapes| On::new(robot, name, shapes, meters);
-            let (plain, changed) = (on(robot, &plain_shapes)?, on(&changed, &changed_shapes)?);
-            let row = |i: usize| {
-                let t_s = self.drives.rows[i].t_s - self.began_s[i];
-                let acts = applied.iter().any(|a| t_s >= a.from_s);
-                let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
-                self.seen(if acts { &changed } else { &plain }, i, loss_w, (applied, t_s))
-            };
+            let on: Vec<Option<On<'_>>> = changed
+                .iter()
+                .map(|changed| changed.as_ref().map(|changed| On::new(changed, name, meters)).transpose())
+                .collect::<Result<_, _>>()?;
             let places = stretch.rows.clone();
             let rows = &mut seen[places.clone()];
-            rows.par_iter_mut().zip(places).with_min_len(512).for_each(|(seen, i)| *seen = row(i));
+            rows.par_iter_mut().zip(places).with_min_len(512).for_each(|(seen, i)| {
+                let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
+                if let Some(on) = &on[phase[i]] {
+                    *seen = self.seen(on, i, loss_w);
+                }
+            });
             if delay_s != 0.0 {
                 let rows = rows.to_vec();
                 for (i, row) in stretch.rows.clone().enumerate() {
@@ -220,6 +220,30 @@ impl Part {
             }
         }
         Ok(seen)
+    }
+
+    /// By row: which mechanisms act, as the bits of a number.
+    fn phases(&self, applied: &[Applied]) -> Vec<usize> {
+        let mut phase = vec![0; self.drives.rows.len()];
+        for stretch in &self.drives.stretches {
+            for i in stretch.rows.clone() {
+                let t_s = self.drives.rows[i].t_s - self.began_s[i];
+                let bit = |(j, a): (usize, &Applied)| usize::from(a.span.acts(stretch.run, t_s)) << j;
+                phase[i] = applied.iter().enumerate().map(bit).sum();
+            }
+        }
+        phase
+    }
+
+    /// The robot as the mechanisms of a phase make it.
+    fn changed<'a>(&self, robot: &Robot, applied: &'a [Applied], phase: usize) -> Result<Changed<'a>, Error> {
+        let acting: Vec<&Applied> =
+            applied.iter().enumerate().filter(|(j, _)| phase >> j & 1 == 1).map(|(_, a)| a).collect();
+        let mut robot = robot.clone();
+        for one in &acting {
+            robot = one.mechanism.robot(&robot, &one.values).unwrap_or(robot);
+        }
+        Ok(Changed { shapes: self.shapes_of(&robot)?, robot, acting })
     }
 
     /// Friction shapes of every row for a robot, kept from the last robots.
@@ -259,8 +283,8 @@ impl Part {
 
     /// What would be recorded of one row.
     #[inline]
-    fn seen(&self, on: &On<'_>, i: usize, loss_w: Sides<f64>, (applied, t_s): (&[Applied], f64)) -> Seen {
-        let On { robot, surface, friction, shapes, meters } = on;
+    fn seen(&self, on: &On<'_>, i: usize, loss_w: Sides<f64>) -> Seen {
+        let On { changed: Changed { robot, acting, shapes }, surface, friction, meters } = on;
         let row: &Row = &self.drives.rows[i];
         let driven = Moment {
             motion: row.motion(robot).heading(self.heading_rad[i]),
@@ -269,13 +293,12 @@ impl Part {
             attitude: row.attitude(),
             loss_w,
         };
-        let acting = || applied.iter().filter(|a| t_s >= a.from_s);
         let mut moment = driven;
-        for applied in acting() {
+        for applied in acting {
             applied.mechanism.measure(&applied.values, &mut moment);
         }
         let mut adjustment = robot.adjustment(surface, &moment);
-        for applied in acting() {
+        for applied in acting {
             adjustment = adjustment.and(applied.mechanism.adjust(robot, &applied.values, &moment));
         }
         // Few mechanisms change what the wheels or the ground were measured to do.
@@ -287,7 +310,7 @@ impl Part {
         let grade = if moment.attitude == driven.attitude { self.grade[i] } else { moment.attitude.grade() };
         let manoeuvre = Manoeuvre::adjusted(robot, friction, moment.motion, &shape, row.motor_c, &adjustment);
         let power = manoeuvre.power_on_grade(grade, moment.acceleration);
-        let read = |true_w: f64| acting().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
+        let read = |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
         let sides_w = || seen_w(robot, PowerForm::Sides, row, &power).map(read);
         let battery_w = || read(seen_w(robot, PowerForm::Battery, row, &power)[0]);
         let [first_w, second_w] = match meters.first() {
@@ -306,24 +329,26 @@ impl Part {
     }
 }
 
+/// A robot as mechanisms make it.
+struct Changed<'a> {
+    robot: Robot,
+    acting: Vec<&'a Applied>,
+    /// By row of all drives.
+    shapes: Arc<Vec<FrictionShape>>,
+}
+
 /// A robot on one surface, prepared for many rows.
 struct On<'a> {
-    robot: &'a Robot,
+    changed: &'a Changed<'a>,
     surface: &'a Surface,
     friction: Friction,
-    /// By row of all drives.
-    shapes: &'a [FrictionShape],
     meters: &'a [Meter],
 }
 
 impl<'a> On<'a> {
-    fn new(
-        robot: &'a Robot,
-        name: &str,
-        shapes: &'a [FrictionShape],
-        meters: &'a [Meter],
-    ) -> Result<Self, Error> {
+    fn new(changed: &'a Changed<'a>, name: &str, meters: &'a [Meter]) -> Result<Self, Error> {
+        let robot = &changed.robot;
         let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
-        Ok(On { robot, surface, friction: Friction::new(robot, surface), shapes, meters })
+        Ok(On { changed, surface, friction: Friction::new(robot, surface), meters })
     }
 }

@@ -198,7 +198,7 @@ mod tests {
         for (frequency, mechanism, weight) in weights {
             let mechanism = model::mechanism::by_name(mechanism).unwrap();
             let values = vec![0.0; mechanism.parameters().len()];
-            let applied = crate::Applied { mechanism, values, from_s: 0.0 };
+            let applied = crate::Applied { mechanism, values, span: crate::Span::ALL };
             errors_w.axpy(*weight, &DVector::from_vec(waves(*frequency)), 1.0);
             candidates.push(Candidate { applied, linear: vec![0], columns: vec![waves(*frequency)] });
         }

@@ -42,8 +42,7 @@ pub(crate) fn polish(
     let linear = one.candidate.linear.clone();
     let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
     let fitted_with = |applied: &Applied| Baseline::fit(series, file, &with(applied));
-    let mut applied = one.candidate.applied.clone();
-    add(&mut applied, file, &linear, &one.evidence.values);
+    let mut applied = candidates::moved(&one.candidate.applied, file, &linear, &one.evidence.values);
     let mut base = fitted_with(&applied)?;
     let mut covariance = one.evidence.covariance.clone();
     for _ in 0..POLISHES {
@@ -57,8 +56,7 @@ pub(crate) fn polish(
         let mut better = None;
         for share in SHARES {
             let by: Vec<f64> = evidence.values.iter().map(|value| share * value).collect();
-            let mut moved = applied.clone();
-            add(&mut moved, file, &linear, &by);
+            let moved = candidates::moved(&applied, file, &linear, &by);
             let next = fitted_with(&moved)?;
             if misfit(series, &next, &base) < before {
                 better = Some((moved, next));
@@ -107,8 +105,8 @@ fn freed(
         let white = base.whitening(series);
         let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
         let Some(evidence) = system(series, base).weigh(&columns) else { continue };
-        let mut moved = applied.clone();
-        add(&mut moved, file, &free, &limited(applied, &free, &evidence.values, linear));
+        let by = limited(applied, &free, &evidence.values, linear);
+        let moved = candidates::moved(applied, file, &free, &by);
         let next = Baseline::fit(series, file, &[others, std::slice::from_ref(&moved)].concat())?;
         if misfit(series, &next, base) < before - LEAST_GAIN {
             return Ok(Some((moved, next, evidence.covariance, free)));
@@ -123,12 +121,4 @@ fn limited(applied: &Applied, free: &[usize], by: &[f64], linear: &[usize]) -> V
     let reach = 0.5 * from_grid().map(|(&parameter, _)| applied.values[parameter].abs()).fold(0.0, f64::max);
     let beyond = from_grid().map(|(_, by)| by.abs() / reach.max(1e-9)).fold(1.0, f64::max);
     by.iter().map(|by| by / beyond).collect()
-}
-
-/// Moves values, within what a mechanism can have.
-fn add(applied: &mut Applied, robot: &Robot, linear: &[usize], by: &[f64]) {
-    for (parameter, by) in linear.iter().zip(by) {
-        let [low, high] = candidates::range(applied.mechanism, robot, *parameter);
-        applied.values[*parameter] = (applied.values[*parameter] + by).clamp(low, high);
-    }
 }

@@ -100,7 +100,7 @@ pub struct Place {
 /// What bounds a place: a quantity between two values, or a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Range {
-    /// The quantity, with its unit, as `t_s` or `speed_mps`; `side` for a channel.
+    /// The quantity, with its unit, as `t_s` (in a drive), `driven_s` (all drives behind one another) or `speed_mps`; `side` for a channel.
     pub quantity: &'static str,
     /// Least value; none where it is not bounded.
     pub from: Option<f64>,

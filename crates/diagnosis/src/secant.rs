@@ -49,11 +49,7 @@ fn secants(
     at: &Weighed,
 ) -> Result<Vec<Vec<f64>>, Error> {
     let mechanism = at.candidate.applied.mechanism;
-    let mut whole = at.candidate.applied.clone();
-    for (parameter, by) in at.candidate.linear.iter().zip(&at.evidence.values) {
-        let [low, high] = mechanism.bounds(&base.robot, *parameter);
-        whole.values[*parameter] = (whole.values[*parameter] + by).clamp(low, high);
-    }
+    let whole = at.at(base, &at.evidence.values);
     let predict =
         |applied: &Applied| series.predict(&base.robot, &[others, std::slice::from_ref(applied)].concat());
     let with = predict(&whole)?;

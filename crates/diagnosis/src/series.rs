@@ -11,7 +11,13 @@ use model::{
 };
 use recording::{PowerForm, Recording, Watch, unwatched};
 
-use crate::{Error, discrepancy::Discrepancy, meter::Meter, part::Part};
+use crate::{
+    Error,
+    discrepancy::Discrepancy,
+    meter::Meter,
+    part::Part,
+    span::{Span, Timeline},
+};
 
 /// A mechanism at some values from some time on.
 #[derive(Clone)]
@@ -20,13 +26,13 @@ pub struct Applied {
     pub mechanism: &'static dyn Mechanism,
     /// Values of its parameters.
     pub values: Vec<f64>,
-    /// It acts from so long after the beginning of each suspect drive on [s].
-    pub from_s: f64,
+    /// When it acts in the drives under suspicion.
+    pub span: Span,
 }
 
 impl std::fmt::Debug for Applied {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {:?} from {} s", self.mechanism.name(), self.values, self.from_s)
+        write!(f, "{} {:?} {:?}", self.mechanism.name(), self.values, self.span)
     }
 }
 
@@ -38,6 +44,8 @@ pub struct Series {
     pub recorded: Vec<f64>,
     /// What each value is of, in the same order.
     pub averages: Vec<Average>,
+    /// Names of the drives under suspicion.
+    pub(crate) names: Vec<String>,
     watch: Watch,
     /// Mechanisms that may act.
     library: Vec<&'static dyn Mechanism>,
@@ -119,6 +127,7 @@ impl Series {
             meters,
             recorded: Vec::new(),
             averages: Vec::new(),
+            names: suspect.runs.iter().map(|run| run.name.clone()).collect(),
             watch,
             library: mechanism::ALL.to_vec(),
             discrepancy: OnceLock::new(),
@@ -199,6 +208,12 @@ impl Series {
     /// The longest drive under suspicion [s].
     pub fn longest_s(&self) -> f64 {
         self.averages.iter().filter(|a| a.suspect).map(|a| a.t_s).fold(0.0, f64::max)
+    }
+
+    /// The drives under suspicion, one behind the other.
+    pub(crate) fn timeline(&self) -> Timeline {
+        let seconds = self.averages.iter().filter(|a| a.suspect).map(|a| (a.run, a.t_s));
+        Timeline::of(self.names.len(), seconds)
     }
 
     /// Time between rows of the drives under suspicion [s].

@@ -94,6 +94,8 @@ pub(crate) struct Weighed {
     pub(crate) rank: f64,
     /// Chance of as much, corrected for all that was tried.
     pub(crate) p_value: f64,
+    /// Whether it changes power by more than what models miss.
+    pub(crate) is_strong: bool,
 }
 
 impl Weighed {
@@ -104,12 +106,7 @@ impl Weighed {
 
     /// It with values of its linear parameters, within what a robot can have.
     pub(crate) fn at(&self, base: &Baseline, values: &[f64]) -> Applied {
-        let mut applied = self.candidate.applied.clone();
-        for (parameter, by) in self.candidate.linear.iter().zip(values) {
-            let [low, high] = applied.mechanism.bounds(&base.robot, *parameter);
-            applied.values[*parameter] = (applied.values[*parameter] + by).clamp(low, high);
-        }
-        applied
+        candidates::moved(&self.candidate.applied, &base.robot, &self.candidate.linear, values)
     }
 }
 
@@ -199,7 +196,8 @@ impl<'a> Scales<'a> {
         let mut evidence = (if is_delay { &self.delay_apart } else { &self.all_fitted }).weigh(&columns)?;
         // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
         // is not in proportion to its size, and more than models miss.
-        if is_from_grid(&candidate) || self.share(&candidate, &evidence) > STRONG {
+        let is_strong = self.share(&candidate, &evidence) > STRONG;
+        if is_from_grid(&candidate) || is_strong {
             evidence.discord = 1.0;
         }
         if !is_plausible(&self.base.robot, &candidate, &evidence)
@@ -212,7 +210,15 @@ impl<'a> Scales<'a> {
         let cost = columns.len() as f64 * (blocks as f64).ln();
         let (score, rank) = (wald - cost, by_all(&evidence, name(&candidate), self.null, blocks)? - cost);
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
-        Some(Weighed { candidate, evidence, tried, score, rank, p_value: (chance * self.all).min(1.0) })
+        Some(Weighed {
+            candidate,
+            evidence,
+            tried,
+            score,
+            rank,
+            p_value: (chance * self.all).min(1.0),
+            is_strong,
+        })
     }
 
     /// Change of power that a candidate stands for, over the power, both root mean square over the suspect drives.

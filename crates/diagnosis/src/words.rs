@@ -2,6 +2,9 @@
 
 use crate::report::{Diagnosis, Finding, Verdict};
 
+/// Percents of an error that follow from what was recorded and are not worth a word.
+const LITTLE_LEFT: f64 = 6.0;
+
 /// The verdict in one sentence.
 pub(crate) fn sentence(found: &Diagnosis) -> String {
     let left = 100.0 * found.explainable[1];
@@ -19,6 +22,10 @@ pub(crate) fn sentence(found: &Diagnosis) -> String {
         Verdict::Unexplained if found.findings.is_empty() => format!(
             "Something is missing that no known mechanism describes: {left:.0} % of the remaining error follows from what was \
              recorded."
+        ),
+        Verdict::Unexplained if left < LITTLE_LEFT => format!(
+            "{said}; but that is not all: where it was not fitted the model is off by {:.1} W, of which {:.1} W are noise.",
+            found.corrected.held_out_rmse_w, found.baseline.noise_floor_w
         ),
         Verdict::Unexplained => format!(
             "{said}; but that is not all: {left:.0} % of the remaining error still follows from what was recorded, and no known \

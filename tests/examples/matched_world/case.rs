@@ -1,6 +1,6 @@
 //! Cases of a world that is the model's own.
 
-use diagnosis::{Applied, imitate};
+use diagnosis::{Applied, Span, imitate};
 use model::{Robot, mechanism::Mechanism};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -106,7 +106,11 @@ fn of_strength(
             let [low, high] = mechanism.bounds(robot, i);
             fixed.iter().find(|(j, _)| *j == i).map_or((size * by).clamp(low, high), |(_, value)| *value)
         };
-        Applied { mechanism, values: direction.iter().enumerate().map(value).collect(), from_s }
+        Applied {
+            mechanism,
+            values: direction.iter().enumerate().map(value).collect(),
+            span: Span::EachDrive(from_s),
+        }
     };
     let mut size = 1.0;
     for _ in 0..12 {

@@ -30,7 +30,14 @@ impl Mechanism for DrivetrainDrag {
     }
 
     fn statement(&self, values: &[f64]) -> String {
-        format!("the drivetrain drags: {:.1} N on the left side, {:.1} N on the right", values[0], values[1])
+        match values {
+            [left_n, 0.0] => format!("the drivetrain drags: {left_n:.1} N on the left side"),
+            [0.0, right_n] => format!("the drivetrain drags: {right_n:.1} N on the right side"),
+            [left_n, right_n, ..] => {
+                format!("the drivetrain drags: {left_n:.1} N on the left side, {right_n:.1} N on the right")
+            }
+            _ => "the drivetrain drags".into(),
+        }
     }
 
     fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {

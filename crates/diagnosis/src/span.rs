@@ -1,0 +1,165 @@
+//! When a mechanism acts in the drives under suspicion.
+
+/// The part of the drives in which a mechanism acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Span {
+    /// From so long after the beginning of every drive on [s].
+    EachDrive(f64),
+    /// From so long after the beginning of one drive on, and all through those that follow it.
+    From {
+        /// Which of the drives under suspicion, counted from 0 in the order in which they were given.
+        run: usize,
+        /// Time since it began [s].
+        t_s: f64,
+    },
+    /// All through the drives before one, and until so long after its beginning.
+    Until {
+        /// As in [`Span::From`].
+        run: usize,
+        /// As in [`Span::From`].
+        t_s: f64,
+    },
+}
+
+impl Span {
+    /// All of all drives.
+    pub const ALL: Span = Span::EachDrive(0.0);
+
+    /// Whether this is all of all drives.
+    #[must_use]
+    pub fn is_all(self) -> bool {
+        self == Span::ALL
+    }
+
+    /// Whether it acts so long after the beginning of a drive.
+    #[inline]
+    #[must_use]
+    pub fn acts(self, run: usize, t_s: f64) -> bool {
+        match self {
+            Span::EachDrive(from_s) => t_s >= from_s,
+            Span::From { run: first, t_s: from_s } => is_after((run, t_s), (first, from_s)),
+            Span::Until { run: last, t_s: until_s } => !is_after((run, t_s), (last, until_s)),
+        }
+    }
+
+    /// It as a person would say it, with the names of the drives.
+    #[must_use]
+    pub fn words(self, names: &[String]) -> String {
+        let name = |run: usize| names.get(run).map_or("?", String::as_str);
+        match self {
+            Span::EachDrive(s) | Span::From { t_s: s, .. } if names.len() < 2 => {
+                format!("from about {s:.0} s on")
+            }
+            Span::Until { t_s, .. } if names.len() < 2 => format!("until about {t_s:.0} s"),
+            Span::EachDrive(from_s) => format!("from about {from_s:.0} s of each drive on"),
+            Span::From { run, t_s: 0.0 } => format!("from drive {} on", name(run)),
+            Span::From { run, t_s } => format!("from about {t_s:.0} s of drive {} on", name(run)),
+            Span::Until { run, t_s: 0.0 } => format!("until drive {}", name(run)),
+            Span::Until { run, t_s } => format!("until about {t_s:.0} s of drive {}", name(run)),
+        }
+    }
+
+    /// What ends where this begins.
+    pub(crate) fn until(self) -> Span {
+        match self {
+            Span::From { run, t_s } => Span::Until { run, t_s },
+            other => other,
+        }
+    }
+}
+
+fn is_after((run, t_s): (usize, f64), (first, from_s): (usize, f64)) -> bool {
+    run > first || run == first && t_s >= from_s
+}
+
+/// The drives under suspicion, one behind the other.
+pub(crate) struct Timeline {
+    /// Beginnings of the drives, and the end of the last, in seconds driven.
+    begins_s: Vec<f64>,
+}
+
+impl Timeline {
+    /// Of drives of which some seconds are known, each by its drive and its middle, in time since the drive began [s].
+    pub(crate) fn of(drives: usize, seconds: impl Iterator<Item = (usize, f64)>) -> Self {
+        let mut durations_s = vec![0.0; drives];
+        for (run, t_s) in seconds {
+            durations_s[run] = f64::max(durations_s[run], t_s + 0.5);
+        }
+        Timeline::new(durations_s)
+    }
+
+    /// Of drives that took so long [s].
+    fn new(durations_s: impl IntoIterator<Item = f64>) -> Self {
+        let mut begins_s = vec![0.0];
+        let mut driven_s = 0.0;
+        for duration_s in durations_s {
+            driven_s += duration_s;
+            begins_s.push(driven_s);
+        }
+        Timeline { begins_s }
+    }
+
+    /// Number of drives.
+    pub(crate) fn drives(&self) -> usize {
+        self.begins_s.len() - 1
+    }
+
+    /// Time driven in all [s].
+    pub(crate) fn total_s(&self) -> f64 {
+        self.begins_s[self.drives()]
+    }
+
+    /// Beginnings of all drives but the first [s].
+    pub(crate) fn borders_s(&self) -> &[f64] {
+        &self.begins_s[1..self.drives().max(1)]
+    }
+
+    /// Time driven until a span begins or ends; for one in each drive, that in the first [s].
+    pub(crate) fn driven_s(&self, span: Span) -> f64 {
+        match span {
+            Span::EachDrive(from_s) => from_s,
+            Span::From { run, t_s } | Span::Until { run, t_s } => self.begins_s[run.min(self.drives())] + t_s,
+        }
+    }
+
+    /// From after so much driving on; the beginning of a drive rather than the end of the one before.
+    pub(crate) fn at(&self, driven_s: f64) -> Span {
+        let run = self.begins_s.partition_point(|begin_s| *begin_s <= driven_s).saturating_sub(1);
+        let run = run.min(self.drives().saturating_sub(1));
+        Span::From { run, t_s: driven_s - self.begins_s[run] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_set_in_during_a_drive_acts_in_all_that_follow_and_in_none_before() {
+        let span = Span::From { run: 1, t_s: 30.0 };
+        let until = span.until();
+        let moments = [(0, 500.0), (1, 29.0), (1, 30.0), (2, 0.0)];
+        assert!(moments.iter().all(|(run, t_s)| until.acts(*run, *t_s) != span.acts(*run, *t_s)));
+        assert!(!span.acts(0, 500.0) && !span.acts(1, 29.0) && span.acts(1, 30.0) && span.acts(2, 0.0));
+        let each = Span::EachDrive(30.0);
+        assert!(each.acts(0, 30.0) && !each.acts(2, 29.0));
+        assert!(Span::ALL.acts(0, 0.0));
+    }
+
+    #[test]
+    fn moments_lie_on_a_timeline_and_are_said_by_drive() {
+        let line = Timeline::new([100.0, 50.0, 80.0]);
+        assert_eq!((line.drives(), line.total_s(), line.borders_s()), (3, 230.0, &[100.0, 150.0][..]));
+        let border = line.at(100.0);
+        assert_eq!(border, Span::From { run: 1, t_s: 0.0 });
+        assert_eq!(line.driven_s(line.at(170.0)), 170.0);
+        let names: Vec<String> = ["a", "b", "c"].map(str::to_owned).into();
+        assert_eq!(border.words(&names), "from drive b on");
+        assert_eq!(line.at(170.0).words(&names), "from about 20 s of drive c on");
+        assert_eq!(Span::EachDrive(20.0).words(&names), "from about 20 s of each drive on");
+        assert_eq!(border.until().words(&names), "until drive b");
+        assert_eq!(line.at(170.0).until().words(&names), "until about 20 s of drive c");
+        assert_eq!(Span::Until { run: 0, t_s: 20.0 }.words(&names[..1]), "until about 20 s");
+        assert_eq!(Span::EachDrive(20.0).words(&names[..1]), "from about 20 s on");
+    }
+}

@@ -1,0 +1,172 @@
+//! Drives of a real robot over several grounds, without the names of these.
+
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use diagnosis::{Diagnosis, Question, Verdict, diagnose, report::Finding};
+use model::Robot;
+use recording::{Recording, Run, read_paths};
+
+fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {
+    diagnose(&Question::new(robot, suspect, Some(healthy)), &|_, _| {}).unwrap()
+}
+
+fn names(found: &Diagnosis) -> Vec<&str> {
+    found.findings.iter().map(|finding| finding.mechanism.as_str()).collect()
+}
+
+fn value(finding: &Finding, name: &str) -> f64 {
+    let of = |finding: &Finding| finding.parameters.iter().find(|p| p.name == name).map(|p| p.value);
+    of(finding).unwrap_or_else(|| panic!("no {name}: {}", finding.statement))
+}
+
+/// The real recordings: beside the workspace, or where `JOULEPATH_RECORDINGS` says.
+fn real_recordings() -> Option<PathBuf> {
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings");
+    let folder = std::env::var_os("JOULEPATH_RECORDINGS").map_or(beside, PathBuf::from);
+    if folder.join("husky-flooring.csv").exists() {
+        return Some(folder);
+    }
+    eprintln!("SKIPPED: the real recordings are not in {}", folder.display());
+    None
+}
+
+/// Some drives of a real recording, without the name of the ground.
+fn unlabelled(folder: &Path, ground: &str, wanted: impl Fn(usize) -> bool) -> Recording {
+    let mut whole = read_paths(&[folder.join(format!("husky-{ground}.csv"))], None).unwrap().0;
+    whole.surface = None;
+    let runs: Vec<_> =
+        whole.runs.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, r)| r.clone()).collect();
+    let pick = |values: &[f64]| -> Vec<f64> {
+        runs.iter().flat_map(|run| values[run.rows.clone()].iter().copied()).collect()
+    };
+    let mut at = 0;
+    let moved = runs.iter().map(|run| {
+        let rows = at..at + run.rows.len();
+        at = rows.end;
+        Run { rows, ..run.clone() }
+    });
+    let channels: BTreeMap<_, _> = whole.channels.iter().map(|(c, values)| (*c, pick(values))).collect();
+    Recording { t_s: pick(&whole.t_s), channels, runs: moved.collect(), ..Recording::default() }
+}
+
+/// The built-in robot as its drives over flooring show it.
+fn on_flooring(folder: &Path) -> Robot {
+    let labelled = read_paths(&[folder.join("husky-flooring.csv")], None).unwrap().0;
+    let options = calibration::Options::default();
+    let mut robot = calibration::calibrate(&model::builtin::husky_a200(), &labelled, &options).unwrap().robot;
+    robot.default_surface = "flooring".into();
+    robot
+}
+
+#[test]
+fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
+    let Some(folder) = real_recordings() else { return };
+    let robot = on_flooring(&folder);
+    let flooring = unlabelled(&folder, "flooring", |_| true);
+    // Other drives on the same floor.
+    let (even, odd) =
+        (unlabelled(&folder, "flooring", |i| i % 2 == 0), unlabelled(&folder, "flooring", |i| i % 2 == 1));
+    let found = said(&robot, &odd, &even);
+    say("flooring", &found);
+    assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+    // On ice, where spinning takes 7 A instead of 19, skid friction is a fifth.
+    let found = said(&robot, &unlabelled(&folder, "ice", |_| true), &flooring);
+    say("ice", &found);
+    assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
+    assert!((-0.9..-0.6).contains(&value(&found.findings[0], "skid_change")), "{}", found.sentence);
+    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
+    assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
+    // On snow the wheels often turn and the robot does not.
+    let found = said(&robot, &unlabelled(&folder, "snow", |_| true), &flooring);
+    say("snow", &found);
+    assert_ne!(found.verdict, Verdict::Consistent);
+    let stuck = found.notes.iter().find(|note| note.contains("the robot does not")).unwrap();
+    assert!(stuck.contains("100 % of snow-02") && stuck.contains("100 % of snow-04"), "{stuck}");
+    say("sandy loam", &said(&robot, &unlabelled(&folder, "sandy-loam", |_| true), &flooring));
+}
+
+fn say(ground: &str, found: &Diagnosis) {
+    let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
+    let floor_w = found.baseline.noise_floor_w;
+    eprintln!(
+        "{ground}: {:?}: {} Held out {before_w:.1} W before, {after_w:.1} W after, {floor_w:.1} W is noise. {}",
+        found.verdict,
+        found.sentence,
+        found.notes.join("; ")
+    );
+}
+
+/// Some recordings' drives, one behind the other.
+fn behind(parts: &[&Recording]) -> Recording {
+    let mut whole = Recording::default();
+    for part in parts {
+        let at = whole.rows();
+        whole.t_s.extend(&part.t_s);
+        for (channel, values) in &part.channels {
+            whole.channels.entry(*channel).or_default().extend(values);
+        }
+        let moved =
+            part.runs.iter().map(|run| Run { rows: run.rows.start + at..run.rows.end + at, ..run.clone() });
+        whole.runs.extend(moved);
+    }
+    whole
+}
+
+/// The same as if it were a single drive.
+fn in_one(drives: &Recording) -> Recording {
+    let mut whole = drives.clone();
+    let mut from_s = 0.0;
+    for run in &drives.runs {
+        let times = &mut whole.t_s[run.rows.clone()];
+        let began_s = times[0];
+        times.iter_mut().for_each(|t_s| *t_s += from_s - began_s);
+        from_s = times[times.len() - 1] + ROW_S;
+    }
+    let all = Run { name: "whole".into(), rows: 0..whole.rows(), ..drives.runs[0].clone() };
+    Recording { runs: vec![all], ..whole }
+}
+
+/// Time between rows [s].
+const ROW_S: f64 = 1.0 / 6.5;
+
+#[test]
+fn a_real_husky_that_goes_from_one_ground_to_another_is_told_where_that_was() {
+    let Some(folder) = real_recordings() else { return };
+    let robot = on_flooring(&folder);
+    let healthy = unlabelled(&folder, "flooring", |i| [1, 3, 4].contains(&i));
+    let flooring = unlabelled(&folder, "flooring", |i| [0, 2].contains(&i));
+    let ice = unlabelled(&folder, "ice", |i| [0, 2, 3].contains(&i));
+    let loam = unlabelled(&folder, "sandy-loam", |i| i > 0);
+    let onto_ice = behind(&[&flooring, &ice]);
+    // By the drives' names, and where there is but one drive, by time: it comes onto the ice after 285 s.
+    for (drives, expected) in
+        [(onto_ice.clone(), "from drive ice-00 on"), (in_one(&onto_ice), "from about 2")]
+    {
+        let found = said(&robot, &drives, &healthy);
+        say("flooring, then ice", &found);
+        assert_eq!((found.verdict, names(&found)), (Verdict::Explained, vec!["surface_change"]));
+        assert!(found.sentence.contains(expected), "{}", found.sentence);
+        let finding = &found.findings[0];
+        assert!((-0.9..-0.6).contains(&value(finding, "skid_change")), "{}", found.sentence);
+        let from_s = finding.parameters.iter().find(|p| p.name == "from_s").unwrap();
+        let [low_s, high_s] = from_s.interval_95.unwrap();
+        assert!((low_s..high_s).contains(&285.0) && (from_s.value - 285.0).abs() < 20.0, "{from_s:?}");
+        let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
+        assert!(after_w < 0.7 * before_w, "held out {before_w} W before, {after_w} W after");
+    }
+    let found = said(&robot, &behind(&[&ice, &flooring]), &healthy);
+    say("ice, then flooring", &found);
+    assert!(found.sentence.ends_with("until drive flooring-00."), "{}", found.sentence);
+    // Neither ground is the one that the robot is known on.
+    let found = said(&robot, &in_one(&behind(&[&ice, &loam])), &healthy);
+    say("ice, then sandy loam", &found);
+    let is_ice = |f: &&Finding| f.mechanism == "surface_change" && value(f, "skid_change") < -0.4;
+    let until_s = value(found.findings.iter().find(is_ice).unwrap(), "until_s");
+    let from_s = found.findings.iter().find(|f| !is_ice(f)).map(|f| value(f, "from_s")).unwrap();
+    assert!([until_s, from_s].iter().all(|s| (s - 398.0).abs() < 60.0), "until {until_s} s, from {from_s} s");
+}
