@@ -153,11 +153,16 @@ pub(crate) fn of_more(
 
 /// Ground on which one change was found, which may change once more.
 fn other_ground(series: &Series, applied: &[Applied]) -> Option<&'static dyn mechanism::Mechanism> {
-    let changes = applied.iter().filter(|a| a.mechanism.name() == GROUND);
-    (changes.count() == 1).then(|| series.others(&[]).find(|one| one.name() == GROUND)).flatten()
+    let changes: Vec<&Applied> = applied.iter().filter(|a| a.mechanism.name() == GROUND).collect();
+    let is_large = |change: &&Applied| change.values.iter().any(|share| share.abs() > OTHER);
+    (changes.len() == 1 && changes.iter().all(is_large))
+        .then(|| series.others(&[]).find(|one| one.name() == GROUND))
+        .flatten()
 }
 
 const GROUND: &str = "surface_change";
+/// Grounds that differ by less are one: a second, small change would stand in for whatever else acts.
+const OTHER: f64 = 0.1;
 
 /// Spans in which a mechanism is tried: from the beginning, shares of each drive, and of several drives their beginnings and shares
 /// of all the time driven, since what happens to a robot stays with it in the drives that follow.
@@ -165,23 +170,13 @@ const GROUND: &str = "surface_change";
 /// Without healthy drives to compare with, what acts all the time looks like what the model itself misses; only what sets in,
 /// grows in time or shifts it can then be told.
 fn spans(series: &Series, name: &str) -> Vec<Span> {
-    let from_the_beginning = match name {
+    match name {
         "motor_heating" | "clock_offset" => return vec![Span::ALL],
-        // These are how the robot or its sensors are built.
-        "wheel_radius"
-        | "center_of_mass"
-        | "load_transfer"
-        | "inertia"
-        | "speed_dependent_friction"
-        | "grade_dependent_friction"
-        | "regeneration"
-        | "wheel_slip" => true,
-        _ => false,
-    };
-    let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
-    if from_the_beginning {
-        return tried;
+        // From some time on it is parallel to drag on one side, and together with other ground it would stand in for that.
+        "center_of_mass" => return series.has_healthy().then_some(Span::ALL).into_iter().collect(),
+        _ => {}
     }
+    let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
     let longest_s = series.longest_s();
     tried.extend(ONSETS.map(|share| Span::EachDrive(share * longest_s)));
     let line = series.timeline();

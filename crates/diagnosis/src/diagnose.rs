@@ -127,7 +127,7 @@ pub fn diagnose_watched(
         corrected_robot,
         trace: judged.trace(&series, suspect),
     };
-    diagnosis.sentence = words::sentence(&diagnosis);
+    diagnosis.sentence = words::sentence(&diagnosis, &found.refused);
     progress("done", 1.0);
     Ok(diagnosis)
 }

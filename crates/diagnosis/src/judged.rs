@@ -122,6 +122,9 @@ impl Judged {
         };
         let usual_w = self.usual_w.max(MISFIT * self.mean_w);
         let is_missed = self.missed_share() > REMAINS && self.missed_w() > BEYOND_USUAL * usual_w;
+        if !found.refused.is_empty() {
+            return Verdict::Unexplained;
+        }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());
         match found.found.is_empty() {
             true if is_little(before) => Verdict::Consistent,

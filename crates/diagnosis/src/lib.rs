@@ -9,6 +9,7 @@ mod alternatives;
 mod baseline;
 mod candidates;
 mod chart;
+mod constancy;
 mod corrected;
 mod diagnose;
 mod discover;
@@ -49,6 +50,7 @@ mod term;
 mod weigh;
 mod words;
 
+pub use constancy::Refused;
 pub use diagnose::{Question, diagnose, diagnose_watched};
 pub use error::Error;
 pub use imitate::imitate;

@@ -62,8 +62,10 @@ pub(crate) fn refine(
     let is_within = |e: &Evidence| (best - e.wald) / discount <= JUMP_95;
     let driven_s = profile.iter().filter(|(_, _, e)| is_within(e)).map(|(span, ..)| line.driven_s(*span));
     let interval_s = driven_s.fold([f64::INFINITY, 0.0], |[low, high], s| [s.min(low), s.max(high)]);
-    // What happens to a robot happens between two drives rather than a second after.
-    let is_border = |span: &Span| matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. });
+    // What happens to a robot happens before a drive rather than a second after it began.
+    let is_border = |span: &Span| {
+        span.is_all() || matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. })
+    };
     let likely = |(span, _, e): &&(Span, Vec<Vec<f64>>, Evidence)| is_border(span) && is_within(e);
     let border = profile.iter().filter(likely).max_by(|a, b| a.2.wald.total_cmp(&b.2.wald)).map(|b| b.0);
     let chosen =
@@ -102,13 +104,16 @@ fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
     let at_s = line.driven_s(guess);
     let times_s =
         (-STEPS..=STEPS).map(|step| at_s + f64::from(step) * step_s).filter(|s| *s > 0.0 && *s < end_s);
+    // Without healthy drives, what acts all the time cannot be told.
+    let all = (at_s <= AROUND * span_s && series.has_healthy()).then_some(Span::ALL);
     if is_in_each {
-        return (times_s.map(Span::EachDrive).collect(), step_s);
+        return (times_s.map(Span::EachDrive).chain(all).collect(), step_s);
     }
     let near = |s: &&f64| (**s - at_s).abs() <= f64::from(STEPS) * step_s;
     let times_s: Vec<f64> = times_s.chain(line.borders_s().iter().filter(near).copied()).collect();
     let span = |s: f64| if matches!(guess, Span::Until { .. }) { line.at(s).until() } else { line.at(s) };
-    (times_s.into_iter().map(span).collect(), step_s)
+    let all = all.filter(|_| matches!(guess, Span::From { .. }));
+    (times_s.into_iter().map(span).chain(all).collect(), step_s)
 }
 
 /// A column without what lies beyond a span.

@@ -7,6 +7,7 @@ use recording::Recording;
 use crate::{
     Error,
     baseline::Baseline,
+    constancy::{self, Refused},
     gates::best,
     null::Null,
     onset::{self, Onset},
@@ -50,6 +51,8 @@ pub struct Found {
 pub struct Search {
     /// What was found, in the order in which it was.
     pub found: Vec<Found>,
+    /// What explains much, but not at one size all through the drives.
+    pub refused: Vec<Refused>,
     /// The robot with nothing found.
     pub(crate) before: Baseline,
     /// The robot with all that was found.
@@ -99,9 +102,11 @@ pub fn search(
         while drop_one(series, file, &mut state, &before, &null)? {}
     }
     progress("trying pairs", 0.9);
-    let State { found, fit: after } = pairs::tried(series, file, &before, state, &null)?;
+    let mut state = pairs::tried(series, file, &before, state, &null)?;
+    let refused = constancy::refuse(series, file, &mut state, &null)?;
+    let State { found, fit: after } = state;
     let left = [left_before, left(series, &after)];
-    Ok(Search { found, before, after, left, null })
+    Ok(Search { found, refused, before, after, left, null })
 }
 
 /// Fits every rival in full and takes the one that explains most; those that explain as much stay beside it.

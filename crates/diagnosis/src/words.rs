@@ -1,12 +1,26 @@
 //! Sentences that a person reads.
 
-use crate::report::{Diagnosis, Finding, Verdict};
+use crate::{
+    constancy::Refused,
+    report::{Diagnosis, Finding, Verdict},
+};
 
 /// Percents of an error that follow from what was recorded and are not worth a word.
 const LITTLE_LEFT: f64 = 6.0;
 
-/// The verdict in one sentence.
-pub(crate) fn sentence(found: &Diagnosis) -> String {
+/// The verdict in a sentence, and what comes closest without being it.
+pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused]) -> String {
+    let mut text = verdict(found, !refused.is_empty());
+    for Refused { mechanism, goes_with } in refused {
+        text += &format!(
+            " {} would explain much of it, but its size goes with {goes_with}.",
+            capital(plain(mechanism))
+        );
+    }
+    text
+}
+
+fn verdict(found: &Diagnosis, is_refused: bool) -> String {
     let left = 100.0 * found.explainable[1];
     let said = said(&found.findings);
     match found.verdict {
@@ -19,10 +33,14 @@ pub(crate) fn sentence(found: &Diagnosis) -> String {
         Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == crate::discover::UNKNOWN) => {
             format!("{said}.")
         }
+        Verdict::Unexplained if found.findings.is_empty() && is_refused => {
+            "Something is missing that no known mechanism describes.".into()
+        }
         Verdict::Unexplained if found.findings.is_empty() => format!(
             "Something is missing that no known mechanism describes: {left:.0} % of the remaining error follows from what was \
              recorded."
         ),
+        Verdict::Unexplained if is_refused => format!("{said}; but that is not all."),
         Verdict::Unexplained if left < LITTLE_LEFT => format!(
             "{said}; but that is not all: where it was not fitted the model is off by {:.1} W, of which {:.1} W are noise.",
             found.corrected.held_out_rmse_w, found.baseline.noise_floor_w

@@ -1,0 +1,114 @@
+//! Whether what was found has one size all through the drives, as a mechanism has; what merely stands in for something else has not.
+
+use model::Robot;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    null::Null,
+    search::State,
+    series::{Applied, Average, Series},
+    weigh::system_with,
+};
+
+/// A mechanism that explains much and is not what is missing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// Its name.
+    pub mechanism: &'static str,
+    /// What its size goes with.
+    pub goes_with: &'static str,
+}
+
+/// A quantity by average.
+type Quantity = fn(&Average) -> f64;
+
+/// What the size of something else may go with.
+const WITH: [(&str, Quantity); 8] = [
+    ("time", |a| a.t_s),
+    ("speed", |a| a.input.speed_mps.abs()),
+    ("how tight it turns", |a| a.input.difference_mps.abs()),
+    ("the slope", |a| a.input.pitch_rad),
+    ("how steep it is", |a| a.input.pitch_rad.abs()),
+    ("how fast speed changes", |a| a.input.accel_mps2.abs()),
+    ("how far it leans to the side", |a| a.input.roll_rad),
+    ("height", |a| if a.input.height_m.is_finite() { a.input.height_m } else { 0.0 }),
+];
+
+/// Change of size with one standard deviation of a quantity, as a share of it, from which it is another thing. What the model makes of
+/// ice, the same all through, changes by 0.3 on real ground.
+const LEAST_CHANGE: f64 = 0.35;
+/// Chance, over all quantities, of as clear a change where there is none.
+const LEVEL: f64 = 1e-4;
+/// Standard deviations beyond which a quantity counts as so many: rare extremes would rule.
+const MOST_SIGMAS: f64 = 3.0;
+
+/// Leaves out what has not one size all through the drives, and says what that was. Without healthy drives nothing is: the model's
+/// own error would pass for a change.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn refuse(
+    series: &Series,
+    file: &Robot,
+    state: &mut State,
+    null: &Null,
+) -> Result<Vec<Refused>, Error> {
+    let mut refused = Vec::new();
+    let mut which = 0;
+    while series.has_healthy() && which < state.found.len() {
+        let Some(goes_with) = goes_with(series, &state.fit, &state.applied(), which, null)? else {
+            which += 1;
+            continue;
+        };
+        let mechanism = state.found.remove(which).applied.mechanism.name();
+        refused.push(Refused { mechanism, goes_with });
+        state.fit = Baseline::fit(series, file, &state.applied())?;
+        which = 0;
+    }
+    Ok(refused)
+}
+
+/// What the size of one of several mechanisms goes with most clearly.
+fn goes_with(
+    series: &Series,
+    fit: &Baseline,
+    applied: &[Applied],
+    which: usize,
+    null: &Null,
+) -> Result<Option<&'static str>, Error> {
+    // Heat comes and goes, and a delay does all that it does where power changes.
+    if let "motor_heating" | "clock_offset" = applied[which].mechanism.name() {
+        return Ok(None);
+    }
+    let mut others = applied.to_vec();
+    others.remove(which);
+    let without_w = series.predict(&fit.robot, &others)?;
+    let effect: Vec<f64> =
+        fit.predicted_w.iter().zip(&without_w).map(|(with, without)| with - without).collect();
+    let white = fit.whitening(series);
+    let system = system_with(series, fit, std::slice::from_ref(&effect));
+    let blocks = system.blocks();
+    let Ok(chance) = FisherSnedecor::new(1.0, (blocks as f64 - 2.0).max(2.0)) else { return Ok(None) };
+    let judged = WITH.iter().filter_map(|(with, of)| {
+        let column = changing(series, &effect, *of)?;
+        let evidence = system.weigh(&[white.of(&column)])?;
+        let p_value = chance.sf(evidence.wald / null.common_discount(blocks)) * WITH.len() as f64;
+        (p_value < LEVEL && evidence.values[0].abs() > LEAST_CHANGE).then_some((p_value, *with))
+    });
+    Ok(judged.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, with)| with))
+}
+
+/// An effect times how many standard deviations a quantity is from its mean, both by the effect's square; `None` where it stays.
+fn changing(series: &Series, effect: &[f64], of: Quantity) -> Option<Vec<f64>> {
+    let values: Vec<f64> = series.averages.iter().map(of).collect();
+    let whole: f64 = effect.iter().map(|w| w * w).sum();
+    let mean = |value: &dyn Fn(f64) -> f64| {
+        effect.iter().zip(&values).map(|(w, x)| w * w * value(*x)).sum::<f64>() / whole.max(1e-300)
+    };
+    let middle = mean(&|x| x);
+    let spread = mean(&|x| (x - middle).powi(2)).sqrt();
+    let sigmas = |x: f64| ((x - middle) / spread).clamp(-MOST_SIGMAS, MOST_SIGMAS);
+    (spread > 1e-6).then(|| effect.iter().zip(&values).map(|(w, x)| w * sigmas(*x)).collect())
+}
