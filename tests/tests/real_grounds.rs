@@ -1,6 +1,6 @@
 //! Drives of a real robot over several grounds, without the names of these.
 
-#![allow(clippy::unwrap_used, clippy::print_stderr)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
 use std::{
     collections::BTreeMap,
