@@ -3,23 +3,13 @@
 #![allow(clippy::unwrap_used)]
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
+use joulepath_tests::worlds::drive;
 use model::Robot;
-use recording::{Channel, Recording, read_paths};
-use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
+use recording::{Channel, Recording};
+use world::{Effect, EffectName};
 
-/// A drive over gentle hills by one robot, whatever the seed.
 fn record(seed: u64, effects: Vec<Effect>) -> Recording {
-    let text = format!(r#"{{"terrain": {{"rolling": {{"grade": 0.03}}}}, "seed": {seed}, "robot_seed": 5}}"#);
-    let world = World { effects, ..World::from_json(&text).unwrap() };
-    let robot = serde_json::to_string(&model::builtin::husky_a200()).unwrap();
-    let drive = Drive::new(DriveKind::Rich, 600.0, seed);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("drive.csv");
-    simulate(&world, &RobotFile::from_json(&robot).unwrap(), &drive)
-        .unwrap()
-        .write_csv(std::fs::File::create(&path).unwrap())
-        .unwrap();
-    read_paths(&[path], None).unwrap().0
+    drive(seed, 600.0, effects)
 }
 
 fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {

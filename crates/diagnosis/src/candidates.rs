@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::{
     Error,
+    region::regions,
     series::{Applied, Series},
     span::{Span, Timeline},
 };
@@ -71,7 +72,7 @@ impl Family {
     pub(crate) fn candidates<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Candidate> + 'a {
         self.spans.iter().map(|&span| {
             let from = |column: &Vec<f64>| {
-                let acts = series.averages.iter().map(|average| span.acts(average.run, average.t_s));
+                let acts = series.averages.iter().map(|average| average.is_in(span));
                 column.iter().zip(acts).map(|(by, acts)| if acts { *by } else { 0.0 }).collect()
             };
             Candidate {
@@ -183,8 +184,12 @@ fn spans(series: &Series, name: &str) -> Vec<Span> {
     if line.drives() > 1 {
         tried.extend(moments(&line));
     }
-    if is_left_behind(name) {
+    if is_of_ground(name) {
         tried.extend(moments(&line).into_iter().map(Span::until));
+        // Alone, what the model misses on the slopes of one place would pass for its ground.
+        if series.has_healthy() {
+            tried.extend(regions(&series.averages).into_iter().map(Span::Within));
+        }
     }
     tried
 }
@@ -196,8 +201,8 @@ fn moments(line: &Timeline) -> Vec<Span> {
     borders_s.iter().chain(&shares_s).map(|driven_s| line.at(*driven_s)).collect()
 }
 
-/// Whether it may end during the drives: ground is left behind.
-fn is_left_behind(name: &str) -> bool {
+/// Whether it may end during the drives, or act in some place only: ground is left behind, and come back to.
+fn is_of_ground(name: &str) -> bool {
     name == GROUND || name == "soft_soil"
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::{
-    report::{Diagnosis, Place, Trace},
+    report::{Diagnosis, Place, Range, Trace},
     span::{Span, Timeline},
 };
 
@@ -98,7 +98,8 @@ fn over_time(found: &Diagnosis, label: &str, height: f64, lines: &[Line<'_>]) ->
     format!("<svg viewBox='0 0 {WIDTH} {height}' role=img aria-label='{label}'>{inside}</svg>")
 }
 
-/// The way driven, darker where the recording and the robot's file differ more; nothing where no place was recorded.
+/// The way driven, darker where the recording and the robot's file differ more, with shaded places; nothing where no position was
+/// recorded.
 pub(crate) fn way(found: &Diagnosis) -> String {
     const SIDE: f64 = 360.0;
     let trace = &found.trace;
@@ -118,9 +119,11 @@ pub(crate) fn way(found: &Diagnosis) -> String {
     sizes.sort_by(f64::total_cmp);
     let most_w = sizes[sizes.len() * 95 / 100].max(1e-9);
     let scale = (SIDE - 20.0) / extent_m;
-    let mut dots = String::new();
-    for ([x, y], w) in &points {
-        let (px, py) = (10.0 + (x - low[0]) * scale, 10.0 + (high[1] - y) * scale);
+    let at = |[x, y]: [f64; 2]| [10.0 + (x - low[0]) * scale, 10.0 + (high[1] - y) * scale];
+    let mut dots: String =
+        found.places.iter().filter_map(|place| shaded_ground(&place.range, [low, high], &at)).collect();
+    for (position_m, w) in &points {
+        let [px, py] = at(*position_m);
         let share = (w / most_w).min(1.0);
         let _ = write!(
             dots,
@@ -134,6 +137,19 @@ pub(crate) fn way(found: &Diagnosis) -> String {
          <figcaption class=quiet>The way driven, north up, {extent_m:.0} m across: the stronger the colour, the more recorded power and \
          the robot’s file differ there.</figcaption></figure>"
     )
+}
+
+/// A rectangle over a part of the ground.
+fn shaded_ground(
+    range: &Range,
+    [low, high]: [[f64; 2]; 2],
+    at: &dyn Fn([f64; 2]) -> [f64; 2],
+) -> Option<String> {
+    let (x_m, y_m) = (range.x_m?, range.y_m?);
+    let [left, top] = at([x_m[0].unwrap_or(low[0]), y_m[1].unwrap_or(high[1])]);
+    let [right, bottom] = at([x_m[1].unwrap_or(high[0]), y_m[0].unwrap_or(low[1])]);
+    let (width, height) = (right - left, bottom - top);
+    Some(format!("<rect x={left:.1} y={top:.1} width={width:.1} height={height:.1} fill='var(--shade)'/>"))
 }
 
 /// Means over so many seconds each.

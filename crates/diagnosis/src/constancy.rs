@@ -17,15 +17,18 @@ use crate::{
 pub struct Refused {
     /// Its name.
     pub mechanism: &'static str,
-    /// What its size goes with.
-    pub goes_with: &'static str,
+    /// Why it is not, to follow on "would explain much of it, but".
+    pub why: String,
 }
+
+/// Time over which it fades that a robot stood still [s].
+pub(crate) const MOVING_S: f64 = 3.0;
 
 /// A quantity by average.
 type Quantity = fn(&Average) -> f64;
 
 /// What the size of something else may go with.
-const WITH: [(&str, Quantity); 8] = [
+const WITH: [(&str, Quantity); 17] = [
     ("time", |a| a.t_s),
     ("speed", |a| a.input.speed_mps.abs()),
     ("how tight it turns", |a| a.input.difference_mps.abs()),
@@ -33,8 +36,24 @@ const WITH: [(&str, Quantity); 8] = [
     ("how steep it is", |a| a.input.pitch_rad.abs()),
     ("how fast speed changes", |a| a.input.accel_mps2.abs()),
     ("how far it leans to the side", |a| a.input.roll_rad),
-    ("height", |a| if a.input.height_m.is_finite() { a.input.height_m } else { 0.0 }),
+    ("how far it leans to either side", |a| a.input.roll_rad.abs()),
+    ("how far its wheels have turned", |a| a.input.nearness),
+    ("how long ago it stood still", |a| (-a.input.moving_s / MOVING_S).exp()),
+    ("height", |a| known(a.input.height_m)),
+    ("how far east it is", |a| known(a.input.position_m[0])),
+    ("how far north it is", |a| known(a.input.position_m[1])),
+    (HEADING, |a| known(a.input.heading_rad.cos())),
+    (HEADING, |a| known(a.input.heading_rad.sin())),
+    (HEADING, |a| known((2.0 * a.input.heading_rad).cos())),
+    (HEADING, |a| known((2.0 * a.input.heading_rad).sin())),
 ];
+
+const HEADING: &str = "where it heads";
+
+/// What was not recorded goes with nothing.
+fn known(value: f64) -> f64 {
+    if value.is_finite() { value } else { 0.0 }
+}
 
 /// Change of size with one standard deviation of a quantity, as a share of it, from which it is another thing. What the model makes of
 /// ice, the same all through, changes by 0.3 on real ground.
@@ -63,7 +82,7 @@ pub(crate) fn refuse(
             continue;
         };
         let mechanism = state.found.remove(which).applied.mechanism.name();
-        refused.push(Refused { mechanism, goes_with });
+        refused.push(Refused { mechanism, why: format!("its size goes with {goes_with}") });
         state.fit = Baseline::fit(series, file, &state.applied())?;
         which = 0;
     }
@@ -91,7 +110,9 @@ fn goes_with(
     let system = system_with(series, fit, std::slice::from_ref(&effect));
     let blocks = system.blocks();
     let Ok(chance) = FisherSnedecor::new(1.0, (blocks as f64 - 2.0).max(2.0)) else { return Ok(None) };
-    let judged = WITH.iter().filter_map(|(with, of)| {
+    // Wind blows from somewhere.
+    let is_asked = |with: &&str| applied[which].mechanism.name() != "wind" || **with != *HEADING;
+    let judged = WITH.iter().filter(|(with, _)| is_asked(with)).filter_map(|(with, of)| {
         let column = changing(series, &effect, *of)?;
         let evidence = system.weigh(&[white.of(&column)])?;
         let p_value = chance.sf(evidence.wald / null.common_discount(blocks)) * WITH.len() as f64;

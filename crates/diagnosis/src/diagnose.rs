@@ -78,7 +78,7 @@ pub fn diagnose_watched(
     let suspect = &with_powers(robot, suspect, watch)?;
     let healthy = healthy.map(|healthy| with_powers(robot, healthy, watch)).transpose()?;
     let healthy = healthy.as_ref();
-    let series = Series::watched(robot, suspect, healthy, watch)?.without(ruled_out);
+    let series = Series::watched(robot, suspect, healthy, watch)?.without(ruled_out).with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
@@ -87,8 +87,8 @@ pub fn diagnose_watched(
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    // Alone, what the model itself misses would pass for a discovery.
-    if judged.verdict(&found) == Verdict::Unexplained && series.has_healthy() {
+    let is_open = judged.verdict(&found) == Verdict::Unexplained && series.has_healthy();
+    if is_open || series.turning.is_some() {
         progress("looking outside the list", 0.75);
         judged.take_up(&series, &found, discover(&series, &found.after, &applied, &found.null)?)?;
     }

@@ -53,13 +53,19 @@ pub(crate) fn discover(
     applied: &[Applied],
     null: &Null,
 ) -> Result<Vec<Discovered>, Error> {
-    let terms = term::all(series.channels());
+    let mut terms = term::all(series.channels());
+    // Alone, what the model itself misses would pass for a discovery; what repeats with every turn of the wheels does not.
+    if !series.has_healthy() {
+        terms.retain(Term::is_turn);
+    }
     let columns: Vec<Vec<f64>> =
         terms.par_iter().map(|term| term.column(&base.robot, &series.averages, &base.predicted_w)).collect();
     let mut found: Vec<Discovered> = Vec::new();
     while found.len() < MOST {
         let taken: Vec<Vec<f64>> = found.iter().map(|one| one.column_w.clone()).collect();
-        let Some(next) = strongest(series, base, null, &terms, &columns, &taken) else { break };
+        // What spectra show comes first, and other terms beside it.
+        let is_tried = |term: &Term| series.turning.is_none() || !found.is_empty() || term.is_turn();
+        let Some(next) = strongest(series, base, null, (&terms, &columns, &is_tried), &taken) else { break };
         found.push(next);
     }
     let mechanisms = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
@@ -74,8 +80,7 @@ fn strongest(
     series: &Series,
     base: &Baseline,
     null: &Null,
-    terms: &[Term],
-    columns: &[Vec<f64>],
+    (terms, columns, is_tried): (&[Term], &[Vec<f64>], &(dyn Fn(&Term) -> bool + Sync)),
     taken: &[Vec<f64>],
 ) -> Option<Discovered> {
     let system = system_with(series, base, taken);
@@ -83,6 +88,7 @@ fn strongest(
     let blocks = system.blocks();
     let mut weighed: Vec<(f64, f64, usize, Evidence)> = (0..terms.len())
         .into_par_iter()
+        .filter(|i| is_tried(&terms[*i]))
         .filter_map(|i| {
             let evidence = system.weigh(&[white.of(&columns[i])])?;
             let (wald, chance) = judged(&evidence, UNKNOWN, null, blocks)?;
@@ -179,7 +185,7 @@ impl Discovered {
 
     /// Between which values of its first quantity nine tenths of it lie.
     fn regime(&self, series: &Series) -> Option<String> {
-        let (name, of, unit) = self.term.groups.first()?.quantity;
+        let (name, of, unit) = self.term.groups.iter().find(|group| !group.is_turn())?.quantity;
         let parts = self.column_w.iter().zip(&series.averages).filter(|(w, a)| **w != 0.0 && a.suspect);
         let mut parts: Vec<(f64, f64)> = parts.map(|(w, a)| (of(a), (self.size * w).powi(2))).collect();
         parts.retain(|(value, _)| value.is_finite());

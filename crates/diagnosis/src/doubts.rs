@@ -4,7 +4,7 @@ use calibration::Drives;
 use model::Robot;
 use recording::{Channel, Recording, Run};
 
-use crate::{Error, baseline::Baseline, series::Series};
+use crate::{Error, baseline::Baseline, series::Series, turning::Line};
 
 /// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
 const CLEARLY_BETTER: f64 = 0.5;
@@ -46,6 +46,7 @@ pub(crate) fn doubts(
         ));
     }
     said.extend(stuck(robot, recording, series)?);
+    said.extend(series.turning.as_ref().map(turning));
     for (knob, moved) in fitted.knobs.iter().zip(&fitted.moved) {
         if moved.abs() > FAR_SIGMAS {
             said.push(format!(
@@ -56,6 +57,16 @@ pub(crate) fn doubts(
         }
     }
     Ok(said)
+}
+
+/// What repeats with every turn of the wheels.
+fn turning(line: &Line) -> String {
+    let side = ["left", "right"][line.side];
+    format!(
+        "what the {side} side takes goes up and down by {:.1} N at the rim once in every turn of its wheels, as it does with a bent \
+         rim or a stone in a tyre (chance of as clear a line {:.0e})",
+        line.force_n, line.p_value
+    )
 }
 
 /// Share of a drive in which wheels that turn alone are told.

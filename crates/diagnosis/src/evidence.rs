@@ -150,6 +150,14 @@ impl System {
         Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own, discord })
     }
 
+    /// Drop of squared errors by one column.
+    pub(crate) fn explained(&self, column: &[f64]) -> f64 {
+        let own = self.own(&[column.to_vec()]);
+        let (size, whole) = (own.norm_squared(), column.iter().map(|x| x * x).sum::<f64>());
+        // Less than a ten-thousandth of its own is rounding.
+        if size < 1e-4 * whole || whole == 0.0 { 0.0 } else { own.column(0).dot(&self.left).powi(2) / size }
+    }
+
     /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
     fn dense(&self, columns: &[Vec<f64>]) -> (DMatrix<f64>, DVector<f64>) {
         let always = self.columns.ncols();

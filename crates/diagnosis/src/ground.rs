@@ -15,6 +15,14 @@ pub(crate) fn heights_m(recording: &Recording) -> Vec<f64> {
     heights_m.iter().map(|z| z - mean_m).collect()
 }
 
+/// Positions by row; NaN where there are none [m].
+pub(crate) fn positions_m(recording: &Recording) -> Vec<[f64; 2]> {
+    match (recording.channel(Channel::X), recording.channel(Channel::Y)) {
+        (Some(x_m), Some(y_m)) => x_m.iter().zip(y_m).map(|(x_m, y_m)| [*x_m, *y_m]).collect(),
+        _ => vec![[f64::NAN; 2]; recording.rows()],
+    }
+}
+
 /// Headings by row: recorded, or from the yaw rate or the wheels, counted from east where positions tell it and else from where
 /// each run begins [rad].
 pub(crate) fn headings(recording: &Recording, drives: &Drives) -> Vec<f64> {

@@ -16,7 +16,6 @@ use crate::{
     },
     search::{Found, Search},
     series::{Applied, Series},
-    span::Span,
     words,
 };
 
@@ -127,7 +126,7 @@ impl Judged {
         }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());
         match found.found.is_empty() {
-            true if is_little(before) => Verdict::Consistent,
+            true if is_little(before) && self.discovered.is_empty() => Verdict::Consistent,
             true => Verdict::Unexplained,
             false
                 if is_missed
@@ -179,7 +178,7 @@ impl Judged {
         };
         let mut places = locate::places(series, &excess);
         if places.is_empty() {
-            let range = Range { quantity: "t_s", from: None, to: None, name: None };
+            let range = Range::of("t_s", [None, None]);
             let statement = "all through the drives, nowhere in particular".into();
             places.push(Place { kind: "time", statement, range, share_of_excess: 1.0 });
         }
@@ -251,12 +250,14 @@ fn finding(series: &Series, found: &Found, [before_w, after_w]: [f64; 2]) -> Fin
         .collect();
     let mut statement = words::capital(&mechanism.statement(&applied.values));
     if !applied.span.is_all() {
-        parameters.push(FoundParameter {
-            name: if matches!(applied.span, Span::Until { .. }) { "until_s" } else { "from_s" },
-            value: series.timeline().driven_s(applied.span),
-            unit: "s",
-            interval_95: found.onset_95_s,
-        });
+        for (j, (name, value, unit)) in series.bounds(applied.span).into_iter().enumerate() {
+            parameters.push(FoundParameter {
+                name,
+                value,
+                unit,
+                interval_95: found.limits_95.get(j).copied(),
+            });
+        }
         statement += &format!(", {}", applied.span.words(&series.names));
     }
     Finding {

@@ -1,8 +1,9 @@
-//! Where model and recording differ: times, ways of driving and sides that hold more than their share of the difference.
+//! Where model and recording differ: times, places, ways of driving and sides that hold more than their share of the difference.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::{
+    region::{Region, regions},
     report::{Place, Range},
     series::{Average, Series},
     span::Span,
@@ -47,7 +48,7 @@ struct Judged {
 pub(crate) fn places(series: &Series, excess: &[f64]) -> Vec<Place> {
     let excess: Vec<f64> = excess.iter().map(|e| e.clamp(-MOST_VARIANCES, MOST_VARIANCES)).collect();
     let block = blocks(series);
-    let groups = [times(series), regimes(), sides(series)];
+    let groups = [times(series), grounds(series), regimes(), sides(series)];
     let tried: usize = groups.iter().map(Vec::len).sum();
     let mut places = Vec::new();
     for cells in groups {
@@ -117,12 +118,8 @@ fn times(series: &Series) -> Vec<Cell> {
                 let [from_s, to_s] = [from, to].map(|part| (last_s * part as f64 / PARTS as f64).round());
                 let name = series.names.get(run).cloned().unwrap_or_default();
                 let whose = if count > 1 { format!(" of drive {name}") } else { String::new() };
-                let range = Range {
-                    quantity: "t_s",
-                    from: Some(from_s),
-                    to: Some(to_s),
-                    name: (count > 1).then(|| name.clone()),
-                };
+                let range =
+                    Range::of("t_s", [Some(from_s), Some(to_s)]).named((count > 1).then(|| name.clone()));
                 cells.push(Cell {
                     place: place("time", span(from_s, to_s, last_s) + &whose, range),
                     inside: Box::new(move |a| a.run == run && a.t_s >= from_s && a.t_s < to_s),
@@ -150,12 +147,7 @@ fn sequences(series: &Series) -> Vec<Cell> {
             _ => format!("from drive {} to the end of drive {}", name(from), name(to)),
         };
         let begins_s = |run: usize| line.driven_s(Span::From { run, t_s: 0.0 });
-        let range = Range {
-            quantity: "driven_s",
-            from: Some(begins_s(from)),
-            to: Some(begins_s(to + 1)),
-            name: None,
-        };
+        let range = Range::of("driven_s", [Some(begins_s(from)), Some(begins_s(to + 1))]);
         let inside = move |a: &Average| (from..=to).contains(&a.run);
         Cell { place: place("time", statement, range), inside: Box::new(inside) }
     };
@@ -169,6 +161,15 @@ fn span(from_s: f64, to_s: f64, last_s: f64) -> String {
         (false, true) => format!("from {from_s:.0} s on"),
         (false, false) => format!("between {from_s:.0} s and {to_s:.0} s"),
     }
+}
+
+/// Parts of the ground.
+fn grounds(series: &Series) -> Vec<Cell> {
+    let cell = |region: Region| Cell {
+        place: place("place", region.words(), Range::within(&region)),
+        inside: Box::new(move |a: &Average| region.contains(a.input.position_m)),
+    };
+    regions(&series.averages).into_iter().map(cell).collect()
 }
 
 /// Ways of driving.
@@ -196,7 +197,7 @@ fn regimes() -> Vec<Cell> {
     ];
     let cell = |(statement, quantity, of, [from, to]): (&str, &'static str, Of, [f64; 2])| {
         let bound = |x: f64| x.is_finite().then_some(x);
-        let range = Range { quantity, from: bound(from), to: bound(to), name: None };
+        let range = Range::of(quantity, [bound(from), bound(to)]);
         let inside = move |a: &Average| (from..to).contains(&of(a));
         Cell { place: place("regime", statement.into(), range), inside: Box::new(inside) }
     };
@@ -209,7 +210,7 @@ fn sides(series: &Series) -> Vec<Cell> {
         return Vec::new();
     }
     let cell = |(channel, name): (usize, &str)| {
-        let range = Range { quantity: "side", from: None, to: None, name: Some(name.into()) };
+        let range = Range::of("side", [None, None]).named(Some(name.into()));
         Cell {
             place: place("channel", format!("on the {name} side"), range),
             inside: Box::new(move |a| a.channel == channel),

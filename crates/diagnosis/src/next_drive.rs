@@ -192,7 +192,7 @@ mod tests {
             run: 0,
             suspect: true,
             t_s: f64::from(i),
-            input: crate::Input::default(),
+            input: crate::Input { position_m: [f64::NAN; 2], ..crate::Input::default() },
         };
         let averages: Vec<crate::Average> = (0..40).map(average).collect();
         // The median size of what is normal is 0.6745 of its width.

@@ -6,6 +6,7 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates::{self, Candidate},
+    edges,
     evidence::Evidence,
     series::{Applied, Series},
     span::Span,
@@ -19,16 +20,16 @@ const STEPS: i32 = 30;
 /// What evidence may fall short of the best within the interval. Where a jump lies, likelihoods have kinks and are not of χ²: their
 /// ratio is below x with the chance (1 − e^(−x/2))², of which this is the 95 % quantile, −2 ln(1 − √0.95) (Hansen, "Sample splitting
 /// and threshold estimation", Econometrica 68, 2000, theorem 2).
-const JUMP_95: f64 = 7.35;
+pub(crate) const JUMP_95: f64 = 7.35;
 
-/// A candidate at the time at which its evidence is strongest.
-pub(crate) struct Onset {
+/// A candidate in the part of the drives in which its evidence is strongest.
+pub(crate) struct Bounded {
     pub(crate) weighed: Weighed,
-    /// 95 % interval of the time, by the profile, in seconds driven [s].
-    pub(crate) interval_s: [f64; 2],
+    /// 95 % intervals of what bounds that part, by the profile, one for each of [`Series::bounds`].
+    pub(crate) limits_95: Vec<[f64; 2]>,
 }
 
-/// Finds when a candidate that set in or ended during the drives did so; `None` for one that acts all the time.
+/// Finds when a candidate that set in or ended during the drives did so, or where it acts; `None` for one that always does.
 ///
 /// A mechanism acts on every second by itself, so what it does in a part of the drives is what it does all the time, cut off there.
 ///
@@ -40,10 +41,12 @@ pub(crate) fn refine(
     others: &[Applied],
     first: &Weighed,
     discount: f64,
-) -> Result<Option<Onset>, Error> {
+) -> Result<Option<Bounded>, Error> {
     let guess = &first.candidate.applied;
-    if guess.span.is_all() {
-        return Ok(None);
+    match guess.span {
+        span if span.is_all() => return Ok(None),
+        Span::Within(region) => return edges::refine(series, base, others, (first, region), discount),
+        Span::EachDrive(_) | Span::From { .. } | Span::Until { .. } => {}
     }
     let linear = first.candidate.linear.clone();
     let always = Applied { span: Span::ALL, ..guess.clone() };
@@ -78,20 +81,11 @@ pub(crate) fn refine(
         linear: first.candidate.linear.clone(),
         columns,
     };
-    let more = (evidence.wald - first.evidence.wald) / discount;
-    let (score, rank) = (first.score + more, first.rank + more);
-    let weighed = Weighed {
-        candidate,
-        evidence,
-        tried: first.tried,
-        score,
-        rank,
-        p_value: first.p_value,
-        is_strong: first.is_strong,
-    };
+    let weighed = first.moved_to(candidate, evidence, discount);
     // A step is as close as a time is told.
     let interval_s = [interval_s[0] - step_s, interval_s[1] + step_s];
-    Ok(Some(Onset { weighed, interval_s: interval_s.map(|s| s.max(0.0)) }))
+    let limits_95 = if span.is_all() { Vec::new() } else { vec![interval_s.map(|s| s.max(0.0))] };
+    Ok(Some(Bounded { weighed, limits_95 }))
 }
 
 /// Moments about a first guess, beginnings of drives among them, and the step between them [s].
@@ -117,8 +111,7 @@ fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
 }
 
 /// A column without what lies beyond a span.
-fn cut(series: &Series, column: &[f64], span: Span) -> Vec<f64> {
-    let acts =
-        |(value, a): (&f64, &crate::series::Average)| if span.acts(a.run, a.t_s) { *value } else { 0.0 };
+pub(crate) fn cut(series: &Series, column: &[f64], span: Span) -> Vec<f64> {
+    let acts = |(value, a): (&f64, &crate::series::Average)| if a.is_in(span) { *value } else { 0.0 };
     column.iter().zip(&series.averages).map(acts).collect()
 }

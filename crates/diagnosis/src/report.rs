@@ -3,6 +3,8 @@
 use model::Robot;
 use serde::Serialize;
 
+use crate::region::Region;
+
 /// How a diagnosis ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -100,7 +102,8 @@ pub struct Place {
 /// What bounds a place: a quantity between two values, or a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Range {
-    /// The quantity, with its unit, as `t_s` (in a drive), `driven_s` (all drives behind one another) or `speed_mps`; `side` for a channel.
+    /// The quantity, with its unit, as `t_s` (in a drive), `driven_s` (all drives behind one another) or `speed_mps`; `position_m` for
+    /// a place; `side` for a channel.
     pub quantity: &'static str,
     /// Least value; none where it is not bounded.
     pub from: Option<f64>,
@@ -108,6 +111,31 @@ pub struct Range {
     pub to: Option<f64>,
     /// The drive, or the side.
     pub name: Option<String>,
+    /// Of `position_m`: from west to east, and from south to north; none where that is not bounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x_m: Option<[Option<f64>; 2]>,
+    /// See [`Range::x_m`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y_m: Option<[Option<f64>; 2]>,
+}
+
+impl Range {
+    /// Of a quantity from one value to another.
+    pub(crate) fn of(quantity: &'static str, [from, to]: [Option<f64>; 2]) -> Self {
+        Range { quantity, from, to, name: None, x_m: None, y_m: None }
+    }
+
+    /// Of a drive, or a side.
+    pub(crate) fn named(self, name: Option<String>) -> Self {
+        Range { name, ..self }
+    }
+
+    /// Of a part of the ground.
+    pub(crate) fn within(region: &Region) -> Self {
+        let bound = |pair: [f64; 2]| Some(pair.map(|m| m.is_finite().then_some(m)));
+        let range = Range::of("position_m", [None, None]);
+        Range { x_m: bound(region.x_m), y_m: bound(region.y_m), ..range }
+    }
 }
 
 /// A mechanism that was left out.

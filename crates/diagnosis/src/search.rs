@@ -10,8 +10,8 @@ use crate::{
     constancy::{self, Refused},
     gates::best,
     null::Null,
-    onset::{self, Onset},
-    pairs,
+    onset::{self, Bounded},
+    outside, pairs,
     polish::{Polished, polish},
     series::{Applied, Series},
     weigh::{Weighed, left, misfit, system},
@@ -35,8 +35,8 @@ pub struct Found {
     pub applied: Applied,
     /// Half widths of its values' 95 % intervals; `None` for those taken from a grid.
     pub half_widths: Vec<Option<f64>>,
-    /// 95 % interval of the time from which it acts, where it set in during the drives [s].
-    pub onset_95_s: Option<[f64; 2]>,
+    /// 95 % intervals of what bounds the part of the drives in which it acts, one for each of [`Series::bounds`].
+    pub limits_95: Vec<[f64; 2]>,
     /// Chance of as much, corrected for all that was tried.
     pub p_value: f64,
     /// Drop of the penalised likelihood, as of the Bayesian information criterion over blocks.
@@ -103,7 +103,8 @@ pub fn search(
     }
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
-    let refused = constancy::refuse(series, file, &mut state, &null)?;
+    let mut refused = constancy::refuse(series, file, &mut state, &null)?;
+    refused.extend(outside::refuse(series, file, &mut state, &null)?);
     let State { found, fit: after } = state;
     let left = [left_before, left(series, &after)];
     Ok(Search { found, refused, before, after, left, null })
@@ -120,11 +121,11 @@ pub(crate) fn decide(
 ) -> Result<(Found, Baseline), Error> {
     let blocks = system(series, by).blocks();
     let common = null.common_discount(blocks);
-    let onsets: Vec<Option<Onset>> = rivals
+    let bounded: Vec<Option<Bounded>> = rivals
         .par_iter()
         .map(|rival| onset::refine(series, by, applied, rival, common))
         .collect::<Result<_, _>>()?;
-    let at_best = |i: usize| onsets[i].as_ref().map_or(&rivals[i], |onset| &onset.weighed);
+    let at_best = |i: usize| bounded[i].as_ref().map_or(&rivals[i], |bounded| &bounded.weighed);
     let fits: Vec<Polished> = (0..rivals.len())
         .into_par_iter()
         .map(|i| polish(series, file, applied, at_best(i)))
@@ -141,14 +142,14 @@ pub(crate) fn decide(
         .map(|i| rivals[i].candidate.applied.mechanism.name().to_owned())
         .collect();
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
-    let onset_95_s = onsets[winner].as_ref().map(|onset| onset.interval_s);
+    let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
     let Some(Polished { base, applied, half_widths }) = fit else {
         unreachable!("the winner is one of the fits")
     };
     let found = Found {
         applied,
         half_widths,
-        onset_95_s,
+        limits_95,
         p_value: rival.p_value,
         delta_bic: rival.score,
         held_out_gain,

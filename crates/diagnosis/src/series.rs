@@ -16,7 +16,9 @@ use crate::{
     discrepancy::Discrepancy,
     meter::Meter,
     part::Part,
+    region::EDGES,
     span::{Span, Timeline},
+    turning::{self, Left, Line},
 };
 
 /// A mechanism at some values from some time on.
@@ -51,6 +53,8 @@ pub struct Series {
     library: Vec<&'static dyn Mechanism>,
     /// What the model misses of these drives; learnt when first needed.
     pub(crate) discrepancy: OnceLock<Discrepancy>,
+    /// What repeats with every turn of the wheels, if anything does.
+    pub(crate) turning: Option<Line>,
 }
 
 /// What one value is an average of.
@@ -67,6 +71,13 @@ pub struct Average {
     pub t_s: f64,
     /// Means of the inputs.
     pub input: Input,
+}
+
+impl Average {
+    /// Whether what acts in a span acts on it.
+    pub(crate) fn is_in(&self, span: Span) -> bool {
+        span.acts(self.run, self.t_s, self.input.position_m)
+    }
 }
 
 /// Means of what drives the robot, over one average.
@@ -90,6 +101,12 @@ pub struct Input {
     pub heading_rad: f64,
     /// Height above the mean of the drives of the same kind; NaN where unknown [m].
     pub height_m: f64,
+    /// Towards east and north; NaN where unknown [m].
+    pub position_m: [f64; 2],
+    /// Time since the robot last stood still [s].
+    pub moving_s: f64,
+    /// How near the wheels are to where each turn takes most, 0 to 1, of the side and in the drives in which turns show; else 0.
+    pub nearness: f64,
 }
 
 impl Series {
@@ -131,6 +148,7 @@ impl Series {
             watch,
             library: mechanism::ALL.to_vec(),
             discrepancy: OnceLock::new(),
+            turning: None,
         };
         let mut runs = 0;
         for part in &series.parts {
@@ -141,6 +159,41 @@ impl Series {
             runs += part.drives.runs.len();
         }
         Ok(series)
+    }
+
+    /// The same drives, with what repeats with every turn of the wheels looked for.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub(crate) fn with_turns(mut self, robot: &Robot) -> Result<Self, Error> {
+        self.turning = self.line(robot)?;
+        let Some(line) = &self.turning else { return Ok(self) };
+        let nearness = self.parts[0].drives.averaged(&line.nearness);
+        let is_own = |channel: usize| self.channels() == 1 || channel == line.side;
+        for channel in (0..self.channels()).filter(|channel| is_own(*channel)).collect::<Vec<_>>() {
+            let own = self.averages.iter_mut().filter(|a| a.suspect && a.channel == channel);
+            own.zip(&nearness).for_each(|(average, nearness)| average.input.nearness = *nearness);
+        }
+        Ok(self)
+    }
+
+    /// What repeats with every turn of the wheels, of the robot's file as it is.
+    fn line(&self, robot: &Robot) -> Result<Option<Line>, Error> {
+        let errors_w = |part: &Part| -> Result<Vec<Vec<f64>>, Error> {
+            let seen = part.predict(robot, &[], &self.meters)?;
+            let of = |(channel, recorded): (usize, &Vec<f64>)| {
+                recorded.iter().zip(&seen).map(|(recorded, seen)| recorded - seen[channel]).collect()
+            };
+            Ok(part.drives.recorded.iter().enumerate().map(of).collect())
+        };
+        let errors_w: Vec<Vec<Vec<f64>>> = self.parts.iter().map(errors_w).collect::<Result<_, _>>()?;
+        let left: Vec<Left<'_>> = self
+            .parts
+            .iter()
+            .zip(&errors_w)
+            .map(|(part, errors_w)| Left { drives: &part.drives, errors_w })
+            .collect();
+        Ok(turning::line(robot, &left[0], left.get(1)))
     }
 
     /// The same drives, known to be without some mechanisms.
@@ -214,6 +267,19 @@ impl Series {
     pub(crate) fn timeline(&self) -> Timeline {
         let seconds = self.averages.iter().filter(|a| a.suspect).map(|a| (a.run, a.t_s));
         Timeline::of(self.names.len(), seconds)
+    }
+
+    /// What bounds a span: names, values and units, none for what always acts.
+    pub fn bounds(&self, span: Span) -> Vec<(&'static str, f64, &'static str)> {
+        match span {
+            Span::Within(region) => {
+                let edges = EDGES.into_iter().zip(region.edges_m()).filter(|(_, edge_m)| edge_m.is_finite());
+                edges.map(|(name, edge_m)| (name, edge_m, "m")).collect()
+            }
+            Span::EachDrive(_) if span.is_all() => Vec::new(),
+            Span::Until { .. } => vec![("until_s", self.timeline().driven_s(span), "s")],
+            Span::EachDrive(_) | Span::From { .. } => vec![("from_s", self.timeline().driven_s(span), "s")],
+        }
     }
 
     /// Time between rows of the drives under suspicion [s].

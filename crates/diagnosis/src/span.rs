@@ -1,4 +1,6 @@
-//! When a mechanism acts in the drives under suspicion.
+//! When and where a mechanism acts in the drives under suspicion.
+
+use crate::region::Region;
 
 /// The part of the drives in which a mechanism acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +21,8 @@ pub enum Span {
         /// As in [`Span::From`].
         t_s: f64,
     },
+    /// Wherever drives went through a part of the ground.
+    Within(Region),
 }
 
 impl Span {
@@ -31,14 +35,15 @@ impl Span {
         self == Span::ALL
     }
 
-    /// Whether it acts so long after the beginning of a drive.
+    /// Whether it acts so long after the beginning of a drive, at a position; where that is unknown, in no region [m].
     #[inline]
     #[must_use]
-    pub fn acts(self, run: usize, t_s: f64) -> bool {
+    pub fn acts(self, run: usize, t_s: f64, position_m: [f64; 2]) -> bool {
         match self {
             Span::EachDrive(from_s) => t_s >= from_s,
             Span::From { run: first, t_s: from_s } => is_after((run, t_s), (first, from_s)),
             Span::Until { run: last, t_s: until_s } => !is_after((run, t_s), (last, until_s)),
+            Span::Within(region) => region.contains(position_m),
         }
     }
 
@@ -56,6 +61,7 @@ impl Span {
             Span::From { run, t_s } => format!("from about {t_s:.0} s of drive {} on", name(run)),
             Span::Until { run, t_s: 0.0 } => format!("until drive {}", name(run)),
             Span::Until { run, t_s } => format!("until about {t_s:.0} s of drive {}", name(run)),
+            Span::Within(region) => region.words(),
         }
     }
 
@@ -114,10 +120,11 @@ impl Timeline {
         &self.begins_s[1..self.drives().max(1)]
     }
 
-    /// Time driven until a span begins or ends; for one in each drive, that in the first [s].
+    /// Time driven until a span begins or ends; for one in each drive, that in the first, for a place none [s].
     pub(crate) fn driven_s(&self, span: Span) -> f64 {
         match span {
             Span::EachDrive(from_s) => from_s,
+            Span::Within(_) => 0.0,
             Span::From { run, t_s } | Span::Until { run, t_s } => self.begins_s[run.min(self.drives())] + t_s,
         }
     }
@@ -139,11 +146,12 @@ mod tests {
         let span = Span::From { run: 1, t_s: 30.0 };
         let until = span.until();
         let moments = [(0, 500.0), (1, 29.0), (1, 30.0), (2, 0.0)];
-        assert!(moments.iter().all(|(run, t_s)| until.acts(*run, *t_s) != span.acts(*run, *t_s)));
-        assert!(!span.acts(0, 500.0) && !span.acts(1, 29.0) && span.acts(1, 30.0) && span.acts(2, 0.0));
+        let acts = |span: Span, run, t_s| span.acts(run, t_s, [0.0; 2]);
+        assert!(moments.iter().all(|(run, t_s)| acts(until, *run, *t_s) != acts(span, *run, *t_s)));
+        assert!(!acts(span, 0, 500.0) && !acts(span, 1, 29.0) && acts(span, 1, 30.0) && acts(span, 2, 0.0));
         let each = Span::EachDrive(30.0);
-        assert!(each.acts(0, 30.0) && !each.acts(2, 29.0));
-        assert!(Span::ALL.acts(0, 0.0));
+        assert!(acts(each, 0, 30.0) && !acts(each, 2, 29.0));
+        assert!(acts(Span::ALL, 0, 0.0));
     }
 
     #[test]

@@ -2,7 +2,10 @@
 
 use model::{Robot, STANDARD_GRAVITY_MPS2};
 
-use crate::series::{Average, Input};
+use crate::{
+    constancy::MOVING_S,
+    series::{Average, Input},
+};
 
 /// A power that a term is measured in; it brings the unit, so that all else has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +31,13 @@ pub(crate) struct Group {
     value: fn(&Average, f64) -> f64,
 }
 
+impl Group {
+    /// Whether it is the angle that wheels have turned.
+    pub(crate) fn is_turn(&self) -> bool {
+        self.quantity.0 == TURNED.0
+    }
+}
+
 /// On which side a term acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum On {
@@ -47,6 +57,7 @@ pub(crate) struct Term {
 /// A recorded quantity: its name, how it is read and its unit.
 type Quantity = (&'static str, fn(&Average) -> f64, &'static str);
 
+const MOVING: Quantity = ("time since it stood still", |a| a.input.moving_s, "s");
 const TIME: Quantity = ("time since the drive began", |a| a.t_s, "s");
 const PITCH: Quantity = ("pitch", |a| a.input.pitch_rad, "rad");
 const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
@@ -54,6 +65,7 @@ const SPEED: Quantity = ("speed", |a| a.input.speed_mps, "m/s");
 const TURN: Quantity = ("difference of rim speeds", |a| a.input.difference_mps, "m/s");
 const ACCELERATION: Quantity = ("acceleration", |a| a.input.accel_mps2, "m/s²");
 const HEADING: Quantity = ("heading", |a| a.input.heading_rad, "rad");
+const TURNED: Quantity = ("nearness to where each turn takes most", |a| a.input.nearness, "1");
 const HEIGHT: Quantity = ("height", |a| a.input.height_m, "m");
 
 const fn group(
@@ -66,8 +78,9 @@ const fn group(
 }
 
 /// All groups. θ pitch, φ roll, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
-/// heading, t time since the drive began, z height, all as recorded.
-pub(crate) static GROUPS: [Group; 21] = [
+/// heading, t time since the drive began, s since the robot stood still, z height, α the angle that the side's wheels have turned, all as
+/// recorded.
+pub(crate) static GROUPS: [Group; 33] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -90,6 +103,7 @@ pub(crate) static GROUPS: [Group; 21] = [
     group("(−a)₊/g", "slowing down", ACCELERATION, |a, _| {
         (-a.input.accel_mps2).max(0.0) / STANDARD_GRAVITY_MPS2
     }),
+    group("e^(−s/3 s)", "having just stood still", MOVING, |a, _| (-a.input.moving_s / MOVING_S).exp()),
     group("e^(−t/60 s)", "the first minute", TIME, |a, _| (-a.t_s / 60.0).exp()),
     group("e^(−t/300 s)", "the first minutes", TIME, |a, _| (-a.t_s / 300.0).exp()),
     group("t/1000 s", "time", TIME, |a, _| a.t_s / 1000.0),
@@ -97,9 +111,69 @@ pub(crate) static GROUPS: [Group; 21] = [
     group("sin ψ", "heading north, and less heading south", HEADING, |a, _| {
         known(a.input.heading_rad.sin())
     }),
+    group("cos 2ψ", "driving east or west, and less driving north or south", HEADING, |a, _| {
+        known((2.0 * a.input.heading_rad).cos())
+    }),
+    group("sin 2ψ", "driving north-east or south-west, and less across", HEADING, |a, _| {
+        known((2.0 * a.input.heading_rad).sin())
+    }),
+    group(
+        "e^(−((|v| − 0.2 u_max)/0.1 u_max)²)",
+        "speeds about 0.2 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.2, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.3 u_max)/0.1 u_max)²)",
+        "speeds about 0.3 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.3, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.4 u_max)/0.1 u_max)²)",
+        "speeds about 0.4 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.4, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.5 u_max)/0.1 u_max)²)",
+        "speeds about 0.5 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.5, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.6 u_max)/0.1 u_max)²)",
+        "speeds about 0.6 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.6, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.7 u_max)/0.1 u_max)²)",
+        "speeds about 0.7 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.7, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.8 u_max)/0.1 u_max)²)",
+        "speeds about 0.8 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.8, fastest),
+    ),
+    group(
+        "e^(−((|v| − 0.9 u_max)/0.1 u_max)²)",
+        "speeds about 0.9 of the highest",
+        SPEED,
+        |a, fastest| near(a, 0.9, fastest),
+    ),
+    group("(1 + cos(α − α₀))/2", "each turn of the wheels", TURNED, |a, _| a.input.nearness),
     group("(z̄ − z)₊/1 m", "low ground", HEIGHT, |a, _| known(-a.input.height_m).max(0.0)),
     group("(z − z̄)₊/1 m", "high ground", HEIGHT, |a, _| known(a.input.height_m).max(0.0)),
 ];
+
+/// How near a speed is to a share of the highest, 1 at it.
+fn near(average: &Average, share: f64, fastest_mps: f64) -> f64 {
+    (-((average.input.speed_mps.abs() / fastest_mps - share) / 0.1).powi(2)).exp()
+}
 
 /// What was not recorded says nothing.
 fn known(value: f64) -> f64 {
@@ -151,6 +225,14 @@ impl Term {
             scale_w(&a.input, *predicted_w) * groups.product::<f64>()
         };
         averages.iter().zip(predicted_w).map(value).collect()
+    }
+
+    /// Whether it goes with nothing but the angle that wheels have turned.
+    pub(crate) fn is_turn(&self) -> bool {
+        self.scale == Scale::Force
+            && self.on == On::Both
+            && !self.groups.is_empty()
+            && self.groups.iter().all(|group| group.is_turn())
     }
 
     /// Its right-hand side, as `c · m g |u| · |tan φ|`.

@@ -104,6 +104,14 @@ impl Weighed {
         name(&self.candidate)
     }
 
+    /// It in another part of the drives, with the evidence there.
+    pub(crate) fn moved_to(&self, candidate: Candidate, evidence: Evidence, discount: f64) -> Weighed {
+        let more = (evidence.wald - self.evidence.wald) / discount;
+        let (score, rank) = (self.score + more, self.rank + more);
+        let Weighed { tried, p_value, is_strong, .. } = *self;
+        Weighed { candidate, evidence, tried, score, rank, p_value, is_strong }
+    }
+
     /// It with values of its linear parameters, within what a robot can have.
     pub(crate) fn at(&self, base: &Baseline, values: &[f64]) -> Applied {
         candidates::moved(&self.candidate.applied, &base.robot, &self.candidate.linear, values)

@@ -18,10 +18,11 @@ impl Brake {
 
 impl Act for Brake {
     fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
-        /// Rise at which little of the drag is left [K], drum [J/K] and its cooling [W/K].
+        /// Rise at which little of the drag is left [K], lining and the drum's face [J/K] and their cooling [W/K]: a watt opens it
+        /// within some minutes.
         const OPENS_K: f64 = 12.0;
-        const DRUM_J_PER_K: f64 = 60.0;
-        const COOLING_W_PER_K: f64 = 0.25;
+        const DRUM_J_PER_K: f64 = 15.0;
+        const COOLING_W_PER_K: f64 = 0.03;
         let force_n = self.force_n * (-(self.warmth_k / OPENS_K).powi(2)).exp();
         let heat_w = force_n * seen.rim_mps[self.side].abs() - COOLING_W_PER_K * self.warmth_k;
         self.warmth_k += seen.step_s * heat_w / DRUM_J_PER_K;

@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { power } from "../format";
 import { color, theme } from "../theme";
 import { pointed } from "./pointed";
-import type { Difference, Trace } from "./report";
+import type { Bounds, Difference, Trace } from "./report";
 import { bandsOf } from "./time_axis";
 
 const HEIGHT = 300;
@@ -29,11 +29,11 @@ function dotsOf({ position_m }: Trace, width: number): Dot[] {
   }));
 }
 
+const between = (value: number, [from, to]: Bounds) => value >= (from ?? -Infinity) && value < (to ?? Infinity);
+
+/** Whether a position lies in one of the places that the report names. */
 const isIn = (places: Difference[], [x_m, y_m]: [number, number]) =>
-  places.some(({ range }) => {
-    const value = range.quantity === "x_m" ? x_m : range.quantity === "y_m" ? y_m : NaN;
-    return value >= (range.from ?? -Infinity) && value <= (range.to ?? Infinity);
-  });
+  places.some(({ range }) => range.x_m && range.y_m && between(x_m, range.x_m) && between(y_m, range.y_m));
 
 function draw(canvas: HTMLCanvasElement, trace: Trace, where: Difference[], most_w: number): void {
   const ratio = devicePixelRatio || 1;

@@ -6,7 +6,12 @@ export interface Range {
   from: number | null;
   to: number | null;
   name: string | null;
+  /** Of a place, from west to east and from south to north; none where it is open. */
+  x_m?: Bounds;
+  y_m?: Bounds;
 }
+
+export type Bounds = [number | null, number | null];
 
 export interface Difference {
   kind: "time" | "place" | "regime" | "channel";

@@ -10,11 +10,21 @@ export function indicesOf(trace: Trace, run: number): number[] {
   return trace.run.flatMap((of, i) => (of === run ? [i] : []));
 }
 
+/** Seconds driven before a drive, drives behind one another. */
+function drivenBefore(trace: Trace, run: number): number {
+  const ends = trace.runs.map(() => 0);
+  trace.run.forEach((of, i) => (ends[of] = Math.max(ends[of] ?? 0, (trace.t_s[i] ?? 0) + 0.5)));
+  return ends.slice(0, run).reduce((sum, end) => sum + end, 0);
+}
+
 /** Parts of one drive's time that the report names. */
 export function bandsOf(where: Difference[], trace: Trace, run: number): Band[] {
-  const times = where.filter(({ kind, range }) => kind === "time" && range.quantity === "t_s");
+  const times = where.filter(({ kind }) => kind === "time");
   const ofRun = times.filter(({ range }) => range.name === null || range.name === trace.runs[run]);
-  return ofRun.map(({ range }) => ({ from: range.from ?? -Infinity, to: range.to ?? Infinity }));
+  return ofRun.map(({ range }) => {
+    const before = range.quantity === "driven_s" ? drivenBefore(trace, run) : 0;
+    return { from: (range.from ?? -Infinity) - before, to: (range.to ?? Infinity) - before };
+  });
 }
 
 export function TimeAxis({ trace, where }: { trace: Trace; where: Difference[] }) {

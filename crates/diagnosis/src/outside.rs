@@ -1,0 +1,81 @@
+//! Mechanisms that a term outside the list explains better than they do.
+
+use model::Robot;
+use rayon::prelude::*;
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    constancy::Refused,
+    null::Null,
+    search::State,
+    series::{Applied, Series},
+    term,
+    weigh::{misfit, system},
+};
+
+/// By how much a term has to explain more, in squared errors over their variance: of thousands of terms, the best explains some 20
+/// more than a true mechanism that stands for what a model cannot quite describe.
+const BETTER: f64 = 40.0;
+/// The same as a share of what the mechanism explains.
+const BETTER_SHARE: f64 = 0.25;
+
+/// Leaves out what a term in recorded quantities explains far better, and says which. Without healthy drives nothing is: the model's
+/// own error would pass for a term.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn refuse(
+    series: &Series,
+    file: &Robot,
+    state: &mut State,
+    null: &Null,
+) -> Result<Vec<Refused>, Error> {
+    let mut refused = Vec::new();
+    let mut which = 0;
+    while series.has_healthy() && which < state.found.len() {
+        let Some(instead) = instead(series, file, state, which, null)? else {
+            which += 1;
+            continue;
+        };
+        let mechanism = state.found.remove(which).applied.mechanism.name();
+        refused.push(Refused { mechanism, why: format!("{instead} explains it better") });
+        state.fit = Baseline::fit(series, file, &state.applied())?;
+        which = 0;
+    }
+    Ok(refused)
+}
+
+/// The term that explains far more than one of several mechanisms, beside the others.
+fn instead(
+    series: &Series,
+    file: &Robot,
+    state: &State,
+    which: usize,
+    null: &Null,
+) -> Result<Option<String>, Error> {
+    let found = &state.found[which];
+    if found.applied.mechanism.name() == "clock_offset" {
+        // Delays up to half a row are fitted anyway, so that what it explains does not show.
+        return Ok(None);
+    }
+    let mut others: Vec<Applied> = state.applied();
+    others.remove(which);
+    let without = Baseline::fit(series, file, &others)?;
+    let system = system(series, &without);
+    let (common, choice) = (null.common_discount(system.blocks()), (system.blocks() as f64).ln());
+    let bounds = series.bounds(found.applied.span).len();
+    let count = (found.half_widths.iter().flatten().count() + bounds) as f64;
+    let whole = misfit(series, &without, &without) - misfit(series, &state.fit, &without);
+    let explained = whole / common - count * choice;
+    let white = without.whitening(series);
+    let terms = term::all(series.channels());
+    let weighed = terms.par_iter().map(|term| {
+        let column = term.column(&without.robot, &series.averages, &without.predicted_w);
+        let cost = (1 + term.groups.len()) as f64 * choice;
+        (system.explained(&white.of(&column)) / common - cost, term)
+    });
+    let best = weighed.reduce_with(|a, b| if b.0 > a.0 { b } else { a });
+    let least = explained + f64::max(BETTER, BETTER_SHARE * explained);
+    Ok(best.filter(|(most, _)| *most > least).map(|(_, term)| term.words()))
+}

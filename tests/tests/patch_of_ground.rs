@@ -1,0 +1,43 @@
+//! Ground that is another in one part of the map only.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use diagnosis::{Diagnosis, Question, Verdict, diagnose};
+use joulepath_tests::worlds::drive;
+use recording::{Channel, Recording};
+use world::{Effect, EffectName, Place};
+
+fn middle(values: &[f64]) -> f64 {
+    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    known.sort_by(f64::total_cmp);
+    known[known.len() / 2]
+}
+
+fn said(suspect: &Recording, healthy: &Recording) -> Diagnosis {
+    diagnose(&Question::new(&model::builtin::husky_a200(), suspect, Some(healthy)), &|_, _| {}).unwrap()
+}
+
+#[test]
+fn other_ground_in_one_half_of_the_map_is_found_named_and_placed() {
+    let (plain, healthy) = (drive(42, 1200.0, vec![]), drive(41, 1200.0, vec![]));
+    let border_m = middle(plain.channel(Channel::X).unwrap());
+    let east = Place { x_m: [border_m, 1e6], y_m: [-1e6, 1e6] };
+    let effect = Effect { place: Some(east), ..Effect::new(EffectName::SurfaceChange, 0.3) };
+    let found = said(&drive(42, 1200.0, vec![effect]), &healthy);
+    assert_eq!(found.verdict, Verdict::Explained, "{}", found.sentence);
+    let [finding] = &found.findings[..] else { panic!("{}", found.sentence) };
+    assert_eq!(finding.mechanism, "surface_change", "{}", found.sentence);
+    let edge = finding.parameters.iter().find(|p| p.name == "x_from_m").unwrap();
+    let [low, high] = edge.interval_95.unwrap();
+    assert!((low..=high).contains(&border_m) && high - low < 3.0, "{border_m}: {edge:?}");
+    assert!(found.sentence.contains("east of x ="), "{}", found.sentence);
+    let place = found.places.iter().find(|place| place.kind == "place").unwrap();
+    let [from, to] = place.range.x_m.unwrap();
+    assert!(from.is_some_and(|from| (from - border_m).abs() < 8.0) && to.is_none(), "{place:?}");
+}
+
+#[test]
+fn a_healthy_drive_has_no_place_of_its_own() {
+    let found = said(&drive(42, 1200.0, vec![]), &drive(41, 1200.0, vec![]));
+    assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+}
