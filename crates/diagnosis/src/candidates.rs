@@ -11,6 +11,7 @@ use crate::{
 };
 
 /// A mechanism with its sensitivities: the change of every prediction per unit of each of its linear parameters.
+#[derive(Clone)]
 pub(crate) struct Candidate {
     /// The mechanism at a probe.
     pub(crate) applied: Applied,

@@ -18,6 +18,8 @@ use crate::{
 
 /// Terms that are taken up at most.
 const MOST: usize = 3;
+/// Terms that are weighed in one go.
+const TOGETHER: usize = 64;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
@@ -86,11 +88,14 @@ fn strongest(
     let system = system_with(series, base, taken);
     let white = base.whitening(series);
     let blocks = system.blocks();
-    let mut weighed: Vec<(f64, f64, usize, Evidence)> = (0..terms.len())
-        .into_par_iter()
-        .filter(|i| is_tried(&terms[*i]))
-        .filter_map(|i| {
-            let evidence = system.weigh(&[white.of(&columns[i])])?;
+    let tried: Vec<usize> = (0..terms.len()).filter(|i| is_tried(&terms[*i])).collect();
+    let weighed = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
+        let whitened: Vec<Vec<Vec<f64>>> = some.iter().map(|i| vec![white.of(&columns[*i])]).collect();
+        system.weigh_all(&whitened).into_iter().zip(some.to_vec())
+    });
+    let mut weighed: Vec<(f64, f64, usize, Evidence)> = weighed
+        .filter_map(|(evidence, i)| {
+            let evidence = evidence?;
             let (wald, chance) = judged(&evidence, UNKNOWN, null, blocks)?;
             let p_value = (chance * terms.len() as f64).min(1.0);
             // Each further group is a further choice.

@@ -1,5 +1,6 @@
 //! Where a mechanism acts: the profile of its evidence over each edge of a part of the ground.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::{
@@ -17,7 +18,7 @@ use crate::{
 /// Places of an edge that are looked at on each side of the last.
 const STEPS: i32 = 16;
 /// Rounds over all edges.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 3;
 
 /// What is moved about: a mechanism that would act everywhere, cut off beyond edges.
 struct Profile<'a> {
@@ -37,9 +38,54 @@ impl Profile<'_> {
         Some((columns, evidence))
     }
 
+    /// Drop of squared errors by what a candidate explains.
+    fn explained(&self, evidence: &Evidence) -> f64 {
+        (&evidence.own * DVector::from_column_slice(&evidence.values)).dot(self.system.left())
+    }
+
+    /// The region without edges beyond which it might as well act.
+    fn opened(&self, mut region: Region, discount: f64) -> Option<Region> {
+        let mut most = self.explained(&self.at(region)?.1);
+        for (edge, name) in EDGES.iter().enumerate() {
+            let beyond_m = if name.contains("from") { f64::NEG_INFINITY } else { f64::INFINITY };
+            let wider = region.with_edge(edge, beyond_m);
+            let is_part = wider.edges_m().iter().any(|edge_m| edge_m.is_finite());
+            if wider == region || !is_part {
+                continue;
+            }
+            let explained = self.at(wider).map_or(0.0, |(_, evidence)| self.explained(&evidence));
+            if (most - explained) / discount <= JUMP_95 {
+                (region, most) = (wider, most.max(explained));
+            }
+        }
+        Some(region)
+    }
+
+    /// The region with each of its edges where evidence is strongest, and their 95 % intervals.
+    fn moved(
+        &self,
+        mut region: Region,
+        extent_m: [[f64; 2]; 2],
+        discount: f64,
+    ) -> Option<(Region, Vec<[f64; 2]>)> {
+        let mut limits_95 = Vec::new();
+        for (edge, at_m) in region.edges_m().into_iter().enumerate().filter(|(_, at_m)| at_m.is_finite()) {
+            let part_m = part_m(extent_m)[edge / 2];
+            let found = self.over(region, edge, &places_m(extent_m[edge / 2], at_m, part_m));
+            let (best_m, most) = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            region = region.with_edge(edge, best_m);
+            let within = found.iter().filter(|(_, explained)| (most - explained) / discount <= JUMP_95);
+            let [low, high] = within.fold([best_m; 2], |[low, high], (m, _)| [low.min(*m), high.max(*m)]);
+            // A step is as close as a place is told.
+            let step_m = part_m / f64::from(STEPS);
+            limits_95.push([low - step_m, high + step_m]);
+        }
+        Some((region, limits_95))
+    }
+
     /// Evidence by place of one edge.
     fn over(&self, region: Region, edge: usize, places_m: &[f64]) -> Vec<(f64, f64)> {
-        let of = |at_m: &f64| Some((*at_m, self.at(region.with_edge(edge, *at_m))?.1.wald));
+        let of = |at_m: &f64| Some((*at_m, self.explained(&self.at(region.with_edge(edge, *at_m))?.1)));
         places_m.par_iter().filter_map(of).collect()
     }
 }
@@ -60,24 +106,16 @@ pub(crate) fn refine(
     let always = Applied { span: Span::ALL, ..guess.clone() };
     let everywhere = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear)?.columns;
     let profile = Profile { series, base, system: system(series, base), everywhere };
-    let mut region = region;
-    let mut limits_95 = Vec::new();
+    let mut bounded = (region, Vec::new());
     for _ in 0..ROUNDS {
-        limits_95.clear();
-        for edge in (0..EDGES.len()).filter(|edge| region.edges_m()[*edge].is_finite()).collect::<Vec<_>>() {
-            let (part_m, at_m) = (part_m(extent_m)[edge / 2], region.edges_m()[edge]);
-            let places_m = places_m(extent_m[edge / 2], at_m, part_m);
-            let found = profile.over(region, edge, &places_m);
-            let best = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((best_m, most)) = best else { return Ok(None) };
-            region = region.with_edge(edge, best_m);
-            let within = found.iter().filter(|(_, wald)| (most - wald) / discount <= JUMP_95);
-            let [low, high] = within.fold([best_m; 2], |[low, high], (m, _)| [low.min(*m), high.max(*m)]);
-            // A step is as close as a place is told.
-            let step_m = part_m / f64::from(STEPS);
-            limits_95.push([low - step_m, high + step_m]);
-        }
+        let Some(moved) =
+            profile.opened(bounded.0, discount).and_then(|r| profile.moved(r, extent_m, discount))
+        else {
+            return Ok(None);
+        };
+        bounded = moved;
     }
+    let (region, limits_95) = bounded;
     let Some((columns, evidence)) = profile.at(region) else { return Ok(None) };
     let span = Span::Within(region);
     let applied = Applied { span, ..guess.clone() };

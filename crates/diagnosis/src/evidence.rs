@@ -1,6 +1,6 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
 
 use crate::{
     regime::{self, Regime},
@@ -23,8 +23,9 @@ pub(crate) struct System {
     /// Regime by row.
     regime: Vec<Regime>,
     blocks: usize,
-    /// The columns that shared ones do not explain.
+    /// The columns that shared ones do not explain, and the same row by row.
     own: DMatrix<f64>,
+    transposed: DMatrix<f64>,
     /// (AᵀA)⁻¹ of them.
     inverse: DMatrix<f64>,
     /// The errors that are left when nothing but what is fitted always is.
@@ -81,10 +82,11 @@ impl System {
         shared.iter().for_each(|shared| shared.take(&mut own));
         let mut left = DMatrix::from_column_slice(all, 1, errors.as_slice());
         shared.iter().for_each(|shared| shared.take(&mut left));
-        let inverse = inverse(own.tr_mul(&own));
-        let left = left.column(0) - &own * (&inverse * own.tr_mul(&left.column(0)));
+        let transposed = own.transpose();
+        let inverse = inverse(&transposed * &own);
+        let left = left.column(0) - &own * (&inverse * (&transposed * left.column(0)));
         let blocks = block.iter().max().map_or(0, |b| b + 1);
-        System { errors, columns, shared, rows, block, regime, blocks, own, inverse, left }
+        System { errors, columns, shared, rows, block, regime, blocks, own, transposed, inverse, left }
     }
 
     /// Number of blocks.
@@ -99,7 +101,7 @@ impl System {
             own.view_mut((0, j), (self.rows, 1)).copy_from_slice(column);
         }
         self.shared.iter().for_each(|shared| shared.take(&mut own));
-        let share = &self.inverse * self.own.tr_mul(&own);
+        let share = &self.inverse * (&self.transposed * &own);
         own - &self.own * share
     }
 
@@ -110,7 +112,23 @@ impl System {
 
     /// What a candidate's columns explain; `None` where the rest explains all that they do.
     pub(crate) fn weigh(&self, columns: &[Vec<f64>]) -> Option<Evidence> {
-        let own = self.own(columns);
+        self.weigh_own(columns, self.own(columns))
+    }
+
+    /// The same for many candidates at once, which is far faster.
+    pub(crate) fn weigh_all(&self, candidates: &[Vec<Vec<f64>>]) -> Vec<Option<Evidence>> {
+        let own = self.own(&candidates.concat());
+        let mut first = 0;
+        let one = |columns: &Vec<Vec<f64>>| {
+            let of = own.columns(first, columns.len()).into_owned();
+            first += columns.len();
+            self.weigh_own(columns, of)
+        };
+        candidates.iter().map(one).collect()
+    }
+
+    /// What columns explain, of which `own` is left when everything fitted always has taken its part.
+    fn weigh_own(&self, columns: &[Vec<f64>], own: DMatrix<f64>) -> Option<Evidence> {
         let square = own.tr_mul(&own);
         for (j, column) in columns.iter().enumerate() {
             let whole: f64 = column.iter().map(|x| x * x).sum();
@@ -150,12 +168,15 @@ impl System {
         Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own, discord })
     }
 
-    /// Drop of squared errors by one column.
-    pub(crate) fn explained(&self, column: &[f64]) -> f64 {
-        let own = self.own(&[column.to_vec()]);
-        let (size, whole) = (own.norm_squared(), column.iter().map(|x| x * x).sum::<f64>());
-        // Less than a ten-thousandth of its own is rounding.
-        if size < 1e-4 * whole || whole == 0.0 { 0.0 } else { own.column(0).dot(&self.left).powi(2) / size }
+    /// Drop of squared errors by each of some columns alone.
+    pub(crate) fn explained(&self, columns: &[Vec<f64>]) -> Vec<f64> {
+        let own = self.own(columns);
+        let of = |(own, column): (DVectorView<'_, f64>, &Vec<f64>)| {
+            let (size, whole) = (own.norm_squared(), column.iter().map(|x| x * x).sum::<f64>());
+            // Less than a ten-thousandth of its own is rounding.
+            if size < 1e-4 * whole || whole == 0.0 { 0.0 } else { own.dot(&self.left).powi(2) / size }
+        };
+        own.column_iter().zip(columns).map(of).collect()
     }
 
     /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.

@@ -10,7 +10,7 @@ use crate::{
     null::Null,
     search::State,
     series::{Applied, Series},
-    term,
+    term::{self, Term},
     weigh::{misfit, system},
 };
 
@@ -19,6 +19,9 @@ use crate::{
 const BETTER: f64 = 40.0;
 /// The same as a share of what the mechanism explains.
 const BETTER_SHARE: f64 = 0.25;
+
+/// Terms that are weighed in one go.
+const TOGETHER: usize = 64;
 
 /// Leaves out what a term in recorded quantities explains far better, and says which. Without healthy drives nothing is: the model's
 /// own error would pass for a term.
@@ -70,10 +73,12 @@ fn instead(
     let explained = whole / common - count * choice;
     let white = without.whitening(series);
     let terms = term::all(series.channels());
-    let weighed = terms.par_iter().map(|term| {
-        let column = term.column(&without.robot, &series.averages, &without.predicted_w);
-        let cost = (1 + term.groups.len()) as f64 * choice;
-        (system.explained(&white.of(&column)) / common - cost, term)
+    let weighed = terms.par_chunks(TOGETHER).flat_map_iter(|terms| {
+        let column = |term: &Term| term.column(&without.robot, &series.averages, &without.predicted_w);
+        let columns: Vec<Vec<f64>> = terms.iter().map(|term| white.of(&column(term))).collect();
+        let cost = |term: &Term| (1 + term.groups.len()) as f64 * choice;
+        let explained = system.explained(&columns).into_iter().zip(terms);
+        explained.map(move |(explained, term)| (explained / common - cost(term), term)).collect::<Vec<_>>()
     });
     let best = weighed.reduce_with(|a, b| if b.0 > a.0 { b } else { a });
     let least = explained + f64::max(BETTER, BETTER_SHARE * explained);

@@ -1,12 +1,14 @@
 //! What models miss, channel by channel: many columns that are taken out of all others.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// Columns of one channel whose weights have a width of 1, about 0.
 pub(crate) struct Shared {
     /// Rows of the channel.
     pub(crate) places: Vec<usize>,
     pub(crate) columns: DMatrix<f64>,
+    /// The same, row by row: products of many columns at once are far faster with it.
+    transposed: DMatrix<f64>,
     /// Of their products, with what is known before.
     root: Cholesky<f64, Dyn>,
     /// Row of the first of them.
@@ -24,9 +26,10 @@ impl Shared {
                 columns.iter().zip(&names).filter(|(_, n)| **n == Some(name)).map(|(c, _)| c).collect();
             let places: Vec<usize> = (0..channel.len()).filter(|i| channel[*i] == name).collect();
             let columns = DMatrix::from_fn(places.len(), own.len(), |i, j| own[j][places[i]]);
-            let square = columns.transpose() * &columns + DMatrix::identity(own.len(), own.len());
+            let transposed = columns.transpose();
+            let square = &transposed * &columns + DMatrix::identity(own.len(), own.len());
             let Some(root) = Cholesky::new(square) else { continue };
-            all.push(Shared { places, columns, root, first });
+            all.push(Shared { places, columns, transposed, root, first });
             first += own.len();
         }
         all
@@ -34,12 +37,12 @@ impl Shared {
 
     /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
     pub(crate) fn take(&self, columns: &mut DMatrix<f64>) {
-        for mut column in columns.column_iter_mut() {
-            let own = DVector::from_fn(self.places.len(), |i, _| column[self.places[i]]);
-            let weights = self.root.solve(&self.columns.tr_mul(&own));
-            let left = own - &self.columns * &weights;
+        let own = DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
+        let weights = self.root.solve(&(&self.transposed * &own));
+        let left = own - &self.columns * &weights;
+        for (mut column, left) in columns.column_iter_mut().zip(left.column_iter()) {
             self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
-            column.rows_mut(self.first, weights.len()).copy_from(&-weights);
         }
+        columns.rows_mut(self.first, weights.nrows()).copy_from(&-weights);
     }
 }

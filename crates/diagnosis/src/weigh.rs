@@ -128,7 +128,8 @@ pub(crate) fn weigh_all(
     let families = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
     let scales = Scales::new(series, base, null, &families);
     let best_of = |family: &Family| {
-        let weighed = family.candidates(series).filter_map(|one| scales.weigh(one));
+        let candidates: Vec<Candidate> = family.candidates(series).collect();
+        let weighed = candidates.chunks(TOGETHER).flat_map(|some| scales.weigh_all(some)).flatten();
         weighed.reduce(|best, one| if one.score > best.score { one } else { best })
     };
     let mut weighed: Vec<Weighed> = families.par_iter().filter_map(best_of).collect();
@@ -144,6 +145,8 @@ pub(crate) fn weigh_all(
     Ok((weighed, scales.all_fitted.blocks()))
 }
 
+/// Candidates that are weighed in one go.
+const TOGETHER: usize = 24;
 /// Candidates that are looked at more closely.
 const CLOSER: usize = 6;
 
@@ -197,11 +200,24 @@ impl<'a> Scales<'a> {
         }
     }
 
+    /// What candidates of one mechanism explain, each by itself.
+    fn weigh_all(&self, candidates: &[Candidate]) -> Vec<Option<Weighed>> {
+        let is_delay = candidates.iter().any(|one| name(one) == "clock_offset");
+        let system = if is_delay { &self.delay_apart } else { &self.all_fitted };
+        let white = |one: &Candidate| one.columns.iter().map(|c| self.white.of(c)).collect();
+        let whitened: Vec<Vec<Vec<f64>>> = candidates.iter().map(white).collect();
+        let evidence = system.weigh_all(&whitened).into_iter().zip(candidates);
+        evidence.map(|(evidence, one)| self.judge(one.clone(), evidence?)).collect()
+    }
+
     /// What a candidate explains; `None` where that is nothing, or more than can be.
     fn weigh(&self, candidate: Candidate) -> Option<Weighed> {
-        let columns: Vec<Vec<f64>> = candidate.columns.iter().map(|c| self.white.of(c)).collect();
+        self.weigh_all(std::slice::from_ref(&candidate)).pop().flatten()
+    }
+
+    /// A candidate with its evidence; `None` where that is more than can be.
+    fn judge(&self, candidate: Candidate, mut evidence: Evidence) -> Option<Weighed> {
         let is_delay = name(&candidate) == "clock_offset";
-        let mut evidence = (if is_delay { &self.delay_apart } else { &self.all_fitted }).weigh(&columns)?;
         // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
         // is not in proportion to its size, and more than models miss.
         let is_strong = self.share(&candidate, &evidence) > STRONG;
@@ -215,7 +231,7 @@ impl<'a> Scales<'a> {
         }
         let blocks = self.all_fitted.blocks();
         let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
-        let cost = columns.len() as f64 * (blocks as f64).ln();
+        let cost = candidate.columns.len() as f64 * (blocks as f64).ln();
         let (score, rank) = (wald - cost, by_all(&evidence, name(&candidate), self.null, blocks)? - cost);
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
         Some(Weighed {
