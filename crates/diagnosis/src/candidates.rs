@@ -21,6 +21,13 @@ pub(crate) struct Candidate {
     pub(crate) columns: Vec<Vec<f64>>,
 }
 
+impl Candidate {
+    /// Numbers that are fitted for it, those that bound the part of the drives in which it acts included.
+    pub(crate) fn numbers(&self) -> usize {
+        self.linear.len() + self.applied.span.bounds()
+    }
+}
+
 /// Moments at which a mechanism may set in, as shares of the time driven.
 const ONSETS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Beginnings of drives that are tried one by one; of more, the nearest will be found from the shares.

@@ -11,7 +11,7 @@ use crate::{
     search::State,
     series::{Applied, Series},
     term::{self, Term},
-    weigh::{misfit, system},
+    weigh::{misfit, system, system_with},
 };
 
 /// By how much a term has to explain more, in squared errors over their variance: of thousands of terms, the best explains some 20
@@ -20,6 +20,8 @@ const BETTER: f64 = 40.0;
 /// The same as a share of what the mechanism explains.
 const BETTER_SHARE: f64 = 0.25;
 
+/// Share of what the mechanism explains by itself that it may explain beside the term, if that stands for the same.
+const SAME: f64 = 0.5;
 /// Terms that are weighed in one go.
 const TOGETHER: usize = 64;
 
@@ -49,7 +51,7 @@ pub(crate) fn refuse(
     Ok(refused)
 }
 
-/// The term that explains far more than one of several mechanisms, beside the others.
+/// The term that explains far more than one of several mechanisms, beside the others, and leaves it little.
 fn instead(
     series: &Series,
     file: &Robot,
@@ -67,10 +69,8 @@ fn instead(
     let without = Baseline::fit(series, file, &others)?;
     let system = system(series, &without);
     let (common, choice) = (null.common_discount(system.blocks()), (system.blocks() as f64).ln());
-    let bounds = series.bounds(found.applied.span).len();
-    let count = (found.half_widths.iter().flatten().count() + bounds) as f64;
     let whole = misfit(series, &without, &without) - misfit(series, &state.fit, &without);
-    let explained = whole / common - count * choice;
+    let explained = whole / common - found.numbers() as f64 * choice;
     let white = without.whitening(series);
     let terms = term::all(series.channels());
     let weighed = terms.par_chunks(TOGETHER).flat_map_iter(|terms| {
@@ -82,5 +82,12 @@ fn instead(
     });
     let best = weighed.reduce_with(|a, b| if b.0 > a.0 { b } else { a });
     let least = explained + f64::max(BETTER, BETTER_SHARE * explained);
-    Ok(best.filter(|(most, _)| *most > least).map(|(_, term)| term.words()))
+    let Some((_, term)) = best.filter(|(most, _)| *most > least) else { return Ok(None) };
+    // A term that leaves the mechanism what it explains by itself is something else that the model misses.
+    let column = term.column(&without.robot, &series.averages, &without.predicted_w);
+    let with_w = series.predict(&without.robot, &state.applied())?;
+    let effect: Vec<f64> = with_w.iter().zip(&without.predicted_w).map(|(a, b)| a - b).collect();
+    let alone = system.explained(&[white.of(&effect)])[0];
+    let beside = system_with(series, &without, &[column]).explained(&[white.of(&effect)])[0];
+    Ok((beside < SAME * alone).then(|| term.words()))
 }

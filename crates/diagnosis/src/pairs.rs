@@ -8,7 +8,7 @@ use crate::{
     baseline::Baseline,
     gates::best,
     null::Null,
-    search::{AS_GOOD, State, decide, drop_one, is_told},
+    search::{AS_GOOD, Found, State, decide, drop_one, is_told},
     series::{Applied, Series},
     weigh::{Weighed, misfit, system, weigh_all},
 };
@@ -51,7 +51,7 @@ pub(crate) fn tried(
 fn better(series: &Series, before: &Baseline, state: State, other: Option<State>, null: &Null) -> State {
     let blocks = system(series, before).blocks();
     let cost = |state: &State| {
-        let count: usize = state.found.iter().map(|f| f.half_widths.iter().flatten().count()).sum();
+        let count: usize = state.found.iter().map(Found::numbers).sum();
         misfit(series, &state.fit, before) / null.common_discount(blocks)
             + count as f64 * (blocks as f64).ln()
     };
@@ -82,7 +82,8 @@ fn pair(
         let right = own.tr_mul(&left);
         let values = own.tr_mul(&own).cholesky()?.solve(&right);
         let explained = values.dot(&right) / null.common_discount(blocks);
-        Some((explained - columns.len() as f64 * (blocks as f64).ln(), values.iter().copied().collect()))
+        let count: usize = set.iter().map(|one| one.candidate.numbers()).sum();
+        Some((explained - count as f64 * (blocks as f64).ln(), values.iter().copied().collect()))
     };
     let is_found = |one: &&Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
     let so_far: Vec<&Weighed> = weighed.iter().filter(is_found).collect();

@@ -47,6 +47,13 @@ pub struct Found {
     pub indistinguishable_from: Vec<String>,
 }
 
+impl Found {
+    /// Numbers that were fitted for it, those that bound the part of the drives in which it acts included.
+    pub(crate) fn numbers(&self) -> usize {
+        self.half_widths.iter().flatten().count() + self.applied.span.bounds()
+    }
+}
+
 /// Where the search ended.
 pub struct Search {
     /// What was found, in the order in which it was.
@@ -132,7 +139,7 @@ pub(crate) fn decide(
         .collect::<Result<_, _>>()?;
     let cost = |i: usize| {
         misfit(series, &fits[i].base, by) / common
-            + rivals[i].candidate.linear.len() as f64 * (blocks as f64).ln()
+            + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln()
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
@@ -189,7 +196,7 @@ pub(crate) fn drop_one(
         others.remove(i);
         let without = Baseline::fit(series, file, &others)?;
         let lost = misfit(series, &without, &state.fit) - whole;
-        let count = state.found[i].half_widths.iter().flatten().count() as f64;
+        let count = state.found[i].numbers() as f64;
         // The last one was just found to be needed.
         let is_needed = i + 1 == state.found.len()
             || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;

@@ -47,6 +47,14 @@ impl Span {
         }
     }
 
+    /// Numbers that it takes to say it.
+    pub(crate) fn bounds(self) -> usize {
+        match self {
+            Span::Within(region) => region.edges_m().iter().filter(|edge_m| edge_m.is_finite()).count(),
+            _ => usize::from(!self.is_all()),
+        }
+    }
+
     /// It as a person would say it, with the names of the drives.
     #[must_use]
     pub fn words(self, names: &[String]) -> String {

@@ -231,7 +231,7 @@ impl<'a> Scales<'a> {
         }
         let blocks = self.all_fitted.blocks();
         let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
-        let cost = candidate.columns.len() as f64 * (blocks as f64).ln();
+        let cost = candidate.numbers() as f64 * (blocks as f64).ln();
         let (score, rank) = (wald - cost, by_all(&evidence, name(&candidate), self.null, blocks)? - cost);
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
         Some(Weighed {
