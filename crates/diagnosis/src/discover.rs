@@ -62,12 +62,14 @@ pub(crate) fn discover(
     }
     let columns: Vec<Vec<f64>> =
         terms.par_iter().map(|term| term.column(&base.robot, &series.averages, &base.predicted_w)).collect();
+    let library = Library { terms, columns };
     let mut found: Vec<Discovered> = Vec::new();
     while found.len() < MOST {
         let taken: Vec<Vec<f64>> = found.iter().map(|one| one.column_w.clone()).collect();
         // What spectra show comes first, and other terms beside it.
         let is_tried = |term: &Term| series.turning.is_none() || !found.is_empty() || term.is_turn();
-        let Some(next) = strongest(series, base, null, (&terms, &columns, &is_tried), &taken) else { break };
+        let tried: Vec<usize> = (0..library.terms.len()).filter(|i| is_tried(&library.terms[*i])).collect();
+        let Some(next) = strongest(series, base, null, &library, (&tried, &taken)) else { break };
         found.push(next);
     }
     let mechanisms = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
@@ -77,18 +79,23 @@ pub(crate) fn discover(
     Ok(found)
 }
 
+/// Terms with their columns.
+struct Library {
+    terms: Vec<Term>,
+    columns: Vec<Vec<f64>>,
+}
+
 /// The best term beside those taken that passes every gate.
 fn strongest(
     series: &Series,
     base: &Baseline,
     null: &Null,
-    (terms, columns, is_tried): (&[Term], &[Vec<f64>], &(dyn Fn(&Term) -> bool + Sync)),
-    taken: &[Vec<f64>],
+    Library { terms, columns }: &Library,
+    (tried, taken): (&[usize], &[Vec<f64>]),
 ) -> Option<Discovered> {
     let system = system_with(series, base, taken);
     let white = base.whitening(series);
     let blocks = system.blocks();
-    let tried: Vec<usize> = (0..terms.len()).filter(|i| is_tried(&terms[*i])).collect();
     let weighed = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
         let whitened: Vec<Vec<Vec<f64>>> = some.iter().map(|i| vec![white.of(&columns[*i])]).collect();
         system.weigh_all(&whitened).into_iter().zip(some.to_vec())

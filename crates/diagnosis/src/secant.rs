@@ -22,7 +22,7 @@ pub(crate) fn closer(
     base: &Baseline,
     others: &[Applied],
     first: &Weighed,
-    weigh: &dyn Fn(Candidate) -> Option<Weighed>,
+    weigh: &dyn Fn(&Candidate) -> Option<Weighed>,
 ) -> Result<Option<Weighed>, Error> {
     let mut best: Option<Weighed> = None;
     for _ in 0..ROUNDS {
@@ -33,7 +33,7 @@ pub(crate) fn closer(
             linear: first.candidate.linear.clone(),
             columns,
         };
-        match weigh(candidate) {
+        match weigh(&candidate) {
             Some(next) if next.score > last.score => best = Some(next),
             _ => break,
         }

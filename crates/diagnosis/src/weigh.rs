@@ -211,8 +211,8 @@ impl<'a> Scales<'a> {
     }
 
     /// What a candidate explains; `None` where that is nothing, or more than can be.
-    fn weigh(&self, candidate: Candidate) -> Option<Weighed> {
-        self.weigh_all(std::slice::from_ref(&candidate)).pop().flatten()
+    fn weigh(&self, candidate: &Candidate) -> Option<Weighed> {
+        self.weigh_all(std::slice::from_ref(candidate)).pop().flatten()
     }
 
     /// A candidate with its evidence; `None` where that is more than can be.
