@@ -6,9 +6,10 @@ use crate::{
     Error,
     baseline::Baseline,
     evidence::{Evidence, System},
+    manner,
     null::Null,
     series::{Applied, Series},
-    weigh::{Weighed, blocks, system, undelayed, weigh_all},
+    weigh::{Weighed, blocks, judged, system, system_with, undelayed, weigh_all},
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
@@ -46,6 +47,9 @@ pub(crate) fn best(
         let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
         let system = if is_delay { &delay_apart } else { &all_fitted };
         let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
+        if one.is_in_place() && !is_of_place(series, base, one, null) {
+            return None;
+        }
         let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { LEAST_GAIN_SIGMAS };
         Some((place, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
@@ -53,13 +57,51 @@ pub(crate) fn best(
     let chosen = weighed.remove(place);
     let rows = series.recorded.len();
     let is_rival = |other: &Weighed| {
-        other.rank > CONTENDER * chosen.rank && cosine(&chosen.evidence, &other.evidence, rows) > KIN
+        other.name() != chosen.name()
+            && other.rank > CONTENDER * chosen.rank
+            && cosine(&chosen.evidence, &other.evidence, rows) > KIN
+            && (!other.is_in_place() || is_of_place(series, base, other, null))
     };
     weighed.retain(is_rival);
     weighed.sort_by(|a, b| b.rank.total_cmp(&a.rank));
     weighed.truncate(MOST_RIVALS);
     weighed.insert(0, chosen);
     Ok(Some((weighed, gain)))
+}
+
+/// Change of power in a place, as a share of it, below which it may be what models miss of the slopes and turns there.
+const LEAST_IN_PLACE: f64 = 0.015;
+
+/// Standard errors by which ground in a place has to roll otherwise: what models miss of turns differs from place to place, and would
+/// pass for ground that skids otherwise.
+const LEAST_ROLLING_SIGMAS: f64 = 4.0;
+
+/// Change of power that a candidate stands for where it acts, over the power, both root mean square.
+fn share_where_it_acts(series: &Series, base: &Baseline, one: &Weighed) -> f64 {
+    let counts = |i: &usize| series.is_power(*i) && series.averages[*i].is_in(one.candidate.applied.span);
+    let (mut change, mut whole) = (0.0, 0.0);
+    for i in (0..series.averages.len()).filter(counts).filter(|i| series.averages[*i].suspect) {
+        let parts = one.candidate.columns.iter().zip(&one.evidence.values);
+        change += parts.map(|(column, value)| column[i] * value).sum::<f64>().powi(2);
+        whole += base.predicted_w[i].powi(2);
+    }
+    f64::sqrt(change / whole.max(1e-300))
+}
+
+/// Whether what acts in a place is worth a word there, and seen beside all that goes with how the robot was driven.
+fn is_of_place(series: &Series, base: &Baseline, one: &Weighed, null: &Null) -> bool {
+    // The first number of what is of the ground is that of rolling straight on.
+    let rolling_sigmas = one.evidence.values[0].abs() / one.evidence.covariance[(0, 0)].max(1e-300).sqrt();
+    if rolling_sigmas < LEAST_ROLLING_SIGMAS || share_where_it_acts(series, base, one) < LEAST_IN_PLACE {
+        return false;
+    }
+    let system = system_with(series, base, &manner::columns(series));
+    let white = base.whitening(series);
+    let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
+    let Some(evidence) = system.weigh(&columns) else { return false };
+    let cost = one.candidate.numbers() as f64 * (system.blocks() as f64).ln();
+    judged(&evidence, one.name(), null, system.blocks())
+        .is_some_and(|(wald, chance)| chance * f64::from(one.tried) < LEVEL && wald > cost)
 }
 
 /// The gain on held-out blocks of what has enough visits and gains by so many standard errors.

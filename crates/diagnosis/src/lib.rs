@@ -26,6 +26,7 @@ mod judged;
 mod knobs;
 mod linear;
 mod locate;
+mod manner;
 mod meter;
 mod next_drive;
 mod noise;

@@ -52,7 +52,8 @@ impl Null {
             };
             let base = Baseline::fit(&series, robot, &[])?;
             let (weighed, blocks) = weigh_all(&series, &base, &[], &Null::default())?;
-            for Weighed { candidate, evidence, tried, .. } in &weighed {
+            for Weighed { candidate, evidence, tried, .. } in weighed.iter().filter(|one| !one.is_in_place())
+            {
                 // The largest of so many χ² of q degrees of freedom is about q + 2 ln(number).
                 let expected = evidence.values.len() as f64 + 2.0 * f64::from(*tried).ln();
                 let factor = evidence.wald / expected;

@@ -96,6 +96,9 @@ fn pair(
     let mut most: Option<(f64, [Applied; 2])> = None;
     for (i, a) in weighed.iter().enumerate() {
         for b in &weighed[i + 1..] {
+            if a.name() == b.name() {
+                continue;
+            }
             let Some((score, values)) = score(&[a, b]) else { continue };
             let [own_w, other_w] = parts(&[a, b], &values);
             if undo(&own_w, &other_w) {

@@ -17,6 +17,7 @@ use crate::{
     regime::Regime,
     secant,
     series::{Applied, Average, Series},
+    span::Span,
 };
 
 /// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
@@ -104,6 +105,11 @@ impl Weighed {
         name(&self.candidate)
     }
 
+    /// Whether it acts in a part of the ground only.
+    pub(crate) fn is_in_place(&self) -> bool {
+        matches!(self.candidate.applied.span, Span::Within(_))
+    }
+
     /// It in another part of the drives, with the evidence there.
     pub(crate) fn moved_to(&self, candidate: Candidate, evidence: Evidence, discount: f64) -> Weighed {
         let more = (evidence.wald - self.evidence.wald) / discount;
@@ -130,9 +136,14 @@ pub(crate) fn weigh_all(
     let best_of = |family: &Family| {
         let candidates: Vec<Candidate> = family.candidates(series).collect();
         let weighed = candidates.chunks(TOGETHER).flat_map(|some| scales.weigh_all(some)).flatten();
-        weighed.reduce(|best, one| if one.score > best.score { one } else { best })
+        // What acts in a place only has more to pass, and something else has to be there if it does not.
+        let (in_place, elsewhere): (Vec<Weighed>, Vec<Weighed>) = weighed.partition(Weighed::is_in_place);
+        [in_place, elsewhere]
+            .into_iter()
+            .filter_map(|some| some.into_iter().reduce(better))
+            .collect::<Vec<_>>()
     };
-    let mut weighed: Vec<Weighed> = families.par_iter().filter_map(best_of).collect();
+    let mut weighed: Vec<Weighed> = families.par_iter().flat_map_iter(best_of).collect();
     best_of_each(&mut weighed);
     // What is strong is not in proportion to what little of it does.
     let closer: Vec<Option<Weighed>> = weighed
@@ -150,13 +161,18 @@ const TOGETHER: usize = 24;
 /// Candidates that are looked at more closely.
 const CLOSER: usize = 6;
 
-/// Sorts candidates, best first, and keeps of each mechanism only its best.
+fn better(best: Weighed, one: Weighed) -> Weighed {
+    if one.score > best.score { one } else { best }
+}
+
+/// Sorts candidates, best first, and keeps of each mechanism only its best, and its best in a place.
 fn best_of_each(weighed: &mut Vec<Weighed>) {
     weighed.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut names: Vec<&str> = Vec::new();
+    let mut names: Vec<(&str, bool)> = Vec::new();
     weighed.retain(|w| {
-        let is_new = !names.contains(&name(&w.candidate));
-        names.push(name(&w.candidate));
+        let key = (name(&w.candidate), w.is_in_place());
+        let is_new = !names.contains(&key);
+        names.push(key);
         is_new
     });
 }
