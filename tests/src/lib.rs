@@ -6,7 +6,6 @@ pub mod churn;
 pub mod folder_store;
 pub mod kills;
 pub mod s3;
-pub mod worlds;
 
 use std::{
     io::{BufRead, BufReader},

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod worlds;
+
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
-use joulepath_tests::worlds::drive;
 use model::Robot;
 use recording::{Channel, Recording};
 use world::{Effect, EffectName};
+use worlds::drive;
 
 fn record(seed: u64, effects: Vec<Effect>) -> Recording {
     drive(seed, 600.0, effects)

@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod worlds;
+
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
-use joulepath_tests::worlds::drive;
 use recording::{Channel, Recording};
 use world::{Effect, EffectName, Place};
+use worlds::drive;
 
 fn middle(values: &[f64]) -> f64 {
     let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();

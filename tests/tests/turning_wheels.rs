@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod worlds;
+
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
-use joulepath_tests::worlds::drive;
 use recording::Recording;
 use world::{Effect, EffectName, Side};
+use worlds::drive;
 
 fn said(suspect: &Recording, healthy: Option<&Recording>) -> Diagnosis {
     diagnose(&Question::new(&model::builtin::husky_a200(), suspect, healthy), &|_, _| {}).unwrap()

@@ -1,5 +1,7 @@
 //! Drives in the independent world, as a diagnosis gets them.
 
+#![allow(clippy::panic)]
+
 use recording::{Recording, read_paths};
 use world::{Drive, DriveKind, Effect, RobotFile, World, simulate};
 
@@ -7,7 +9,7 @@ use world::{Drive, DriveKind, Effect, RobotFile, World, simulate};
 ///
 /// # Panics
 /// When a world with these effects cannot be.
-pub fn drive(seed: u64, duration_s: f64, effects: Vec<Effect>) -> Recording {
+pub(crate) fn drive(seed: u64, duration_s: f64, effects: Vec<Effect>) -> Recording {
     let text = format!(r#"{{"terrain": {{"rolling": {{"grade": 0.03}}}}, "seed": {seed}, "robot_seed": 5}}"#);
     let recorded = || -> Result<Recording, Box<dyn std::error::Error>> {
         let world = World { effects, ..World::from_json(&text)? };
