@@ -1,6 +1,8 @@
 //! Cases that conceal an effect, diagnosed, for development; the score that counts is `joulepath prove`'s, on seeds never used here.
 //!
 //! `cargo run --profile ci -p joulepath-tests --example concealed -- SHARE FIRST_SEED SEEDS [KIND...]`
+//!
+//! With the variable `RULED` set, what was named is diagnosed once more with its mechanism ruled out.
 
 #![allow(clippy::unwrap_used)]
 
