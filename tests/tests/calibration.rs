@@ -215,11 +215,12 @@ fn a_cancelled_job_stays_cancelled_and_can_then_be_forgotten() {
     let path = format!("/v1/jobs/{job}");
     let mut events = server.events(&format!("{path}/events"), None);
     assert_eq!(events.next().unwrap().name, "progress");
+    // This returns once the work reads from the other end; a job called off before would never begin to.
+    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     let cancelled = server.delete(&path);
     assert_eq!((cancelled.status, &cancelled.json()["state"]), (200, &json!("cancelled")));
     assert_eq!(events.last().unwrap().name, "cancelled");
     // The work itself ends at the next bytes that it reads: the writer is then alone.
-    let mut writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     let endless = std::iter::repeat_n(drive_csv(1, ROWS), 10_000);
     let refused = endless.map(|text| writer.write_all(text.as_bytes())).find_map(Result::err);
     assert_eq!(refused.map(|error| error.kind()), Some(std::io::ErrorKind::BrokenPipe));

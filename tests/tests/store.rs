@@ -183,13 +183,15 @@ fn a_job_is_cancelled_wherever_it_runs_and_then_done_anew_when_asked() {
     let (recording, pipe) = held(folder.path(), &first);
     let body = json!({ "robot": "husky-a200", "recordings": [recording] });
     let job = asked(&first, &body);
+    // This returns once the work reads from the other end; a job called off before would never begin to.
+    let writer = OpenOptions::new().write(true).open(&pipe).unwrap();
     assert_eq!(second.delete(&job).json()["state"], "cancelled");
     // The service that worked on it finds out, and its followers with it.
     let last = ended(&first, &job);
     assert!(["cancelled", "queued"].map(Value::from).contains(&last["state"]), "{last}");
     assert_eq!(first.get(&job).json()["state"], "cancelled");
     // Whoever waits at the pipe reads nothing of use.
-    drop(OpenOptions::new().write(true).open(&pipe).unwrap());
+    drop(writer);
     fs::remove_file(&pipe).unwrap();
     fs::write(&pipe, drive_csv(4, 300)).unwrap();
     assert_eq!(asked(&second, &body), job, "the same job");

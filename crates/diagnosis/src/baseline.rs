@@ -1,6 +1,7 @@
 //! The robot's own numbers fitted to the drives, and how predictions hang on them.
 
 use model::{Robot, mechanism};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
@@ -14,6 +15,7 @@ use crate::{
 };
 
 /// A robot at its best fit, with the sensitivities that a linear search needs.
+#[derive(Clone)]
 pub(crate) struct Baseline {
     /// The robot.
     pub robot: Robot,
@@ -33,8 +35,10 @@ pub(crate) struct Baseline {
     pub(crate) noise: Noise,
 }
 
-/// Steps of Gauss and Newton; healthy drives need two or three.
+/// Steps of Gauss and Newton at most; two or three do.
 const STEPS: usize = 5;
+/// A fit has settled when no knob moves by more than this, in widths of the file.
+const SETTLED: f64 = 1e-3;
 
 impl Baseline {
     /// Fits the knobs, with mechanisms acting. While none does, only drives that nothing is missing from are fitted: a strong
@@ -43,10 +47,23 @@ impl Baseline {
     /// # Errors
     /// A surface that the robot does not know.
     pub(crate) fn fit(series: &Series, file: &Robot, applied: &[Applied]) -> Result<Self, Error> {
+        Baseline::fit_from(series, file, applied, file)
+    }
+
+    /// The same fit, reached from a robot that is near it.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub(crate) fn fit_from(
+        series: &Series,
+        file: &Robot,
+        applied: &[Applied],
+        near: &Robot,
+    ) -> Result<Self, Error> {
         let knobs = Knob::of(file, &series.surfaces(), series.sees_battery());
         let trusted = series.is_trusted();
         let fitted = if applied.is_empty() { trusted.clone() } else { vec![true; trusted.len()] };
-        let mut robot = file.clone();
+        let mut robot = near.clone();
         let mut predicted_w = series.predict(&robot, applied)?;
         let noise_of = |predicted_w: &[f64]| {
             let errors_w = differences(&series.recorded, predicted_w);
@@ -54,11 +71,8 @@ impl Baseline {
         };
         let mut noise = noise_of(&predicted_w);
         let mut columns = Vec::new();
-        for step in 0..STEPS {
+        for _ in 0..STEPS {
             columns = columns_of(series, &robot, &knobs, applied, &predicted_w)?;
-            if step + 1 == STEPS {
-                break;
-            }
             let errors = differences(&series.recorded, &predicted_w);
             let moves =
                 solve(series, &knobs, file, &robot, (&errors, &predicted_w, &columns), &noise, &fitted);
@@ -68,6 +82,9 @@ impl Baseline {
             }
             predicted_w = series.predict(&robot, applied)?;
             noise = noise_of(&predicted_w);
+            if moves.iter().all(|by| by.abs() < SETTLED) {
+                break;
+            }
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
@@ -154,17 +171,13 @@ fn solve(
     let columns: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
     // Errors beyond three sigma count linearly.
     let weight = |(e, fitted): (&f64, &bool)| if *fitted { (3.0 / e.abs().max(1e-9)).min(1.0) } else { 0.0 };
-    let weight: Vec<f64> = errors.iter().zip(fitted).map(weight).collect();
-    let mut square = nalgebra::DMatrix::<f64>::identity(count, count);
-    let mut right = nalgebra::DVector::<f64>::zeros(count);
-    for j in 0..count {
-        right[j] = (knobs[j].value(file) - knobs[j].value(robot)) / knobs[j].sigma;
-        for k in 0..count {
-            square[(j, k)] +=
-                (0..errors.len()).map(|i| weight[i] * columns[j][i] * columns[k][i]).sum::<f64>();
-        }
-        right[j] += (0..errors.len()).map(|i| weight[i] * columns[j][i] * errors[i]).sum::<f64>();
-    }
+    let root_weight: Vec<f64> = errors.iter().zip(fitted).map(|one| weight(one).sqrt()).collect();
+    let weighted = DMatrix::from_fn(errors.len(), count, |i, j| root_weight[i] * columns[j][i]);
+    let errors = DVector::from_fn(errors.len(), |i, _| root_weight[i] * errors[i]);
+    let from_file =
+        DVector::from_fn(count, |j, _| (knobs[j].value(file) - knobs[j].value(robot)) / knobs[j].sigma);
+    let square = DMatrix::identity(count, count) + weighted.transpose() * &weighted;
+    let right = from_file + weighted.tr_mul(&errors);
     match square.cholesky() {
         Some(root) => root.solve(&right).iter().copied().collect(),
         None => vec![0.0; count],

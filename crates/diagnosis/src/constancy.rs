@@ -1,25 +1,14 @@
 //! Whether what was found has one size all through the drives, as a mechanism has; what merely stands in for something else has not.
 
-use model::Robot;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
     Error,
-    baseline::Baseline,
     null::Null,
     search::State,
-    series::{Applied, Average, Series},
+    series::{Average, Series},
     weigh::system_with,
 };
-
-/// A mechanism that explains much and is not what is missing.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refused {
-    /// Its name.
-    pub mechanism: &'static str,
-    /// Why it is not, to follow on "would explain much of it, but".
-    pub why: String,
-}
 
 /// Time over which it fades that a robot stood still [s].
 pub(crate) const MOVING_S: f64 = 3.0;
@@ -63,45 +52,22 @@ const LEVEL: f64 = 1e-4;
 /// Standard deviations beyond which a quantity counts as so many: rare extremes would rule.
 const MOST_SIGMAS: f64 = 3.0;
 
-/// Leaves out what has not one size all through the drives, and says what that was. Without healthy drives nothing is: the model's
-/// own error would pass for a change.
+/// What the size of one of several mechanisms goes with most clearly.
 ///
 /// # Errors
 /// A surface that the robot does not know.
-pub(crate) fn refuse(
+pub(crate) fn doubt(
     series: &Series,
-    file: &Robot,
-    state: &mut State,
-    null: &Null,
-) -> Result<Vec<Refused>, Error> {
-    let mut refused = Vec::new();
-    let mut which = 0;
-    while series.has_healthy() && which < state.found.len() {
-        let Some(goes_with) = goes_with(series, &state.fit, &state.applied(), which, null)? else {
-            which += 1;
-            continue;
-        };
-        let mechanism = state.found.remove(which).applied.mechanism.name();
-        refused.push(Refused { mechanism, why: format!("its size goes with {goes_with}") });
-        state.fit = Baseline::fit(series, file, &state.applied())?;
-        which = 0;
-    }
-    Ok(refused)
-}
-
-/// What the size of one of several mechanisms goes with most clearly.
-fn goes_with(
-    series: &Series,
-    fit: &Baseline,
-    applied: &[Applied],
+    state: &State,
     which: usize,
     null: &Null,
-) -> Result<Option<&'static str>, Error> {
+) -> Result<Option<String>, Error> {
+    let (fit, applied) = (&state.fit, state.applied());
     // Heat comes and goes, and a delay does all that it does where power changes.
     if let "motor_heating" | "clock_offset" = applied[which].mechanism.name() {
         return Ok(None);
     }
-    let mut others = applied.to_vec();
+    let mut others = applied.clone();
     others.remove(which);
     let without_w = series.predict(&fit.robot, &others)?;
     let effect: Vec<f64> =
@@ -118,7 +84,8 @@ fn goes_with(
         let p_value = chance.sf(evidence.wald / null.common_discount(blocks)) * WITH.len() as f64;
         (p_value < LEVEL && evidence.values[0].abs() > LEAST_CHANGE).then_some((p_value, *with))
     });
-    Ok(judged.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, with)| with))
+    let clearest = judged.min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(clearest.map(|(_, with)| format!("its size goes with {with}")))
 }
 
 /// An effect times how many standard deviations a quantity is from its mean, both by the effect's square; `None` where it stays.

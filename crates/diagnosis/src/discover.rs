@@ -6,7 +6,7 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates::{self, Family},
-    evidence::Evidence,
+    evidence::{Evidence, TOGETHER},
     gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes},
     null::Null,
     report::{EvidenceFigures, Finding, FindingFit, FoundParameter},
@@ -18,8 +18,6 @@ use crate::{
 
 /// Terms that are taken up at most.
 const MOST: usize = 3;
-/// Terms that are weighed in one go.
-const TOGETHER: usize = 64;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 

@@ -1,13 +1,13 @@
 //! Where a mechanism acts: the profile of its evidence over each edge of a part of the ground.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::{
     Error,
     baseline::Baseline,
     candidates::{self, Candidate},
-    evidence::{Evidence, System},
+    evidence::System,
+    noise::Whitening,
     onset::{Bounded, JUMP_95, cut},
     region::{EDGES, Region, extent_m, part_m},
     series::{Applied, Series},
@@ -17,48 +17,54 @@ use crate::{
 
 /// Places of an edge that are looked at on each side of the last.
 const STEPS: i32 = 16;
+/// Regions that are weighed in one go: few enough that the places of an edge keep several processors busy.
+const TOGETHER: usize = 8;
 /// Rounds over all edges.
 const ROUNDS: usize = 3;
 
 /// What is moved about: a mechanism that would act everywhere, cut off beyond edges.
 struct Profile<'a> {
     series: &'a Series,
-    base: &'a Baseline,
+    white: Whitening,
     system: System,
     everywhere: Vec<Vec<f64>>,
 }
 
 impl Profile<'_> {
-    fn at(&self, region: Region) -> Option<(Vec<Vec<f64>>, Evidence)> {
-        let columns: Vec<Vec<f64>> =
-            self.everywhere.iter().map(|column| cut(self.series, column, Span::Within(region))).collect();
-        let white = self.base.whitening(self.series);
-        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
-        let evidence = self.system.weigh(&whitened)?;
-        Some((columns, evidence))
+    /// The columns of a region.
+    fn columns(&self, region: Region) -> Vec<Vec<f64>> {
+        self.everywhere.iter().map(|column| cut(self.series, column, Span::Within(region))).collect()
     }
 
-    /// Drop of squared errors by what a candidate explains.
-    fn explained(&self, evidence: &Evidence) -> f64 {
-        (&evidence.own * DVector::from_column_slice(&evidence.values)).dot(self.system.left())
+    fn whitened(&self, region: &Region) -> Vec<Vec<f64>> {
+        self.columns(*region).iter().map(|column| self.white.of(column)).collect()
+    }
+
+    /// Drop of squared errors by what the mechanism explains in each of some regions.
+    fn explained(&self, regions: &[Region]) -> Vec<f64> {
+        let of = |regions: &[Region]| {
+            self.system.explained(&regions.iter().map(|region| self.whitened(region)).collect::<Vec<_>>())
+        };
+        regions.par_chunks(TOGETHER).flat_map_iter(of).collect()
     }
 
     /// The region without edges beyond which it might as well act.
-    fn opened(&self, mut region: Region, discount: f64) -> Option<Region> {
-        let mut most = self.explained(&self.at(region)?.1);
-        for (edge, name) in EDGES.iter().enumerate() {
-            let beyond_m = if name.contains("from") { f64::NEG_INFINITY } else { f64::INFINITY };
+    fn opened(&self, mut region: Region, discount: f64) -> Region {
+        let mut most = self.explained(&[region])[0];
+        for edge in 0..EDGES.len() {
+            // Western and southern edges come before eastern and northern ones.
+            let beyond_m = if edge % 2 == 0 { f64::NEG_INFINITY } else { f64::INFINITY };
             let wider = region.with_edge(edge, beyond_m);
             let is_part = wider.edges_m().iter().any(|edge_m| edge_m.is_finite());
             if wider == region || !is_part {
                 continue;
             }
-            let explained = self.at(wider).map_or(0.0, |(_, evidence)| self.explained(&evidence));
+            let explained = self.explained(&[wider])[0];
             if (most - explained) / discount <= JUMP_95 {
                 (region, most) = (wider, most.max(explained));
             }
         }
-        Some(region)
+        region
     }
 
     /// The region with each of its edges where evidence is strongest, and their 95 % intervals.
@@ -71,7 +77,10 @@ impl Profile<'_> {
         let mut limits_95 = Vec::new();
         for (edge, at_m) in region.edges_m().into_iter().enumerate().filter(|(_, at_m)| at_m.is_finite()) {
             let part_m = part_m(extent_m)[edge / 2];
-            let found = self.over(region, edge, &places_m(extent_m[edge / 2], at_m, part_m));
+            let places_m = places_m(extent_m[edge / 2], at_m, part_m);
+            let regions: Vec<Region> =
+                places_m.iter().map(|place_m| region.with_edge(edge, *place_m)).collect();
+            let found: Vec<(f64, f64)> = places_m.into_iter().zip(self.explained(&regions)).collect();
             let (best_m, most) = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
             region = region.with_edge(edge, best_m);
             let within = found.iter().filter(|(_, explained)| (most - explained) / discount <= JUMP_95);
@@ -81,12 +90,6 @@ impl Profile<'_> {
             limits_95.push([low - step_m, high + step_m]);
         }
         Some((region, limits_95))
-    }
-
-    /// Evidence by place of one edge.
-    fn over(&self, region: Region, edge: usize, places_m: &[f64]) -> Vec<(f64, f64)> {
-        let of = |at_m: &f64| Some((*at_m, self.explained(&self.at(region.with_edge(edge, *at_m))?.1)));
-        places_m.par_iter().filter_map(of).collect()
     }
 }
 
@@ -105,18 +108,17 @@ pub(crate) fn refine(
     let (guess, linear) = (&first.candidate.applied, first.candidate.linear.clone());
     let always = Applied { span: Span::ALL, ..guess.clone() };
     let everywhere = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear)?.columns;
-    let profile = Profile { series, base, system: system(series, base), everywhere };
+    let white = base.whitening(series);
+    let profile = Profile { series, white, system: system(series, base), everywhere };
     let mut bounded = (region, Vec::new());
     for _ in 0..ROUNDS {
-        let Some(moved) =
-            profile.opened(bounded.0, discount).and_then(|r| profile.moved(r, extent_m, discount))
-        else {
-            return Ok(None);
-        };
+        let opened = profile.opened(bounded.0, discount);
+        let Some(moved) = profile.moved(opened, extent_m, discount) else { return Ok(None) };
         bounded = moved;
     }
     let (region, limits_95) = bounded;
-    let Some((columns, evidence)) = profile.at(region) else { return Ok(None) };
+    let columns = profile.columns(region);
+    let Some(evidence) = profile.system.weigh(&profile.whitened(&region)) else { return Ok(None) };
     let span = Span::Within(region);
     let applied = Applied { span, ..guess.clone() };
     let candidate = Candidate { applied, linear: first.candidate.linear.clone(), columns };

@@ -1,11 +1,14 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
-use nalgebra::{Cholesky, DMatrix, DVector, DVectorView, Dyn};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
     regime::{self, Regime},
     shared::Shared,
 };
+
+/// Candidates that are weighed in one go: enough for products of matrices, few enough for a processor's caches.
+pub(crate) const TOGETHER: usize = 64;
 
 /// Whitened errors, everything that is fitted whatever the candidate, and the blocks that count as one piece of evidence each.
 ///
@@ -132,8 +135,7 @@ impl System {
         let square = own.tr_mul(&own);
         for (j, column) in columns.iter().enumerate() {
             let whole: f64 = column.iter().map(|x| x * x).sum();
-            // Less than a ten-thousandth of its own is rounding.
-            if square[(j, j)] < 1e-4 * whole || whole == 0.0 {
+            if is_nothing(square[(j, j)], whole) {
                 return None;
             }
         }
@@ -168,15 +170,31 @@ impl System {
         Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own, discord })
     }
 
-    /// Drop of squared errors by each of some columns alone.
-    pub(crate) fn explained(&self, columns: &[Vec<f64>]) -> Vec<f64> {
-        let own = self.own(columns);
-        let of = |(own, column): (DVectorView<'_, f64>, &Vec<f64>)| {
-            let (size, whole) = (own.norm_squared(), column.iter().map(|x| x * x).sum::<f64>());
-            // Less than a ten-thousandth of its own is rounding.
-            if size < 1e-4 * whole || whole == 0.0 { 0.0 } else { own.dot(&self.left).powi(2) / size }
+    /// Drop of squared errors by what each of some candidates explains at its best.
+    pub(crate) fn explained(&self, candidates: &[Vec<Vec<f64>>]) -> Vec<f64> {
+        let all = candidates.concat();
+        let columns = DMatrix::from_fn(self.rows, all.len(), |i, j| all[j][i]);
+        let own = &self.transposed.columns(0, self.rows) * &columns;
+        let mut taken = vec![(own.clone(), &self.inverse * own)];
+        taken.extend(self.shared.iter().filter_map(|shared| shared.taken(&columns)));
+        let right = columns.tr_mul(&self.left.rows(0, self.rows));
+        let mut first = 0;
+        let of = |candidate: &Vec<Vec<f64>>| {
+            let (at, count) = (first, candidate.len());
+            first += count;
+            let part = columns.columns(at, count);
+            let mut square = part.tr_mul(&part);
+            let whole = square.diagonal();
+            for (products, weights) in &taken {
+                square -= products.columns(at, count).tr_mul(&weights.columns(at, count));
+            }
+            if (0..count).any(|j| is_nothing(square[(j, j)], whole[j])) {
+                return 0.0;
+            }
+            let right = right.rows(at, count);
+            square.cholesky().map_or(0.0, |root| right.dot(&root.solve(&right)))
         };
-        own.column_iter().zip(columns).map(of).collect()
+        candidates.iter().map(of).collect()
     }
 
     /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
@@ -244,6 +262,11 @@ impl System {
         }
         gains
     }
+}
+
+/// Whether nothing is left of a column: less than a ten-thousandth of its square is rounding.
+fn is_nothing(left: f64, whole: f64) -> bool {
+    left < 1e-4 * whole || whole == 0.0
 }
 
 /// Inverse of a matrix of products.

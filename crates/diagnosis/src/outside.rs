@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::{
     Error,
     baseline::Baseline,
-    constancy::Refused,
+    evidence::TOGETHER,
     null::Null,
     search::State,
     series::{Applied, Series},
@@ -19,40 +19,13 @@ use crate::{
 const BETTER: f64 = 40.0;
 /// The same as a share of what the mechanism explains.
 const BETTER_SHARE: f64 = 0.25;
-
 /// Share of what the mechanism explains by itself that it may explain beside the term, if that stands for the same.
 const SAME: f64 = 0.5;
-/// Terms that are weighed in one go.
-const TOGETHER: usize = 64;
-
-/// Leaves out what a term in recorded quantities explains far better, and says which. Without healthy drives nothing is: the model's
-/// own error would pass for a term.
+/// The term that explains far more than one of several mechanisms, beside the others, and leaves it little.
 ///
 /// # Errors
 /// A surface that the robot does not know.
-pub(crate) fn refuse(
-    series: &Series,
-    file: &Robot,
-    state: &mut State,
-    null: &Null,
-) -> Result<Vec<Refused>, Error> {
-    let mut refused = Vec::new();
-    let mut which = 0;
-    while series.has_healthy() && which < state.found.len() {
-        let Some(instead) = instead(series, file, state, which, null)? else {
-            which += 1;
-            continue;
-        };
-        let mechanism = state.found.remove(which).applied.mechanism.name();
-        refused.push(Refused { mechanism, why: format!("{instead} explains it better") });
-        state.fit = Baseline::fit(series, file, &state.applied())?;
-        which = 0;
-    }
-    Ok(refused)
-}
-
-/// The term that explains far more than one of several mechanisms, beside the others, and leaves it little.
-fn instead(
+pub(crate) fn doubt(
     series: &Series,
     file: &Robot,
     state: &State,
@@ -75,7 +48,7 @@ fn instead(
     let terms = term::all(series.channels());
     let weighed = terms.par_chunks(TOGETHER).flat_map_iter(|terms| {
         let column = |term: &Term| term.column(&without.robot, &series.averages, &without.predicted_w);
-        let columns: Vec<Vec<f64>> = terms.iter().map(|term| white.of(&column(term))).collect();
+        let columns: Vec<Vec<Vec<f64>>> = terms.iter().map(|term| vec![white.of(&column(term))]).collect();
         let cost = |term: &Term| (1 + term.groups.len()) as f64 * choice;
         let explained = system.explained(&columns).into_iter().zip(terms);
         explained.map(move |(explained, term)| (explained / common - cost(term), term)).collect::<Vec<_>>()
@@ -87,7 +60,8 @@ fn instead(
     let column = term.column(&without.robot, &series.averages, &without.predicted_w);
     let with_w = series.predict(&without.robot, &state.applied())?;
     let effect: Vec<f64> = with_w.iter().zip(&without.predicted_w).map(|(a, b)| a - b).collect();
-    let alone = system.explained(&[white.of(&effect)])[0];
-    let beside = system_with(series, &without, &[column]).explained(&[white.of(&effect)])[0];
-    Ok((beside < SAME * alone).then(|| term.words()))
+    let effect = [vec![white.of(&effect)]];
+    let alone = system.explained(&effect)[0];
+    let beside = system_with(series, &without, &[column]).explained(&effect)[0];
+    Ok((beside < SAME * alone).then(|| format!("{} explains it better", term.words())))
 }

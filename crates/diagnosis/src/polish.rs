@@ -29,21 +29,21 @@ const LEAST_GAIN: f64 = 1.0;
 /// 97.5 % quantile of the normal distribution.
 const NORMAL_975: f64 = 1.959_964;
 
-/// Fits a candidate beside mechanisms that act already.
+/// Fits a candidate beside mechanisms that act already, from a robot that is near the fit.
 ///
 /// # Errors
 /// A surface that the robot does not know.
 pub(crate) fn polish(
     series: &Series,
     file: &Robot,
-    others: &[Applied],
+    (others, near): (&[Applied], &Robot),
     one: &Weighed,
 ) -> Result<Polished, Error> {
     let linear = one.candidate.linear.clone();
     let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
-    let fitted_with = |applied: &Applied| Baseline::fit(series, file, &with(applied));
+    let fitted_with = |applied: &Applied, near: &Robot| Baseline::fit_from(series, file, &with(applied), near);
     let mut applied = candidates::moved(&one.candidate.applied, file, &linear, &one.evidence.values);
-    let mut base = fitted_with(&applied)?;
+    let mut base = fitted_with(&applied, near)?;
     let mut covariance = one.evidence.covariance.clone();
     for _ in 0..POLISHES {
         // Sensitivities are differences from what is predicted with the mechanism as it stands.
@@ -57,7 +57,7 @@ pub(crate) fn polish(
         for share in SHARES {
             let by: Vec<f64> = evidence.values.iter().map(|value| share * value).collect();
             let moved = candidates::moved(&applied, file, &linear, &by);
-            let next = fitted_with(&moved)?;
+            let next = fitted_with(&moved, &base.robot)?;
             if misfit(series, &next, &base) < before {
                 better = Some((moved, next));
                 break;
@@ -107,7 +107,8 @@ fn freed(
         let Some(evidence) = system(series, base).weigh(&columns) else { continue };
         let by = limited(applied, &free, &evidence.values, linear);
         let moved = candidates::moved(applied, file, &free, &by);
-        let next = Baseline::fit(series, file, &[others, std::slice::from_ref(&moved)].concat())?;
+        let all = [others, std::slice::from_ref(&moved)].concat();
+        let next = Baseline::fit_from(series, file, &all, &base.robot)?;
         if misfit(series, &next, base) < before - LEAST_GAIN {
             return Ok(Some((moved, next, evidence.covariance, free)));
         }

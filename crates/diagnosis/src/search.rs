@@ -7,12 +7,13 @@ use recording::Recording;
 use crate::{
     Error,
     baseline::Baseline,
-    constancy::{self, Refused},
+    constancy,
     gates::best,
     null::Null,
     onset::{self, Bounded},
     outside, pairs,
     polish::{Polished, polish},
+    refused::{Refused, refuse},
     series::{Applied, Series},
     weigh::{Weighed, left, misfit, system},
 };
@@ -97,7 +98,7 @@ pub fn search(
     progress("fitting the robot", 0.05);
     let before = Baseline::fit(series, file, &[])?;
     let left_before = left(series, &before);
-    let mut state = State { found: Vec::new(), fit: Baseline::fit(series, file, &[])? };
+    let mut state = State { found: Vec::new(), fit: before.clone() };
     for round in 0..MOST {
         progress("weighing mechanisms", 0.1 + 0.25 * round as f64);
         let applied = state.applied();
@@ -110,8 +111,10 @@ pub fn search(
     }
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
-    let mut refused = constancy::refuse(series, file, &mut state, &null)?;
-    refused.extend(outside::refuse(series, file, &mut state, &null)?);
+    let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
+    let mut refused = refuse(series, file, &mut state, &of_many_sizes)?;
+    let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);
+    refused.extend(refuse(series, file, &mut state, &told_better)?);
     let State { found, fit: after } = state;
     let left = [left_before, left(series, &after)];
     Ok(Search { found, refused, before, after, left, null })
@@ -135,7 +138,7 @@ pub(crate) fn decide(
     let at_best = |i: usize| bounded[i].as_ref().map_or(&rivals[i], |bounded| &bounded.weighed);
     let fits: Vec<Polished> = (0..rivals.len())
         .into_par_iter()
-        .map(|i| polish(series, file, applied, at_best(i)))
+        .map(|i| polish(series, file, (applied, &by.robot), at_best(i)))
         .collect::<Result<_, _>>()?;
     let cost = |i: usize| {
         misfit(series, &fits[i].base, by) / common
@@ -194,7 +197,7 @@ pub(crate) fn drop_one(
         }
         let mut others = state.applied();
         others.remove(i);
-        let without = Baseline::fit(series, file, &others)?;
+        let without = Baseline::fit_from(series, file, &others, &state.fit.robot)?;
         let lost = misfit(series, &without, &state.fit) - whole;
         let count = state.found[i].numbers() as f64;
         // The last one was just found to be needed.

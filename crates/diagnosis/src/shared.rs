@@ -37,12 +37,26 @@ impl Shared {
 
     /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
     pub(crate) fn take(&self, columns: &mut DMatrix<f64>) {
-        let own = DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
+        let Some(own) = self.own(columns) else { return };
         let weights = self.root.solve(&(&self.transposed * &own));
         let left = own - &self.columns * &weights;
         for (mut column, left) in columns.column_iter_mut().zip(left.column_iter()) {
             self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
         }
         columns.rows_mut(self.first, weights.nrows()).copy_from(&-weights);
+    }
+
+    /// Products of the shared columns with others, and the weights of the shared ones in them; `None` where both are nothing.
+    pub(crate) fn taken(&self, columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        let products = &self.transposed * &self.own(columns)?;
+        let weights = self.root.solve(&products);
+        Some((products, weights))
+    }
+
+    /// Rows of the channel of columns; `None` where they have none, as most do not change what the ground or a gyroscope says.
+    fn own(&self, columns: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let is_nothing = columns.column_iter().all(|column| self.places.iter().all(|i| column[*i] == 0.0));
+        let own = || DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
+        (!is_nothing).then(own)
     }
 }

@@ -117,62 +117,22 @@ pub(crate) static GROUPS: [Group; 33] = [
     group("sin 2ψ", "driving north-east or south-west, and less across", HEADING, |a, _| {
         known((2.0 * a.input.heading_rad).sin())
     }),
-    group(
-        "e^(−((|v| − 0.2 u_max)/0.1 u_max)²)",
-        "speeds about 0.2 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.2, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.3 u_max)/0.1 u_max)²)",
-        "speeds about 0.3 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.3, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.4 u_max)/0.1 u_max)²)",
-        "speeds about 0.4 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.4, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.5 u_max)/0.1 u_max)²)",
-        "speeds about 0.5 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.5, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.6 u_max)/0.1 u_max)²)",
-        "speeds about 0.6 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.6, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.7 u_max)/0.1 u_max)²)",
-        "speeds about 0.7 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.7, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.8 u_max)/0.1 u_max)²)",
-        "speeds about 0.8 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.8, fastest),
-    ),
-    group(
-        "e^(−((|v| − 0.9 u_max)/0.1 u_max)²)",
-        "speeds about 0.9 of the highest",
-        SPEED,
-        |a, fastest| near(a, 0.9, fastest),
-    ),
+    group("e^(−((|v| − 0.2 u_max)/0.1 u_max)²)", "speeds about 0.2 of the highest", SPEED, near::<2>),
+    group("e^(−((|v| − 0.3 u_max)/0.1 u_max)²)", "speeds about 0.3 of the highest", SPEED, near::<3>),
+    group("e^(−((|v| − 0.4 u_max)/0.1 u_max)²)", "speeds about 0.4 of the highest", SPEED, near::<4>),
+    group("e^(−((|v| − 0.5 u_max)/0.1 u_max)²)", "speeds about 0.5 of the highest", SPEED, near::<5>),
+    group("e^(−((|v| − 0.6 u_max)/0.1 u_max)²)", "speeds about 0.6 of the highest", SPEED, near::<6>),
+    group("e^(−((|v| − 0.7 u_max)/0.1 u_max)²)", "speeds about 0.7 of the highest", SPEED, near::<7>),
+    group("e^(−((|v| − 0.8 u_max)/0.1 u_max)²)", "speeds about 0.8 of the highest", SPEED, near::<8>),
+    group("e^(−((|v| − 0.9 u_max)/0.1 u_max)²)", "speeds about 0.9 of the highest", SPEED, near::<9>),
     group("(1 + cos(α − α₀))/2", "each turn of the wheels", TURNED, |a, _| a.input.nearness),
     group("(z̄ − z)₊/1 m", "low ground", HEIGHT, |a, _| known(-a.input.height_m).max(0.0)),
     group("(z − z̄)₊/1 m", "high ground", HEIGHT, |a, _| known(a.input.height_m).max(0.0)),
 ];
 
-/// How near a speed is to a share of the highest, 1 at it.
-fn near(average: &Average, share: f64, fastest_mps: f64) -> f64 {
-    (-((average.input.speed_mps.abs() / fastest_mps - share) / 0.1).powi(2)).exp()
+/// How near a speed is to so many tenths of the highest, 1 at it.
+fn near<const TENTHS: u32>(average: &Average, fastest_mps: f64) -> f64 {
+    (-(10.0 * average.input.speed_mps.abs() / fastest_mps - f64::from(TENTHS)).powi(2)).exp()
 }
 
 /// What was not recorded says nothing.

@@ -1,6 +1,5 @@
 //! What repeats with every turn of a side's wheels, as a bent rim or a stone in a tyre does: spectra of what the model leaves of the
-//! power over
-//! the angle that the wheels have turned.
+//! power over the angle that the wheels have turned.
 
 use std::f64::consts::TAU;
 
@@ -88,6 +87,7 @@ fn of_side(robot: &Robot, Left { drives, errors_w }: &Left<'_>, side: usize) -> 
         return None;
     }
     let rates: Vec<f64> = own_rates().collect();
+    // Either side could have shown one.
     let tried = (2 * rates.len()) as f64;
     let chances = (0..rates.len()).map(|own| chance(&windows, own) * tried);
     let (own, p_value) = chances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;

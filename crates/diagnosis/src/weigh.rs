@@ -11,7 +11,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     candidates::{self, Candidate, Family},
-    evidence::{Evidence, Fitted, System},
+    evidence::{Evidence, Fitted, System, TOGETHER},
     noise::Whitening,
     null::Null,
     regime::Regime,
@@ -156,8 +156,6 @@ pub(crate) fn weigh_all(
     Ok((weighed, scales.all_fitted.blocks()))
 }
 
-/// Candidates that are weighed in one go.
-const TOGETHER: usize = 24;
 /// Candidates that are looked at more closely.
 const CLOSER: usize = 6;
 

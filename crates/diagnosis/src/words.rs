@@ -1,7 +1,7 @@
 //! Sentences that a person reads.
 
 use crate::{
-    constancy::Refused,
+    refused::Refused,
     report::{Diagnosis, Finding, Verdict},
 };
 
