@@ -174,7 +174,7 @@ impl System {
     pub(crate) fn explained(&self, candidates: &[Vec<Vec<f64>>]) -> Vec<f64> {
         let all = candidates.concat();
         let columns = DMatrix::from_fn(self.rows, all.len(), |i, j| all[j][i]);
-        let own = &self.transposed.columns(0, self.rows) * &columns;
+        let own = self.transposed.columns(0, self.rows) * &columns;
         let mut taken = vec![(own.clone(), &self.inverse * own)];
         taken.extend(self.shared.iter().filter_map(|shared| shared.taken(&columns)));
         let right = columns.tr_mul(&self.left.rows(0, self.rows));

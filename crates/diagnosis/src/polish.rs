@@ -41,7 +41,8 @@ pub(crate) fn polish(
 ) -> Result<Polished, Error> {
     let linear = one.candidate.linear.clone();
     let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
-    let fitted_with = |applied: &Applied, near: &Robot| Baseline::fit_from(series, file, &with(applied), near);
+    let fitted_with =
+        |applied: &Applied, near: &Robot| Baseline::fit_from(series, file, &with(applied), near);
     let mut applied = candidates::moved(&one.candidate.applied, file, &linear, &one.evidence.values);
     let mut base = fitted_with(&applied, near)?;
     let mut covariance = one.evidence.covariance.clone();

@@ -56,7 +56,8 @@ impl Shared {
     /// Rows of the channel of columns; `None` where they have none, as most do not change what the ground or a gyroscope says.
     fn own(&self, columns: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let is_nothing = columns.column_iter().all(|column| self.places.iter().all(|i| column[*i] == 0.0));
-        let own = || DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
+        let own =
+            || DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
         (!is_nothing).then(own)
     }
 }
