@@ -1,51 +1,28 @@
 //! Where a mechanism acts: the profile of its evidence over each edge of a part of the ground.
 
-use rayon::prelude::*;
-
 use crate::{
     Error,
     baseline::Baseline,
-    candidates::{self, Candidate},
-    evidence::System,
-    noise::Whitening,
-    onset::{Bounded, JUMP_95, cut},
+    onset::{Bounded, JUMP_95},
+    profile::Profile,
     region::{EDGES, Region, extent_m, part_m},
     series::{Applied, Series},
     span::Span,
-    weigh::{Weighed, system},
+    weigh::Weighed,
 };
 
 /// Places of an edge that are looked at on each side of the last.
 const STEPS: i32 = 16;
-/// Regions that are weighed in one go: few enough that the places of an edge keep several processors busy.
-const TOGETHER: usize = 8;
 /// Rounds over all edges.
 const ROUNDS: usize = 3;
 
-/// What is moved about: a mechanism that would act everywhere, cut off beyond edges.
-struct Profile<'a> {
-    series: &'a Series,
-    white: Whitening,
-    system: System,
-    everywhere: Vec<Vec<f64>>,
-}
+/// The profile over regions.
+struct Regions<'a>(Profile<'a>);
 
-impl Profile<'_> {
-    /// The columns of a region.
-    fn columns(&self, region: Region) -> Vec<Vec<f64>> {
-        self.everywhere.iter().map(|column| cut(self.series, column, Span::Within(region))).collect()
-    }
-
-    fn whitened(&self, region: &Region) -> Vec<Vec<f64>> {
-        self.columns(*region).iter().map(|column| self.white.of(column)).collect()
-    }
-
+impl Regions<'_> {
     /// Drop of squared errors by what the mechanism explains in each of some regions.
     fn explained(&self, regions: &[Region]) -> Vec<f64> {
-        let of = |regions: &[Region]| {
-            self.system.explained(&regions.iter().map(|region| self.whitened(region)).collect::<Vec<_>>())
-        };
-        regions.par_chunks(TOGETHER).flat_map_iter(of).collect()
+        self.0.explained(&regions.iter().copied().map(Span::Within).collect::<Vec<_>>())
     }
 
     /// The region without edges beyond which it might as well act.
@@ -105,24 +82,16 @@ pub(crate) fn refine(
     discount: f64,
 ) -> Result<Option<Bounded>, Error> {
     let Some(extent_m) = extent_m(&series.averages) else { return Ok(None) };
-    let (guess, linear) = (&first.candidate.applied, first.candidate.linear.clone());
-    let always = Applied { span: Span::ALL, ..guess.clone() };
-    let everywhere = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear)?.columns;
-    let white = base.whitening(series);
-    let profile = Profile { series, white, system: system(series, base), everywhere };
+    let regions = Regions(Profile::of(series, base, others, first)?);
     let mut bounded = (region, Vec::new());
     for _ in 0..ROUNDS {
-        let opened = profile.opened(bounded.0, discount);
-        let Some(moved) = profile.moved(opened, extent_m, discount) else { return Ok(None) };
+        let opened = regions.opened(bounded.0, discount);
+        let Some(moved) = regions.moved(opened, extent_m, discount) else { return Ok(None) };
         bounded = moved;
     }
     let (region, limits_95) = bounded;
-    let columns = profile.columns(region);
-    let Some(evidence) = profile.system.weigh(&profile.whitened(&region)) else { return Ok(None) };
-    let span = Span::Within(region);
-    let applied = Applied { span, ..guess.clone() };
-    let candidate = Candidate { applied, linear: first.candidate.linear.clone(), columns };
-    Ok(Some(Bounded { weighed: first.moved_to(candidate, evidence, discount), limits_95 }))
+    let weighed = regions.0.weighed(Span::Within(region), discount);
+    Ok(weighed.map(|weighed| Bounded { weighed, limits_95 }))
 }
 
 /// Places of an edge about one, within what was driven.

@@ -24,7 +24,7 @@ pub(crate) struct System {
     /// Block by row.
     block: Vec<usize>,
     /// Regime by row.
-    regime: Vec<Regime>,
+    regime: Vec<usize>,
     blocks: usize,
     /// The columns that shared ones do not explain, and the same row by row.
     own: DMatrix<f64>,
@@ -54,6 +54,8 @@ pub(crate) struct Evidence {
     pub(crate) covariance: DMatrix<f64>,
     /// valuesᵀ covariance⁻¹ values: how many block-wise standard errors the values are from nothing, squared.
     pub(crate) wald: f64,
+    /// Drop of squared errors.
+    pub(crate) explained: f64,
     /// The whitened sensitivities that nothing else explains.
     pub(crate) own: DMatrix<f64>,
     /// Scatter of its size from regime to regime, over what chance makes of it, squared; 1 where they agree (Birge, Phys. Rev. 40,
@@ -67,7 +69,7 @@ impl System {
         errors: Vec<f64>,
         fitted: &Fitted<'_>,
         channel: &[usize],
-        (block, regime): (Vec<usize>, Vec<Regime>),
+        (block, regime): (Vec<usize>, Vec<usize>),
     ) -> Self {
         let (rows, count) = (errors.len(), fitted.columns.len());
         let shared = Shared::of(fitted.shared, channel, rows + count);
@@ -140,7 +142,9 @@ impl System {
             }
         }
         let inverse = square.try_inverse()?;
-        let values = &inverse * own.tr_mul(&self.left);
+        let right = own.tr_mul(&self.left);
+        let values = &inverse * &right;
+        let explained = values.dot(&right);
         let after = &self.left - &own * &values;
         let mut scores = DMatrix::<f64>::zeros(columns.len(), self.blocks);
         for (i, block) in self.block.iter().enumerate() {
@@ -165,9 +169,16 @@ impl System {
         let covariance =
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| robust[(i, j)] * stretch[i] * stretch[j]);
         let wald = (values.transpose() * covariance.clone().try_inverse()? * &values)[(0, 0)];
-        let rows = self.block.iter().copied().zip(self.regime.iter().copied());
-        let discord = regime::discord(&rows, &(&own * &values), &after, self.blocks);
-        Some(Evidence { values: values.iter().copied().collect(), covariance, wald, own, discord })
+        let rows = ((&self.block[..], self.blocks), (&self.regime[..], Regime::COUNT));
+        let discord = regime::discord(rows.0, rows.1, &(&own * &values), &after);
+        Some(Evidence { values: values.iter().copied().collect(), covariance, wald, explained, own, discord })
+    }
+
+    /// How far the size of what is in the fit already scatters from regime to regime on climbs, descents and level ground.
+    pub(crate) fn discord_on_slopes(&self, evidence: &Evidence, values: &[f64], regime: &[usize]) -> f64 {
+        let effect = &evidence.own * DVector::from_column_slice(values);
+        let regimes = (regime, Regime::COUNT_ON_SLOPES);
+        regime::discord((&self.block, self.blocks), regimes, &effect, &self.left)
     }
 
     /// Drop of squared errors by what each of some candidates explains at its best.

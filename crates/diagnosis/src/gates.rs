@@ -6,10 +6,11 @@ use crate::{
     Error,
     baseline::Baseline,
     evidence::{Evidence, System},
+    foremost::Foremost,
     manner,
     null::Null,
     series::{Applied, Series},
-    weigh::{Weighed, blocks, judged, system, system_with, undelayed, weigh_all},
+    weigh::{Weighed, blocks, judged, system, system_with, undelayed},
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
@@ -37,10 +38,10 @@ pub(crate) fn best(
     applied: &[Applied],
     null: &Null,
 ) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
-    let (mut weighed, _) = weigh_all(series, base, applied, null)?;
+    let Foremost { surest, closest, .. } = Foremost::of(series, base, applied, null)?;
     let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
     let white = base.whitening(series);
-    let passing = weighed.iter().enumerate().find_map(|(place, one)| {
+    let passing = surest.iter().find_map(|one| {
         if one.p_value > LEVEL || one.score <= 0.0 {
             return None;
         }
@@ -51,22 +52,21 @@ pub(crate) fn best(
             return None;
         }
         let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { LEAST_GAIN_SIGMAS };
-        Some((place, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
+        Some((one, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
-    let Some((place, gain)) = passing else { return Ok(None) };
-    let chosen = weighed.remove(place);
+    let Some((passed, gain)) = passing else { return Ok(None) };
+    let Some(closest_of_it) = closest.iter().find(|one| one.is_like(passed)) else { return Ok(None) };
+    // What was judged stands.
+    let chosen = Weighed { p_value: passed.p_value, score: passed.score, ..closest_of_it.clone() };
     let rows = series.recorded.len();
-    let is_rival = |other: &Weighed| {
+    let is_rival = |other: &&Weighed| {
         other.name() != chosen.name()
             && other.rank > CONTENDER * chosen.rank
             && cosine(&chosen.evidence, &other.evidence, rows) > KIN
             && (!other.is_in_place() || is_of_place(series, base, other, null))
     };
-    weighed.retain(is_rival);
-    weighed.sort_by(|a, b| b.rank.total_cmp(&a.rank));
-    weighed.truncate(MOST_RIVALS);
-    weighed.insert(0, chosen);
-    Ok(Some((weighed, gain)))
+    let rivals: Vec<Weighed> = closest.iter().filter(is_rival).take(MOST_RIVALS).cloned().collect();
+    Ok(Some(([vec![chosen], rivals].concat(), gain)))
 }
 
 /// Change of power in a place, as a share of it, below which it may be what models miss of the slopes and turns there.

@@ -9,12 +9,8 @@ use model::Robot;
 use recording::{Recording, Watch};
 
 use crate::{
-    Error,
-    baseline::Baseline,
-    diagnose::NEEDED_S,
-    parts::one_and_others,
-    series::Series,
-    weigh::{Weighed, weigh_all},
+    Error, baseline::Baseline, diagnose::NEEDED_S, foremost::Foremost, parts::one_and_others, series::Series,
+    weigh::Weighed,
 };
 
 /// What healthy drives show of each other.
@@ -51,9 +47,8 @@ impl Null {
                 Err(_) => continue,
             };
             let base = Baseline::fit(&series, robot, &[])?;
-            let (weighed, blocks) = weigh_all(&series, &base, &[], &Null::default())?;
-            for Weighed { candidate, evidence, tried, .. } in weighed.iter().filter(|one| !one.is_in_place())
-            {
+            let Foremost { surest, blocks, .. } = Foremost::of(&series, &base, &[], &Null::default())?;
+            for Weighed { candidate, evidence, tried, .. } in surest.iter().filter(|one| !one.is_in_place()) {
                 // The largest of so many χ² of q degrees of freedom is about q + 2 ln(number).
                 let expected = evidence.values.len() as f64 + 2.0 * f64::from(*tried).ln();
                 let factor = evidence.wald / expected;
@@ -75,13 +70,6 @@ impl Null {
     pub(crate) fn variance(&self, name: &str, parameters: usize) -> Option<Vec<f64>> {
         let seen = self.own.get(name).filter(|seen| seen.variance.len() == parameters)?;
         Some(seen.variance.iter().map(|v| self.surplus(name) * v).collect())
-    }
-
-    /// The same by what all mechanisms seem to explain, by which they are held against each other: few healthy drives tell a
-    /// mechanism's own surplus, and chance in it would choose between mechanisms.
-    pub(crate) fn common_variance(&self, name: &str, parameters: usize) -> Option<Vec<f64>> {
-        let seen = self.own.get(name).filter(|seen| seen.variance.len() == parameters)?;
-        Some(seen.variance.iter().map(|v| self.pooled * v).collect())
     }
 
     /// What any mechanism's evidence over so many blocks is divided by.
@@ -144,7 +132,8 @@ mod tests {
         assert!((null.common_discount(100) - 4.0).abs() < 1e-12);
         assert!((null.discount("payload", 100) - 4.75).abs() < 1e-12);
         assert!((null.discount("wind", 100) - 3.5).abs() < 1e-12);
-        assert_eq!(null.common_variance("wind", 1), Some(vec![0.12]), "no length of driving makes it less");
-        assert_eq!(null.common_variance("regeneration", 1), None, "healthy drives told nothing of it");
+        let variance = null.variance("wind", 1).unwrap()[0];
+        assert!((variance - 0.1).abs() < 1e-12, "{variance}: no length of driving makes it less");
+        assert_eq!(null.variance("regeneration", 1), None, "healthy drives told nothing of it");
     }
 }

@@ -1,16 +1,13 @@
 //! When a mechanism set in or ended: the profile of its evidence over that time.
 
-use rayon::prelude::*;
-
 use crate::{
     Error,
     baseline::Baseline,
-    candidates::{self, Candidate},
     edges,
-    evidence::Evidence,
+    profile::Profile,
     series::{Applied, Series},
     span::Span,
-    weigh::{Weighed, system},
+    weigh::Weighed,
 };
 
 /// Times are looked at on both sides of the first guess, as far as the neighbouring guesses lie, as a share of the drive.
@@ -31,8 +28,6 @@ pub(crate) struct Bounded {
 
 /// Finds when a candidate that set in or ended during the drives did so, or where it acts; `None` for one that always does.
 ///
-/// A mechanism acts on every second by itself, so what it does in a part of the drives is what it does all the time, cut off there.
-///
 /// # Errors
 /// A surface that the robot does not know.
 pub(crate) fn refine(
@@ -48,44 +43,32 @@ pub(crate) fn refine(
         Span::Within(region) => return edges::refine(series, base, others, (first, region), discount),
         Span::EachDrive(_) | Span::From { .. } | Span::Until { .. } => {}
     }
-    let linear = first.candidate.linear.clone();
-    let always = Applied { span: Span::ALL, ..guess.clone() };
-    let all = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear)?.columns;
-    let system = system(series, base);
-    let (times, step_s) = around(series, guess.span);
-    let at = |span: Span| -> Option<(Span, Vec<Vec<f64>>, Evidence)> {
-        let columns: Vec<Vec<f64>> = all.iter().map(|column| cut(series, column, span)).collect();
-        let white = base.whitening(series);
-        let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
-        Some((span, columns, system.weigh(&whitened)?))
-    };
-    let profile: Vec<_> = times.into_par_iter().filter_map(at).collect();
-    let best = profile.iter().map(|(_, _, evidence)| evidence.wald).fold(f64::NEG_INFINITY, f64::max);
+    let profile = Profile::of(series, base, others, first)?;
+    let (spans, step_s) = around(series, guess.span);
+    let explained = profile.explained(&spans);
+    let found: Vec<(Span, f64)> = spans.into_iter().zip(explained).collect();
+    let most = |found: &[(Span, f64)]| found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((best, best_explained)) = most(&found) else { return Ok(None) };
+    let within: Vec<(Span, f64)> = found
+        .into_iter()
+        .filter(|(_, explained)| (best_explained - explained) / discount <= JUMP_95)
+        .collect();
     let line = series.timeline();
-    let is_within = |e: &Evidence| (best - e.wald) / discount <= JUMP_95;
-    let driven_s = profile.iter().filter(|(_, _, e)| is_within(e)).map(|(span, ..)| line.driven_s(*span));
+    let driven_s = within.iter().map(|(span, _)| line.driven_s(*span));
     let interval_s = driven_s.fold([f64::INFINITY, 0.0], |[low, high], s| [s.min(low), s.max(high)]);
     // What happens to a robot happens before a drive rather than a second after it began.
-    let is_border = |span: &Span| {
-        span.is_all() || matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. })
-    };
-    let likely = |(span, _, e): &&(Span, Vec<Vec<f64>>, Evidence)| is_border(span) && is_within(e);
-    let border = profile.iter().filter(likely).max_by(|a, b| a.2.wald.total_cmp(&b.2.wald)).map(|b| b.0);
-    let chosen =
-        |(span, _, e): &(Span, Vec<Vec<f64>>, Evidence)| border.map_or(e.wald == best, |b| b == *span);
-    let Some((span, columns, evidence)) = profile.into_iter().find(chosen) else {
-        return Ok(None);
-    };
-    let candidate = Candidate {
-        applied: Applied { span, ..guess.clone() },
-        linear: first.candidate.linear.clone(),
-        columns,
-    };
-    let weighed = first.moved_to(candidate, evidence, discount);
+    let borders: Vec<(Span, f64)> = within.into_iter().filter(|(span, _)| is_border(*span)).collect();
+    let span = most(&borders).map_or(best, |(border, _)| border);
+    let Some(weighed) = profile.weighed(span, discount) else { return Ok(None) };
     // A step is as close as a time is told.
     let interval_s = [interval_s[0] - step_s, interval_s[1] + step_s];
     let limits_95 = if span.is_all() { Vec::new() } else { vec![interval_s.map(|s| s.max(0.0))] };
     Ok(Some(Bounded { weighed, limits_95 }))
+}
+
+/// Whether a span begins or ends with a drive.
+fn is_border(span: Span) -> bool {
+    span.is_all() || matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. })
 }
 
 /// Moments about a first guess, beginnings of drives among them, and the step between them [s].
@@ -108,10 +91,4 @@ fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
     let span = |s: f64| if matches!(guess, Span::Until { .. }) { line.at(s).until() } else { line.at(s) };
     let all = all.filter(|_| matches!(guess, Span::From { .. }));
     (times_s.into_iter().map(span).chain(all).collect(), step_s)
-}
-
-/// A column without what lies beyond a span.
-pub(crate) fn cut(series: &Series, column: &[f64], span: Span) -> Vec<f64> {
-    let acts = |(value, a): (&f64, &crate::series::Average)| if a.is_in(span) { *value } else { 0.0 };
-    column.iter().zip(&series.averages).map(acts).collect()
 }

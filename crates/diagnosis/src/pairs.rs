@@ -6,11 +6,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     Error,
     baseline::Baseline,
+    foremost::Foremost,
     gates::best,
     null::Null,
     search::{AS_GOOD, Found, State, decide, drop_one, is_told},
     series::{Applied, Series},
-    weigh::{Weighed, misfit, system, weigh_all},
+    weigh::{Weighed, misfit, system},
 };
 
 /// Mechanisms of which pairs are tried, those that explain most by themselves.
@@ -68,8 +69,7 @@ fn pair(
     found: &[Applied],
     null: &Null,
 ) -> Result<Option<[Applied; 2]>, Error> {
-    let (mut weighed, blocks) = weigh_all(series, before, &[], null)?;
-    weighed.sort_by(|a, b| b.rank.total_cmp(&a.rank));
+    let Foremost { closest: mut weighed, blocks, .. } = Foremost::of(series, before, &[], null)?;
     let left = system(series, before).left().clone();
     // A delay is weighed beside less than everything else, and hides nothing.
     weighed.retain(|one| one.evidence.own.nrows() == left.len());

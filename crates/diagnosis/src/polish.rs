@@ -7,6 +7,7 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates,
+    regime::Regime,
     series::{Applied, Series},
     weigh::{Weighed, misfit, system},
 };
@@ -76,11 +77,31 @@ pub(crate) fn polish(
             (applied, base, covariance, fitted) = freed;
         }
     }
+    // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the Particle
+    // Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
+    let wider = discord(series, others, (&applied, &base), &fitted)?.sqrt();
     let mut half_widths = vec![None; applied.values.len()];
     for (j, parameter) in fitted.iter().enumerate() {
-        half_widths[*parameter] = Some(NORMAL_975 * covariance[(j, j)].max(0.0).sqrt());
+        half_widths[*parameter] = Some(wider * NORMAL_975 * covariance[(j, j)].max(0.0).sqrt());
     }
     Ok(Polished { base, applied, half_widths })
+}
+
+/// How far the size of what was fitted scatters from regime to regime, over what chance makes of it, squared.
+fn discord(
+    series: &Series,
+    others: &[Applied],
+    (applied, base): (&Applied, &Baseline),
+    fitted: &[usize],
+) -> Result<f64, Error> {
+    let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, applied, fitted)?;
+    let white = base.whitening(series);
+    let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
+    let values: Vec<f64> = fitted.iter().map(|parameter| applied.values[*parameter]).collect();
+    let (system, regime) =
+        (system(series, base), series.averages.iter().map(Regime::on_slope).collect::<Vec<_>>());
+    let Some(evidence) = system.weigh(&columns) else { return Ok(1.0) };
+    Ok(system.discord_on_slopes(&evidence, &values, &regime))
 }
 
 /// Values, the fit with them, their covariance, and which of them that is of.

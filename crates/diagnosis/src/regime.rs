@@ -24,8 +24,21 @@ const MOST: f64 = 5.0;
 /// Rows that a regime needs to have a say.
 const LEAST_ROWS: usize = 60;
 
+/// Pitch from which a robot climbs or descends [rad].
+const SLOPE_RAD: f64 = 0.02;
+
 impl Regime {
-    const ALL: [Regime; 3] = [Regime::Cruise, Regime::Gain, Regime::Turn];
+    /// How many there are.
+    pub(crate) const COUNT: usize = 3;
+    /// How many there are where climbs and descents are apart.
+    pub(crate) const COUNT_ON_SLOPES: usize = 3 * Regime::COUNT;
+
+    /// Number of what the robot did during an average, climbs and descents apart.
+    pub(crate) fn on_slope(average: &Average) -> usize {
+        let slope = [average.input.pitch_rad > SLOPE_RAD, average.input.pitch_rad < -SLOPE_RAD];
+        let of_slope = slope.iter().position(|is_it| *is_it).map_or(0, |which| which + 1);
+        of_slope * Regime::COUNT + Regime::of(average) as usize
+    }
 
     /// What the robot did during an average.
     pub(crate) fn of(average: &Average) -> Self {
@@ -39,19 +52,19 @@ impl Regime {
     }
 }
 
-/// How far the size of what is explained, of rows by block and regime, scatters from regime to regime: its square over what chance
-/// makes of it, as blocks show that; 1 where they agree (Birge, Phys. Rev. 40, 1932).
+/// How far the size of what is explained scatters from regime to regime: its square over what chance makes of it, as blocks show
+/// that; 1 where they agree (Birge, Phys. Rev. 40, 1932). Rows have the numbers of their blocks and regimes.
 pub(crate) fn discord(
-    rows: &(impl Iterator<Item = (usize, Regime)> + Clone),
+    (block, blocks): (&[usize], usize),
+    (regime, regimes): (&[usize], usize),
     explained: &DVector<f64>,
     left: &DVector<f64>,
-    blocks: usize,
 ) -> f64 {
-    let of_regime = |regime: Regime| {
+    let of_regime = |which: usize| {
         let mut scores = vec![0.0; blocks];
         let (mut square, mut count) = (0.0, 0);
-        for (i, (block, _)) in rows.clone().enumerate().filter(|(_, (_, own))| *own == regime) {
-            scores[block] += explained[i] * left[i];
+        for i in (0..block.len()).filter(|i| regime[*i] == which) {
+            scores[block[i]] += explained[i] * left[i];
             square += explained[i] * explained[i];
             count += 1;
         }
@@ -60,7 +73,7 @@ pub(crate) fn discord(
         let chance = scores.iter().map(|score| score * score).sum::<f64>().max(square);
         (count >= LEAST_ROWS && square > 0.0).then(|| off * off / chance)
     };
-    let told: Vec<f64> = Regime::ALL.into_iter().filter_map(of_regime).collect();
+    let told: Vec<f64> = (0..regimes).filter_map(of_regime).collect();
     (told.iter().sum::<f64>() / (told.len() as f64 - 1.0).max(1.0)).clamp(1.0, MOST)
 }
 
@@ -70,14 +83,15 @@ mod tests {
 
     /// Two regimes over 40 blocks, in which something is so many times as large as in the mean.
     fn seen(in_turns: f64) -> f64 {
-        let rows = (0..800).map(|i| (i / 20, if i % 20 < 10 { Regime::Cruise } else { Regime::Turn }));
+        let block: Vec<usize> = (0..800).map(|i| i / 20).collect();
+        let regime: Vec<usize> = (0..800).map(|i| usize::from(i % 20 >= 10)).collect();
         let noise = |i: usize| 3.0_f64.sqrt() * if (i / 2 + i).is_multiple_of(2) { 1.0 } else { -1.0 };
         let explained = DVector::from_element(800, 0.5);
         let left = DVector::from_fn(800, |i, _| {
             let own = if i % 20 < 10 { 2.0 - in_turns } else { in_turns };
             0.5 * (own - 1.0) + noise(i)
         });
-        discord(&rows, &explained, &left, 40)
+        discord((&block, 40), (&regime, 2), &explained, &left)
     }
 
     #[test]

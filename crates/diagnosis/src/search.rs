@@ -8,7 +8,7 @@ use crate::{
     Error,
     baseline::Baseline,
     constancy,
-    gates::best,
+    gates::{best, cosine},
     null::Null,
     onset::{self, Bounded},
     outside, pairs,
@@ -25,6 +25,11 @@ pub(crate) const AS_GOOD: f64 = 6.0;
 /// The same where healthy drives show nothing that the model misses, so that likelihoods can be relied on: of 84 concealed cases in
 /// the model's own world, the truth fell short by more in three.
 const AS_GOOD_WHERE_TOLD: f64 = 3.0;
+/// Share of what the best fit explains by which one that is parallel to it may fall short and be as good, where the model misses
+/// something itself: the form of a mechanism is no better known than that of the model, which misses about so much of power.
+const AS_GOOD_SHARE: f64 = 0.03;
+/// Cosine from which two are parallel.
+const PARALLEL: f64 = 0.95;
 /// Share of what all findings explain that each has to, where the model misses something itself: less may be just that.
 const LEAST_PART: f64 = 0.1;
 /// What a model may miss of healthy drives where it can be relied on, as a share of power.
@@ -146,9 +151,18 @@ pub(crate) fn decide(
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    let as_good = if is_told(series) { AS_GOOD_WHERE_TOLD } else { AS_GOOD };
+    let explained = misfit(series, by, by) / common - costs[winner];
+    let rows = series.recorded.len();
+    let as_good = |i: usize| {
+        let is_parallel = cosine(&at_best(i).evidence, &at_best(winner).evidence, rows) > PARALLEL;
+        match is_told(series) {
+            true => AS_GOOD_WHERE_TOLD,
+            false if is_parallel => AS_GOOD.max(AS_GOOD_SHARE * explained),
+            false => AS_GOOD,
+        }
+    };
     let indistinguishable_from = (0..fits.len())
-        .filter(|i| *i != winner && costs[*i] < costs[winner] + as_good)
+        .filter(|i| *i != winner && costs[*i] < costs[winner] + as_good(*i))
         .map(|i| rivals[i].candidate.applied.mechanism.name().to_owned())
         .collect();
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));

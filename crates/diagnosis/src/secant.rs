@@ -4,6 +4,7 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates::Candidate,
+    foremost::Measure,
     series::{Applied, Series},
     weigh::Weighed,
 };
@@ -21,7 +22,7 @@ pub(crate) fn closer(
     series: &Series,
     base: &Baseline,
     others: &[Applied],
-    first: &Weighed,
+    (first, measure): (&Weighed, Measure),
     weigh: &dyn Fn(&Candidate) -> Option<Weighed>,
 ) -> Result<Option<Weighed>, Error> {
     let mut best: Option<Weighed> = None;
@@ -34,7 +35,7 @@ pub(crate) fn closer(
             columns,
         };
         match weigh(&candidate) {
-            Some(next) if next.score > last.score => best = Some(next),
+            Some(next) if measure(&next) > measure(last) => best = Some(next),
             _ => break,
         }
     }

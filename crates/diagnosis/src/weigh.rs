@@ -4,18 +4,15 @@ use std::collections::BTreeMap;
 
 use model::Robot;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
-    Error,
     baseline::{Baseline, differences},
     candidates::{self, Candidate, Family},
-    evidence::{Evidence, Fitted, System, TOGETHER},
+    evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
     regime::Regime,
-    secant,
     series::{Applied, Average, Series},
     span::Span,
 };
@@ -66,7 +63,7 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, bes
     offset.resize(columns.len(), 0.0);
     let shared: Vec<Vec<f64>> = by.shared(series).iter().map(|c| white.of(c)).collect();
     let errors = white.of(&differences(&series.recorded, &base.predicted_w));
-    let regimes = series.averages.iter().map(Regime::of).collect();
+    let regimes = series.averages.iter().map(|average| Regime::of(average) as usize).collect();
     let channel: Vec<usize> = series.averages.iter().map(|a| a.channel).collect();
     let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &shared };
     System::new(errors, &fitted, &channel, (blocks(series), regimes))
@@ -84,6 +81,7 @@ pub(crate) fn blocks(series: &Series) -> Vec<usize> {
 }
 
 /// A candidate with what it explains.
+#[derive(Clone)]
 pub(crate) struct Weighed {
     pub(crate) candidate: Candidate,
     pub(crate) evidence: Evidence,
@@ -91,7 +89,8 @@ pub(crate) struct Weighed {
     pub(crate) tried: u32,
     /// Discounted evidence less what its parameters cost.
     pub(crate) score: f64,
-    /// The same with one discount for all mechanisms, by which they are held against each other.
+    /// Squared errors that it takes, with one discount for all mechanisms, less what its parameters cost: by this they are held
+    /// against each other.
     pub(crate) rank: f64,
     /// Chance of as much, corrected for all that was tried.
     pub(crate) p_value: f64,
@@ -105,6 +104,11 @@ impl Weighed {
         name(&self.candidate)
     }
 
+    /// Whether another is of the same mechanism, and in places only as it is or is not.
+    pub(crate) fn is_like(&self, other: &Weighed) -> bool {
+        self.name() == other.name() && self.is_in_place() == other.is_in_place()
+    }
+
     /// Whether it acts in a part of the ground only.
     pub(crate) fn is_in_place(&self) -> bool {
         matches!(self.candidate.applied.span, Span::Within(_))
@@ -112,8 +116,8 @@ impl Weighed {
 
     /// It in another part of the drives, with the evidence there.
     pub(crate) fn moved_to(&self, candidate: Candidate, evidence: Evidence, discount: f64) -> Weighed {
-        let more = (evidence.wald - self.evidence.wald) / discount;
-        let (score, rank) = (self.score + more, self.rank + more);
+        let more = |of: fn(&Evidence) -> f64| (of(&evidence) - of(&self.evidence)) / discount;
+        let (score, rank) = (self.score + more(|e| e.wald), self.rank + more(|e| e.explained));
         let Weighed { tried, p_value, is_strong, .. } = *self;
         Weighed { candidate, evidence, tried, score, rank, p_value, is_strong }
     }
@@ -122,57 +126,6 @@ impl Weighed {
     pub(crate) fn at(&self, base: &Baseline, values: &[f64]) -> Applied {
         candidates::moved(&self.candidate.applied, &base.robot, &self.candidate.linear, values)
     }
-}
-
-/// The best candidate of every mechanism, best first, and the number of blocks.
-pub(crate) fn weigh_all(
-    series: &Series,
-    base: &Baseline,
-    applied: &[Applied],
-    null: &Null,
-) -> Result<(Vec<Weighed>, usize), Error> {
-    let families = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
-    let scales = Scales::new(series, base, null, &families);
-    let best_of = |family: &Family| {
-        let candidates: Vec<Candidate> = family.candidates(series).collect();
-        let weighed = candidates.chunks(TOGETHER).flat_map(|some| scales.weigh_all(some)).flatten();
-        // What acts in a place only has more to pass, and something else has to be there if it does not.
-        let (in_place, elsewhere): (Vec<Weighed>, Vec<Weighed>) = weighed.partition(Weighed::is_in_place);
-        [in_place, elsewhere]
-            .into_iter()
-            .filter_map(|some| some.into_iter().reduce(better))
-            .collect::<Vec<_>>()
-    };
-    let mut weighed: Vec<Weighed> = families.par_iter().flat_map_iter(best_of).collect();
-    best_of_each(&mut weighed);
-    // What is strong is not in proportion to what little of it does.
-    let closer: Vec<Option<Weighed>> = weighed
-        .par_iter()
-        .take(CLOSER)
-        .map(|one| secant::closer(series, base, applied, one, &|candidate| scales.weigh(candidate)))
-        .collect::<Result<_, _>>()?;
-    weighed.extend(closer.into_iter().flatten());
-    best_of_each(&mut weighed);
-    Ok((weighed, scales.all_fitted.blocks()))
-}
-
-/// Candidates that are looked at more closely.
-const CLOSER: usize = 6;
-
-fn better(best: Weighed, one: Weighed) -> Weighed {
-    if one.score > best.score { one } else { best }
-}
-
-/// Sorts candidates, best first, and keeps of each mechanism only its best, and its best in a place.
-fn best_of_each(weighed: &mut Vec<Weighed>) {
-    weighed.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut names: Vec<(&str, bool)> = Vec::new();
-    weighed.retain(|w| {
-        let key = (name(&w.candidate), w.is_in_place());
-        let is_new = !names.contains(&key);
-        names.push(key);
-        is_new
-    });
 }
 
 fn name(candidate: &Candidate) -> &'static str {
@@ -186,7 +139,7 @@ fn is_from_grid(candidate: &Candidate) -> bool {
 }
 
 /// What candidates are weighed on.
-struct Scales<'a> {
+pub(crate) struct Scales<'a> {
     series: &'a Series,
     base: &'a Baseline,
     null: &'a Null,
@@ -199,7 +152,7 @@ struct Scales<'a> {
 }
 
 impl<'a> Scales<'a> {
-    fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, families: &[Family]) -> Self {
+    pub(crate) fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, families: &[Family]) -> Self {
         let mut tried = BTreeMap::new();
         families.iter().for_each(|family| *tried.entry(family.name()).or_default() += family.count() as u32);
         Scales {
@@ -214,8 +167,13 @@ impl<'a> Scales<'a> {
         }
     }
 
+    /// Number of blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.all_fitted.blocks()
+    }
+
     /// What candidates of one mechanism explain, each by itself.
-    fn weigh_all(&self, candidates: &[Candidate]) -> Vec<Option<Weighed>> {
+    pub(crate) fn weigh_all(&self, candidates: &[Candidate]) -> Vec<Option<Weighed>> {
         let is_delay = candidates.iter().any(|one| name(one) == "clock_offset");
         let system = if is_delay { &self.delay_apart } else { &self.all_fitted };
         let white = |one: &Candidate| one.columns.iter().map(|c| self.white.of(c)).collect();
@@ -225,7 +183,7 @@ impl<'a> Scales<'a> {
     }
 
     /// What a candidate explains; `None` where that is nothing, or more than can be.
-    fn weigh(&self, candidate: &Candidate) -> Option<Weighed> {
+    pub(crate) fn weigh(&self, candidate: &Candidate) -> Option<Weighed> {
         self.weigh_all(std::slice::from_ref(candidate)).pop().flatten()
     }
 
@@ -246,13 +204,13 @@ impl<'a> Scales<'a> {
         let blocks = self.all_fitted.blocks();
         let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
         let cost = candidate.numbers() as f64 * (blocks as f64).ln();
-        let (score, rank) = (wald - cost, by_all(&evidence, name(&candidate), self.null, blocks)? - cost);
+        let rank = evidence.explained / self.null.common_discount(blocks) - cost;
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
         Some(Weighed {
             candidate,
             evidence,
             tried,
-            score,
+            score: wald - cost,
             rank,
             p_value: (chance * self.all).min(1.0),
             is_strong,
@@ -287,14 +245,6 @@ pub(crate) fn judged(evidence: &Evidence, name: &str, null: &Null, blocks: usize
     };
     let (wald, count) = (wald / evidence.discord, parameters as f64);
     Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
-}
-
-/// Evidence beyond what models miss on the whole.
-fn by_all(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<f64> {
-    match null.common_variance(name, evidence.values.len()) {
-        Some(misfit_variance) => beyond(evidence, misfit_variance),
-        None => Some(evidence.wald / null.common_discount(blocks)),
-    }
 }
 
 /// How many standard errors values are from nothing, squared, where misfit adds to their variance.
