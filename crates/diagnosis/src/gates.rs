@@ -29,7 +29,7 @@ const MOST_RIVALS: usize = 6;
 /// Least cosine between what rivals explain.
 const KIN: f64 = 0.5;
 /// Least share of the chosen one's rank that a rival's has to reach.
-const CONTENDER: f64 = 0.3;
+const CONTENDER: f64 = 0.6;
 
 /// The best mechanism that passes every gate, followed by others that may explain the same, and the gain on held-out blocks.
 pub(crate) fn best(
