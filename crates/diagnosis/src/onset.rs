@@ -45,14 +45,12 @@ pub(crate) fn refine(
     }
     let profile = Profile::of(series, base, others, first)?;
     let (spans, step_s) = around(series, guess.span);
-    let explained = profile.explained(&spans);
-    let found: Vec<(Span, f64)> = spans.into_iter().zip(explained).collect();
+    let told = profile.told(&spans);
+    let found: Vec<(Span, f64)> = spans.into_iter().zip(told).collect();
     let most = |found: &[(Span, f64)]| found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-    let Some((best, best_explained)) = most(&found) else { return Ok(None) };
-    let within: Vec<(Span, f64)> = found
-        .into_iter()
-        .filter(|(_, explained)| (best_explained - explained) / discount <= JUMP_95)
-        .collect();
+    let Some((best, most_told)) = most(&found) else { return Ok(None) };
+    let within: Vec<(Span, f64)> =
+        found.into_iter().filter(|(_, told)| (most_told - told) / discount <= JUMP_95).collect();
     let line = series.timeline();
     let driven_s = within.iter().map(|(span, _)| line.driven_s(*span));
     let interval_s = driven_s.fold([f64::INFINITY, 0.0], |[low, high], s| [s.min(low), s.max(high)]);

@@ -47,10 +47,26 @@ impl<'a> Profile<'a> {
 
     /// Drop of squared errors by what the mechanism explains in each of some parts.
     pub(crate) fn explained(&self, spans: &[Span]) -> Vec<f64> {
+        self.of_each(spans, |whitened| self.system.explained(whitened))
+    }
+
+    /// How surely it acts in each of some parts: by squares or, where it is so strong that squares are not in proportion to its size
+    /// and a few seconds on ice outweigh all else, block by block.
+    pub(crate) fn told(&self, spans: &[Span]) -> Vec<f64> {
+        if !self.first.is_strong {
+            return self.explained(spans);
+        }
+        self.of_each(spans, |whitened| {
+            let weighed = self.system.weigh_all(whitened).into_iter();
+            weighed.map(|evidence| evidence.map_or(0.0, |evidence| evidence.wald)).collect()
+        })
+    }
+
+    fn of_each(&self, spans: &[Span], told: impl Fn(&[Vec<Vec<f64>>]) -> Vec<f64> + Sync + Send) -> Vec<f64> {
         let of = |spans: &[Span]| {
             let whitened: Vec<Vec<Vec<f64>>> =
                 spans.iter().map(|span| self.whitened(&self.columns(*span))).collect();
-            self.system.explained(&whitened)
+            told(&whitened)
         };
         spans.par_chunks(TOGETHER).flat_map_iter(of).collect()
     }
