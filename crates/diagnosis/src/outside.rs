@@ -21,6 +21,7 @@ const BETTER: f64 = 40.0;
 const BETTER_SHARE: f64 = 0.25;
 /// Share of what the mechanism explains by itself that it may explain beside the term, if that stands for the same.
 const SAME: f64 = 0.5;
+
 /// The term that explains far more than one of several mechanisms, beside the others, and leaves it little.
 ///
 /// # Errors

@@ -28,7 +28,7 @@ const AS_GOOD_WHERE_TOLD: f64 = 3.0;
 /// Share of what the best fit explains by which one that is parallel to it may fall short and be as good, where the model misses
 /// something itself: the form of a mechanism is no better known than that of the model, which misses about so much of power.
 const AS_GOOD_SHARE: f64 = 0.03;
-/// Cosine from which two are parallel.
+/// Cosine from which two are parallel, of what they explain beside all that is fitted whatever the mechanism.
 const PARALLEL: f64 = 0.95;
 /// Share of what all findings explain that each has to, where the model misses something itself: less may be just that.
 const LEAST_PART: f64 = 0.1;
