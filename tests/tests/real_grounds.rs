@@ -79,6 +79,8 @@ fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
     say("ice", &found);
     assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
     assert!((-0.9..-0.6).contains(&value(&found.findings[0], "skid_change")), "{}", found.sentence);
+    let from_s = found.findings[0].parameters.iter().find(|p| p.name == "from_s");
+    assert!(from_s.is_none(), "it was on ice all the time: {}", found.sentence);
     let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
     assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
     // On snow the wheels often turn and the robot does not.

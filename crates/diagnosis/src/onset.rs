@@ -19,6 +19,10 @@ const STEPS: i32 = 30;
 /// and threshold estimation", Econometrica 68, 2000, theorem 2).
 pub(crate) const JUMP_95: f64 = 7.35;
 
+/// Standard errors by which blocks have to speak for a part of the drives instead of all of them: the 95 % interval of a normal
+/// distribution.
+const SIGMAS_95: f64 = 1.96;
+
 /// A candidate in the part of the drives in which its evidence is strongest.
 pub(crate) struct Bounded {
     pub(crate) weighed: Weighed,
@@ -56,7 +60,11 @@ pub(crate) fn refine(
     let interval_s = driven_s.fold([f64::INFINITY, 0.0], |[low, high], s| [s.min(low), s.max(high)]);
     // What happens to a robot happens before a drive rather than a second after it began.
     let borders: Vec<(Span, f64)> = within.into_iter().filter(|(span, _)| is_border(*span)).collect();
-    let span = most(&borders).map_or(best, |(border, _)| border);
+    let mut span = most(&borders).map_or(best, |(border, _)| border);
+    // What began so early that hardly a block speaks against it was there from the beginning, however strong it is.
+    if first.is_strong && series.has_healthy() && profile.sigmas_against_always(span) < SIGMAS_95 {
+        span = Span::ALL;
+    }
     let Some(weighed) = profile.weighed(span, discount) else { return Ok(None) };
     // A step is as close as a time is told.
     let interval_s = [interval_s[0] - step_s, interval_s[1] + step_s];
@@ -69,7 +77,9 @@ fn is_border(span: Span) -> bool {
     span.is_all() || matches!(span, Span::From { t_s: 0.0, .. } | Span::Until { t_s: 0.0, .. })
 }
 
-/// Moments about a first guess, beginnings of drives among them, and the step between them [s].
+/// Moments about a first guess, the beginnings of all drives, and the step between them [s].
+///
+/// The guess may lie far from where it begins: where it is strong, by what a few seconds show that outweigh all else.
 fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
     let line = series.timeline();
     let is_in_each = matches!(guess, Span::EachDrive(_));
@@ -80,12 +90,11 @@ fn around(series: &Series, guess: Span) -> (Vec<Span>, f64) {
     let times_s =
         (-STEPS..=STEPS).map(|step| at_s + f64::from(step) * step_s).filter(|s| *s > 0.0 && *s < end_s);
     // Without healthy drives, what acts all the time cannot be told.
-    let all = (at_s <= AROUND * span_s && series.has_healthy()).then_some(Span::ALL);
+    let all = series.has_healthy().then_some(Span::ALL);
     if is_in_each {
         return (times_s.map(Span::EachDrive).chain(all).collect(), step_s);
     }
-    let near = |s: &&f64| (**s - at_s).abs() <= f64::from(STEPS) * step_s;
-    let times_s: Vec<f64> = times_s.chain(line.borders_s().iter().filter(near).copied()).collect();
+    let times_s: Vec<f64> = times_s.chain(line.borders_s().iter().copied()).collect();
     let span = |s: f64| if matches!(guess, Span::Until { .. }) { line.at(s).until() } else { line.at(s) };
     let all = all.filter(|_| matches!(guess, Span::From { .. }));
     (times_s.into_iter().map(span).chain(all).collect(), step_s)

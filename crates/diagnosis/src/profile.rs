@@ -1,5 +1,6 @@
 //! What a mechanism would explain in one part of the drives or another.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::{
@@ -10,7 +11,7 @@ use crate::{
     noise::Whitening,
     series::{Applied, Series},
     span::Span,
-    weigh::{Weighed, system},
+    weigh::{Weighed, blocks, system},
 };
 
 /// Parts that are weighed in one go: few enough that some dozens of them keep several processors busy.
@@ -60,6 +61,22 @@ impl<'a> Profile<'a> {
             let weighed = self.system.weigh_all(whitened).into_iter();
             weighed.map(|evidence| evidence.map_or(0.0, |evidence| evidence.wald)).collect()
         })
+    }
+
+    /// Standard errors by which blocks say that the mechanism acts in a part of the drives rather than all the time.
+    pub(crate) fn sigmas_against_always(&self, part: Span) -> f64 {
+        let (Some(always), Some(part)) = (self.left(Span::ALL), self.left(part)) else { return f64::INFINITY };
+        let more: Vec<f64> = always.iter().zip(&part).map(|(always, part)| always - part).collect();
+        more.iter().sum::<f64>() / more.iter().map(|more| more * more).sum::<f64>().max(1e-300).sqrt()
+    }
+
+    /// Squared errors that the mechanism leaves in one part of the drives, block by block.
+    fn left(&self, span: Span) -> Option<Vec<f64>> {
+        let evidence = self.system.weigh(&self.whitened(&self.columns(span)))?;
+        let left = self.system.left() - &evidence.own * DVector::from_vec(evidence.values);
+        let mut squares = vec![0.0; self.system.blocks()];
+        blocks(self.series).iter().zip(&left).for_each(|(block, error)| squares[*block] += error * error);
+        Some(squares)
     }
 
     fn of_each(&self, spans: &[Span], told: impl Fn(&[Vec<Vec<f64>>]) -> Vec<f64> + Sync + Send) -> Vec<f64> {
