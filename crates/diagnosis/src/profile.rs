@@ -65,7 +65,9 @@ impl<'a> Profile<'a> {
 
     /// Standard errors by which blocks say that the mechanism acts in a part of the drives rather than all the time.
     pub(crate) fn sigmas_against_always(&self, part: Span) -> f64 {
-        let (Some(always), Some(part)) = (self.left(Span::ALL), self.left(part)) else { return f64::INFINITY };
+        let (Some(always), Some(part)) = (self.left(Span::ALL), self.left(part)) else {
+            return f64::INFINITY;
+        };
         let more: Vec<f64> = always.iter().zip(&part).map(|(always, part)| always - part).collect();
         more.iter().sum::<f64>() / more.iter().map(|more| more * more).sum::<f64>().max(1e-300).sqrt()
     }
