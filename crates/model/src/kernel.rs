@@ -62,7 +62,7 @@ pub(crate) const NO_FLOOR_W: f64 = 1e30;
 /// Everything about a steady motion that power depends on, except the slope.
 ///
 /// ```text
-/// F_i = A_i + N (ρ_i (1 + c sin γ) + τ_i tan φ ± f(tan φ) σ) + G_i sin γ sin β,   N = cos γ
+/// F_i = A_i + N (ρ_i (1 + c sin γ) + τ_i tan φ ± f(tan φ) σ) + (G_i ± T tan φ) sin γ sin β,   N = cos γ
 /// ```
 ///
 /// + on the right and − on the left; the fields below are the rest, in this order, each for the whole weight.
@@ -82,6 +82,8 @@ pub struct PowerKernel<T> {
     pub pull: SidewaysPull<T>,
     /// G: force of each side that lifts the robot, straight up [N].
     pub lifting_n: Sides<T>,
+    /// T: force by which the right side drives, and the left side brakes, against a weight that leans over the lower side [N].
+    pub leaning_n: T,
     /// k1(T) [W/N²].
     pub k1_w_per_n2: Sides<T>,
     /// Electrical power per force of a side that pushes forwards, beside k1: rim speed times k2, or r/k2 where the force is
@@ -125,6 +127,7 @@ impl<T: Real> PowerKernel<T> {
     #[inline(always)]
     pub fn forces_of_n(&self, grade: Grade<T>, steepened: T, skid_n: T) -> Sides<T> {
         let Grade { normal, along, tilt } = grade;
+        let leaning_n = self.leaning_n * tilt;
         let side = |added: T, rolling: T, shifting: T, lifting: T, skid: T| {
             let per_load_n = shifting.mul_add(tilt, rolling.mul_add(steepened, rolling)) + skid;
             per_load_n.mul_add(normal, lifting.mul_add(along, added))
@@ -134,14 +137,14 @@ impl<T: Real> PowerKernel<T> {
                 self.added_n.left,
                 self.rolling_n.left,
                 self.shifting_n.left,
-                self.lifting_n.left,
+                self.lifting_n.left - leaning_n,
                 -skid_n,
             ),
             right: side(
                 self.added_n.right,
                 self.rolling_n.right,
                 self.shifting_n.right,
-                self.lifting_n.right,
+                self.lifting_n.right + leaning_n,
                 skid_n,
             ),
         }
@@ -202,6 +205,7 @@ impl PowerKernel<f64> {
             skid_n: 0.0,
             pull: SidewaysPull::NONE,
             lifting_n: nothing,
+            leaning_n: 0.0,
             k1_w_per_n2,
             forwards_mps,
             backwards_mps,
@@ -232,6 +236,7 @@ impl PowerKernel<f64> {
             skid_n: self.skid_n as f32,
             pull: self.pull.single(),
             lifting_n: both(self.lifting_n),
+            leaning_n: self.leaning_n as f32,
             k1_w_per_n2: both(self.k1_w_per_n2),
             forwards_mps: both(self.forwards_mps),
             backwards_mps: both(self.backwards_mps),

@@ -69,6 +69,7 @@ impl Manoeuvre {
                 // circles must not pay there either.
                 let pushed = adjustment.force_n != Sides::both(0.0)
                     || adjustment.lifting_n != Sides::both(0.0)
+                    || adjustment.leaning_n != 0.0
                     || robot.wheel_slip() != 0.0;
                 let floor = if pushed { Floor::Kept } else { Floor::None };
                 Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, floor)
@@ -132,6 +133,7 @@ impl Manoeuvre {
             skid_n: weight_n * forces.skid,
             pull: forces.pull,
             lifting_n,
+            leaning_n: adjustment.leaning_n,
             floor_w: ahead_and_astern(lift_w, least_k2, regeneration / least_k2),
             slack_w: if floor == Floor::None { NO_FLOOR_W } else { 0.0 },
             standing_w: robot.hotel_power_w + electronics.sum() + adjustment.standing_w,
@@ -165,7 +167,10 @@ impl Manoeuvre {
     pub fn power_on_grade(&self, grade: Grade<f64>, acceleration: Acceleration) -> Power {
         let steady_n = self.kernel.forces_n(grade);
         let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
-        let turning_n = self.turning_n_per_radps2 * acceleration.yaw_radps2;
+        // What leans over the lower side resists being sped up there as it does being lifted.
+        let leaning_n =
+            self.kernel.leaning_n * grade.tilt * acceleration.forward_mps2 / STANDARD_GRAVITY_MPS2;
+        let turning_n = self.turning_n_per_radps2 * acceleration.yaw_radps2 + leaning_n;
         let force_n = Sides {
             left: steady_n.left + forward_n - turning_n,
             right: steady_n.right + forward_n + turning_n,

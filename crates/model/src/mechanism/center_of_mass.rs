@@ -37,7 +37,7 @@ impl Mechanism for CenterOfMass {
     }
 
     fn equation(&self) -> &'static str {
-        "eqs. 14-16 at δx + Δx, δy + Δy; gravity turns the robot by m g sin γ sin β Δy"
+        "eqs. 14-16 at δx + Δx, δy + Δy; what holds it back turns it by (m g sinγ sinβ + m dv/dt) Δy"
     }
 
     fn statement(&self, values: &[f64]) -> String {
@@ -54,15 +54,37 @@ impl Mechanism for CenterOfMass {
         Some(moved)
     }
 
-    fn adjust(&self, robot: &Robot, values: &[f64], _: &Moment) -> Adjustment {
-        let turn_n = robot.mass_kg * STANDARD_GRAVITY_MPS2 * values[1] / robot.track_m;
-        Adjustment { lifting_n: Sides { left: turn_n, right: -turn_n }, ..Adjustment::default() }
+    fn adjust(&self, robot: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
+        let turned_kg = robot.mass_kg * values[1] / robot.track_m;
+        let turned = |by_mps2: f64| Sides { left: turned_kg * by_mps2, right: -turned_kg * by_mps2 };
+        Adjustment {
+            lifting_n: turned(STANDARD_GRAVITY_MPS2),
+            force_n: turned(moment.acceleration.forward_mps2),
+            ..Adjustment::default()
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Acceleration, Motion};
+
+    #[test]
+    fn speeding_up_pushes_the_side_of_the_mass_as_a_climb_does() {
+        let robot = crate::builtin::husky_a200();
+        let motion = Motion::of_body(&robot, 0.5, 0.0);
+        let acceleration = Acceleration { forward_mps2: 0.2 * STANDARD_GRAVITY_MPS2, yaw_radps2: 0.0 };
+        let moment = Moment { acceleration, ..Moment::steady(motion) };
+        let adjustment = CenterOfMass.adjust(&robot, &[0.0, 0.05], &moment);
+        assert!(adjustment.force_n.left > 0.0);
+        for (force_n, lifting_n) in [
+            (adjustment.force_n.left, adjustment.lifting_n.left),
+            (adjustment.force_n.right, adjustment.lifting_n.right),
+        ] {
+            approx::assert_relative_eq!(force_n, 0.2 * lifting_n, max_relative = 1e-12);
+        }
+    }
 
     #[test]
     fn forward_it_may_only_go_to_where_it_shows_alike_again() {

@@ -82,6 +82,8 @@ pub struct Adjustment {
     pub force_n: Sides<f64>,
     /// The same straight up, of which a slope has the share sin γ sin β [N].
     pub lifting_n: Sides<f64>,
+    /// Force by which the right side drives and the left side brakes, of which a slope has the share sin γ sin β tan φ [N].
+    pub leaning_n: f64,
     /// Temperature of each motor above what was recorded or the reference [K].
     pub motor_k: Sides<f64>,
     /// Share of back-driven power that returns besides.
@@ -102,6 +104,7 @@ impl Default for Adjustment {
             load_left_per_tilt: 0.0,
             force_n: Sides::both(0.0),
             lifting_n: Sides::both(0.0),
+            leaning_n: 0.0,
             motor_k: Sides::both(0.0),
             regeneration: 0.0,
             standing_w: 0.0,
@@ -122,6 +125,7 @@ impl Adjustment {
             load_left_per_tilt: self.load_left_per_tilt + other.load_left_per_tilt,
             force_n: self.force_n.zip(other.force_n).map(|(a, b)| a + b),
             lifting_n: self.lifting_n.zip(other.lifting_n).map(|(a, b)| a + b),
+            leaning_n: self.leaning_n + other.leaning_n,
             motor_k: self.motor_k.zip(other.motor_k).map(|(a, b)| a + b),
             regeneration: self.regeneration + other.regeneration,
             standing_w: self.standing_w + other.standing_w,
