@@ -72,3 +72,24 @@ fn what_is_ruled_out_is_missed_and_not_given_another_name() {
         assert!(!names(&without).contains(&name), "{}", without.sentence);
     }
 }
+
+#[test]
+fn a_mass_that_stands_high_is_told_from_one_that_slides() {
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    let high = record(32, vec![Effect::new(EffectName::LoadTransfer, 0.4)]);
+    let found = said(&robot, &high, &healthy);
+    assert_eq!(
+        (found.verdict, names(&found)),
+        (Verdict::Explained, vec!["load_transfer"]),
+        "{}",
+        found.sentence
+    );
+    let height_m = found.findings[0].parameters[0].value;
+    assert!((height_m - 0.4).abs() < 0.06, "{}", found.sentence);
+    // A load that slides shows as much on slopes, but some time after, and not in turns.
+    let sliding = record(32, vec![Effect::new(EffectName::LooseLoad, 0.8)]);
+    let found = said(&robot, &sliding, &healthy);
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert!(!names(&found).contains(&"load_transfer"), "{}", found.sentence);
+}

@@ -1,4 +1,5 @@
-//! Whether what was found has one size all through the drives, as a mechanism has; what merely stands in for something else has not.
+//! Whether what was found has one size all through the drives and acts at once, as a mechanism does; what merely stands in for something
+//! else does not.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -49,6 +50,8 @@ fn known(value: f64) -> f64 {
 const LEAST_CHANGE: f64 = 0.35;
 /// Chance, over all quantities, of as clear a change where there is none.
 const LEVEL: f64 = 1e-4;
+/// How much earlier or later than the model has it a mechanism may act, by what sensors and the smoothing of attitudes may be late [s].
+const LEAST_LAG_S: f64 = 0.3;
 /// Standard deviations beyond which a quantity counts as so many: rare extremes would rule.
 const MOST_SIGMAS: f64 = 3.0;
 
@@ -78,14 +81,35 @@ pub(crate) fn doubt(
     let Ok(chance) = FisherSnedecor::new(1.0, (blocks as f64 - 2.0).max(2.0)) else { return Ok(None) };
     // Wind blows from somewhere.
     let is_asked = |with: &&str| applied[which].mechanism.name() != "wind" || **with != *HEADING;
-    let judged = WITH.iter().filter(|(with, _)| is_asked(with)).filter_map(|(with, of)| {
-        let column = changing(series, &effect, *of)?;
-        let evidence = system.weigh(&[white.of(&column)])?;
-        let p_value = chance.sf(evidence.wald / null.common_discount(blocks)) * WITH.len() as f64;
-        (p_value < LEVEL && evidence.values[0].abs() > LEAST_CHANGE).then_some((p_value, *with))
+    let judge = |column: &[f64]| {
+        let evidence = system.weigh(&[white.of(column)])?;
+        let p_value = chance.sf(evidence.wald / null.common_discount(blocks)) * (WITH.len() + 1) as f64;
+        (p_value < LEVEL).then(|| (p_value, evidence.values[0]))
+    };
+    let of_sizes = WITH.iter().filter(|(with, _)| is_asked(with)).filter_map(|(with, of)| {
+        let (p_value, change) = judge(&changing(series, &effect, *of)?)?;
+        (change.abs() > LEAST_CHANGE).then(|| (p_value, format!("its size goes with {with}")))
     });
-    let clearest = judged.min_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(clearest.map(|(_, with)| format!("its size goes with {with}")))
+    let of_time = judge(&rate_per_s(&series.averages, &effect)).and_then(|(p_value, early_s)| {
+        let when = if early_s < 0.0 { "late" } else { "early" };
+        (early_s.abs() > LEAST_LAG_S)
+            .then(|| (p_value, format!("it comes {:.1} s too {when}", early_s.abs())))
+    });
+    let clearest = of_sizes.chain(of_time).min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(clearest.map(|(_, why)| why))
+}
+
+/// How fast an effect changes, by the seconds before and after, which are what comes of it before it does.
+fn rate_per_s(averages: &[Average], effect: &[f64]) -> Vec<f64> {
+    let is_beside = |a: &Average, b: &Average| (a.run, a.channel, a.suspect) == (b.run, b.channel, b.suspect);
+    let rate = |i: usize| {
+        let before = i.checked_sub(1).filter(|j| is_beside(&averages[*j], &averages[i])).unwrap_or(i);
+        let after =
+            Some(i + 1).filter(|j| averages.get(*j).is_some_and(|a| is_beside(a, &averages[i]))).unwrap_or(i);
+        let lasted_s = averages[after].t_s - averages[before].t_s;
+        if lasted_s > 0.0 { (effect[after] - effect[before]) / lasted_s } else { 0.0 }
+    };
+    (0..averages.len()).map(rate).collect()
 }
 
 /// An effect times how many standard deviations a quantity is from its mean, both by the effect's square; `None` where it stays.
@@ -99,4 +123,27 @@ fn changing(series: &Series, effect: &[f64], of: Quantity) -> Option<Vec<f64>> {
     let spread = mean(&|x| (x - middle).powi(2)).sqrt();
     let sigmas = |x: f64| ((x - middle) / spread).clamp(-MOST_SIGMAS, MOST_SIGMAS);
     (spread > 1e-6).then(|| effect.iter().zip(&values).map(|(w, x)| w * sigmas(*x)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::series::Input;
+
+    #[test]
+    fn an_effect_changes_as_fast_as_its_drive_shows_it() {
+        // Two drives of 4 s, on which an effect grows by 3 W and then falls by 5 W each second.
+        let average = |i: usize| Average {
+            channel: 0,
+            run: i / 4,
+            suspect: true,
+            t_s: (i % 4) as f64 + 0.5,
+            input: Input::default(),
+        };
+        let averages: Vec<Average> = (0..8).map(average).collect();
+        let effect: Vec<f64> = averages.iter().map(|a| [3.0, -5.0][a.run] * a.t_s).collect();
+        for (rate, average) in rate_per_s(&averages, &effect).iter().zip(&averages) {
+            assert!((rate - [3.0, -5.0][average.run]).abs() < 1e-12, "{rate}");
+        }
+    }
 }

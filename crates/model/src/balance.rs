@@ -49,6 +49,8 @@ pub struct Friction {
     steepening: f64,
     /// See [`Adjustment::load_left_per_tilt`].
     load_left_per_tilt: f64,
+    /// See [`Adjustment::load_forward_per_along`].
+    load_forward_per_along: f64,
 }
 
 impl Friction {
@@ -62,6 +64,7 @@ impl Friction {
             mu_roll: Sides::both(mu_roll),
             steepening: 0.0,
             load_left_per_tilt: 0.0,
+            load_forward_per_along: 0.0,
         }
     }
 
@@ -75,6 +78,7 @@ impl Friction {
             mu_roll: self.mu_roll.zip(adjustment.mu_roll).map(|(mu_roll, c)| c * mu_roll),
             steepening: adjustment.mu_roll_per_steepness,
             load_left_per_tilt: adjustment.load_left_per_tilt,
+            load_forward_per_along: adjustment.load_forward_per_along,
             ..*self
         }
     }
@@ -109,7 +113,8 @@ impl FrictionShape {
             steepening: friction.steepening,
             shifting,
             skid: self.skid_arm_m * friction.mu_skid / friction.track_m,
-            pull: SidewaysPull::new(friction.mu_skid, self.mobilized),
+            pull: SidewaysPull::new(friction.mu_skid, self.mobilized)
+                .shifted(friction.load_forward_per_along, self.mobilized * self.skid_arm_m.signum()),
             gravity_share: Sides::both(0.5),
         }
     }

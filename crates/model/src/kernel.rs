@@ -62,7 +62,7 @@ pub(crate) const NO_FLOOR_W: f64 = 1e30;
 /// Everything about a steady motion that power depends on, except the slope.
 ///
 /// ```text
-/// F_i = A_i + N (ρ_i (1 + c sin γ) + τ_i tan φ ± f(tan φ) σ) + (G_i ± T tan φ) sin γ sin β,   N = cos γ
+/// F_i = A_i + N (ρ_i (1 + c sin γ) + τ_i tan φ ± f(tan φ, sin γ sin β) σ) + (G_i ± T tan φ) sin γ sin β,   N = cos γ
 /// ```
 ///
 /// + on the right and − on the left; the fields below are the rest, in this order, each for the whole weight.
@@ -105,7 +105,7 @@ impl<T: Real> PowerKernel<T> {
     pub fn forces_n(&self, grade: Grade<T>) -> Sides<T> {
         // Most robots do not have the one, and half of all motions not the other.
         let steepened = if self.steepening == T::ZERO { T::ZERO } else { self.steepened(grade.normal) };
-        let skid_n = if self.skid_n == T::ZERO { T::ZERO } else { self.skid_left_n(grade.tilt) };
+        let skid_n = if self.skid_n == T::ZERO { T::ZERO } else { self.skid_left_n(grade.tilt, grade.along) };
         self.forces_of_n(grade, steepened, skid_n)
     }
 
@@ -117,10 +117,10 @@ impl<T: Real> PowerKernel<T> {
         self.steepening * (if squared > T::ZERO { squared } else { T::ZERO }).sqrt()
     }
 
-    /// f σ: force by which the right side drives against the skid of the turn where the ground tilts [N].
+    /// f σ: force by which the right side drives against the skid of the turn where the ground tilts and climbs [N].
     #[inline(always)]
-    pub fn skid_left_n(&self, tilt: T) -> T {
-        self.skid_n * self.pull.left_of_skid(tilt)
+    pub fn skid_left_n(&self, tilt: T, along: T) -> T {
+        self.skid_n * self.pull.left_of_skid(tilt, along)
     }
 
     /// Side forces on a grade, from the two terms that cost a square root each [N].

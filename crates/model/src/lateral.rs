@@ -18,10 +18,21 @@ use crate::Real;
 /// of the moment, φ roll. A spin with m → 1, the paper's Coulomb skid, keeps 1 − |ρ|; a wide arc keeps 1 − ρ². In a bend tyres
 /// also push inwards with m v ω; the paper's quasi-static balance leaves that out and so does this one: with it the outer
 /// side's mean of Table II would be 0.126, without it it is 0.133, and 0.134 was measured.
+///
+/// A high centre of mass takes a share ε of the load from the rear to the front axle, on a climb the other way; then the axles hold
+///
+/// ```text
+/// (½ + ε) σ(a + d) + (½ − ε) σ(d − a) = ρ,   (½ + ε) σ(a + d) + (½ − ε) σ(a − d) = m f
+/// ```
+///
+/// in a turn to the right, which is the law above at ρ − 2 ε m f, and at ρ + 2 ε m f in one to the left, but for a moment ρ ε that is
+/// there straight on as well and for terms in ε². The f on that side is taken at ρ; a search for the centre agrees to 0.01 of the moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SidewaysPull<T> {
     /// 1/μ_S: share taken per tan φ [-].
     per_tilt: T,
+    /// ±2 m ε: share taken per sin γ sin β and f where a climb shifts load between the axles [-].
+    per_along: T,
     /// (1 − m²)² [-].
     slack_squared: T,
     /// 4 m² [-].
@@ -40,6 +51,7 @@ impl SidewaysPull<f64> {
     /// No pull, whatever the slope.
     pub(crate) const NONE: Self = SidewaysPull {
         per_tilt: 0.0,
+        per_along: 0.0,
         slack_squared: 1.0,
         called_up: 0.0,
         per_called_up: 0.0,
@@ -53,6 +65,7 @@ impl SidewaysPull<f64> {
         let (slack, per_called_up) = (1.0 - squared, 0.5 / squared);
         SidewaysPull {
             per_tilt,
+            per_along: 0.0,
             slack_squared: slack * slack,
             called_up: 4.0 * squared,
             per_called_up,
@@ -60,10 +73,17 @@ impl SidewaysPull<f64> {
         }
     }
 
+    /// The same where a climb takes a share of the load to the front axle, per sin γ sin β, in a turn to the left; `mobilized` is m, with
+    /// the sign of the turn.
+    pub(crate) fn shifted(self, load_forward_per_along: f64, mobilized: f64) -> Self {
+        SidewaysPull { per_along: 2.0 * load_forward_per_along * mobilized, ..self }
+    }
+
     /// The same in single precision.
     pub(crate) fn single(&self) -> SidewaysPull<f32> {
         SidewaysPull {
             per_tilt: self.per_tilt as f32,
+            per_along: self.per_along as f32,
             slack_squared: self.slack_squared as f32,
             called_up: self.called_up as f32,
             per_called_up: self.per_called_up as f32,
@@ -73,11 +93,24 @@ impl SidewaysPull<f64> {
 }
 
 impl<T: Real> SidewaysPull<T> {
-    /// f: share of the skid resistance that is left where the ground rises so much per metre to the left, 0 to 1.
+    /// f: share of the skid resistance that is left where the ground rises so much per metre to the left and the weight pulls back by so
+    /// much of itself, 0 to 1.
     #[inline(always)]
-    pub fn left_of_skid(&self, tilt: T) -> T {
-        let one = T::from_f64(1.0);
+    pub fn left_of_skid(&self, tilt: T, along: T) -> T {
         let share = self.per_tilt * tilt;
+        let left = self.left_beside(share);
+        // Hardly any robot has it.
+        if self.per_along == T::ZERO {
+            left
+        } else {
+            self.left_beside((self.per_along * along).mul_add(left, share))
+        }
+    }
+
+    /// f where the sideways pull takes a share ρ.
+    #[inline(always)]
+    fn left_beside(&self, share: T) -> T {
+        let one = T::from_f64(1.0);
         let squared = share * share;
         let taken = if squared < one { squared } else { one };
         let root = taken.mul_add(self.called_up, self.slack_squared).sqrt();
@@ -98,14 +131,16 @@ mod tests {
     }
 
     /// Moments against a turn on the spot with and without a sideways force per load, by moving the centre of turning
-    /// along the robot until the four tyres hold it. Bisection knows nothing of the closed form.
-    fn spin_by_search(robot: &Robot, scale_rad: f64, mu_skid: f64, wanted: f64) -> (f64, f64) {
+    /// along the robot until the four tyres hold it, with a share of the load shifted to the front. Bisection knows nothing of the closed
+    /// form.
+    fn spin_by_search(robot: &Robot, scale_rad: f64, mu_skid: f64, [wanted, ahead]: [f64; 2]) -> (f64, f64) {
         let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
         let tyres = |centre_m: f64| {
             let (mut force, mut moment_m) = (0.0, 0.0);
             for (x_m, y_m) in [(half_a, half_b), (half_a, -half_b), (-half_a, half_b), (-half_a, -half_b)] {
                 let across = x_m - centre_m;
-                let skid = mu_skid / 4.0 * ((across / y_m.abs()).atan() / scale_rad).tanh();
+                let load = (0.5 + ahead * x_m.signum()) / 2.0;
+                let skid = mu_skid * load * ((across / y_m.abs()).atan() / scale_rad).tanh();
                 force -= skid;
                 moment_m += x_m * skid;
             }
@@ -125,18 +160,39 @@ mod tests {
         let (mu_skid, scale_rad) = (0.3, 0.30);
         let mobilized = skid::mobilized_arm_m(&robot, 0.0, 1.0, |a| (a / scale_rad).tanh()) / 0.27;
         for tilt in [0.0, 0.02, 0.05, 0.1, 0.2, 0.28] {
-            let (held_m, free_m) = spin_by_search(&robot, scale_rad, mu_skid, tilt);
-            let share = pull(mobilized).left_of_skid(tilt);
+            let (held_m, free_m) = spin_by_search(&robot, scale_rad, mu_skid, [tilt, 0.0]);
+            let share = pull(mobilized).left_of_skid(tilt, 0.0);
             assert!((share - held_m / free_m).abs() < 0.02, "{tilt}: {share} for {}", held_m / free_m);
         }
     }
 
     #[test]
+    fn a_spin_on_a_climb_that_leans_keeps_with_a_high_mass_what_a_search_keeps() {
+        let robot = builtin::husky_a200();
+        let (mu_skid, scale_rad) = (0.3, 0.30);
+        let mobilized = skid::mobilized_arm_m(&robot, 0.0, 1.0, |a| (a / scale_rad).tanh()) / 0.27;
+        for (tilt, ahead) in [(0.0, 0.03), (0.05, 0.03), (0.05, -0.03), (-0.1, 0.02), (0.15, -0.04)] {
+            let (held_m, _) = spin_by_search(&robot, scale_rad, mu_skid, [tilt, ahead]);
+            let (_, free_m) = spin_by_search(&robot, scale_rad, mu_skid, [0.0, 0.0]);
+            // What turns it straight on as well, (F_r − F_l) b/2 of `load_transfer`.
+            let straight_m = -tilt * ahead * robot.wheelbase_m;
+            // To the left; the climb is 1.
+            let share = pull(mobilized).shifted(ahead, mobilized).left_of_skid(tilt, 1.0);
+            let expected = (held_m - straight_m) / free_m;
+            assert!((share - expected).abs() < 0.01, "{tilt}, {ahead}: {share} for {expected}");
+            // Nearly all that the shift does is described.
+            let unshifted = pull(mobilized).left_of_skid(tilt, 1.0);
+            let (off, off_without) = ((share - expected).abs(), (unshifted - expected).abs());
+            assert!(tilt == 0.0 || off < 0.1 * off_without, "{tilt}, {ahead}: {off} of {off_without}");
+        }
+    }
+
+    #[test]
     fn coulomb_skid_keeps_what_the_pull_does_not_take() {
-        assert_relative_eq!(pull(1.0).left_of_skid(0.15), 0.5, epsilon = 1e-5);
+        assert_relative_eq!(pull(1.0).left_of_skid(0.15, 0.0), 0.5, epsilon = 1e-5);
         // On a steeper slope than it can hold it slides down, and nothing is left.
-        assert_relative_eq!(pull(1.0).left_of_skid(-0.4), 0.0, epsilon = 1e-5);
-        assert_relative_eq!(pull(1e-4).left_of_skid(0.15), 0.75, epsilon = 1e-4);
+        assert_relative_eq!(pull(1.0).left_of_skid(-0.4, 0.0), 0.0, epsilon = 1e-5);
+        assert_relative_eq!(pull(1e-4).left_of_skid(0.15, 0.0), 0.75, epsilon = 1e-4);
     }
 
     proptest! {
@@ -145,10 +201,10 @@ mod tests {
             m in 0.0f64..=1.0, tilt in -1.0f64..1.0,
         ) {
             let pull = pull(m);
-            let left = pull.left_of_skid(tilt);
-            prop_assert_eq!(left, pull.left_of_skid(-tilt));
+            let left = pull.left_of_skid(tilt, 0.0);
+            prop_assert_eq!(left, pull.left_of_skid(-tilt, 0.0));
             prop_assert!((-1e-12..=1.0 + 1e-12).contains(&left), "{}", left);
-            let single = f64::from(pull.single().left_of_skid(tilt as f32));
+            let single = f64::from(pull.single().left_of_skid(tilt as f32, 0.0));
             prop_assert!((left - single).abs() < 2e-3, "{} for {}", single, left);
         }
     }

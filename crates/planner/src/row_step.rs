@@ -146,7 +146,8 @@ impl RowStep {
         }
         if power.skid_n != 0.0 {
             for x in 0..TILE {
-                skid_n[x] = power.skid_left_n(self.facing * ground.side_grade[x]);
+                let (grade, side_grade) = (self.facing * ground.grade[x], self.facing * ground.side_grade[x]);
+                skid_n[x] = power.skid_left_n(side_grade, grade * ground.cos_pitch[x]);
             }
         }
         let (mut largest_n, mut bus_w) = (Lanes::ZERO, Lanes::ZERO);

@@ -1,7 +1,8 @@
 //! `load_transfer`: a centre of mass high above the ground shifts load to the lower and to the outer side.
 //!
 //! The weight then presses on the ground beside the middle, λ b to the lower side, so that what holds the robot back, its own
-//! weight on a climb, turns it towards that side: straight up a slope at an angle, the lower side has to push more.
+//! weight on a climb, turns it towards that side: straight up a slope at an angle, the lower side has to push more. In a turn there, tyres
+//! hold the robot sideways with the rear axle's load more than with the front's ([`crate::SidewaysPull`]).
 
 use crate::{
     Robot, STANDARD_GRAVITY_MPS2, Sides,
@@ -24,8 +25,15 @@ impl Mechanism for LoadTransfer {
         &[Parameter { name: "height_m", unit: "m", bounds: [-1.0, 3.0], probe: 0.02 }]
     }
 
+    /// Higher up, the robot would tip over on the side slope that its limits allow: tan φ = b / (2 h).
+    fn bounds(&self, robot: &Robot, _: usize) -> [f64; 2] {
+        let tips_m = robot.track_m / 2.0 / robot.limits.max_roll_rad.tan();
+        let [low_m, high_m] = self.parameters()[0].bounds;
+        [low_m.max(-tips_m), high_m.min(tips_m)]
+    }
+
     fn equation(&self) -> &'static str {
-        "n_l = ½ − λ, (F_r − F_l) b/2 = … + λ b (m g sinγ sinβ + m dv/dt), λ = h/b (tan φ + v ω / g)"
+        "n_l = ½ − λ, n_f = ½ − h/a sinγ sinβ, (F_r − F_l) b/2 = … + λ b (m g sinγ sinβ + m dv/dt), λ = h/b (tan φ + v ω / g)"
     }
 
     fn statement(&self, values: &[f64]) -> String {
@@ -40,6 +48,7 @@ impl Mechanism for LoadTransfer {
         Adjustment {
             load_left: -per_tilt * outward,
             load_left_per_tilt: -per_tilt,
+            load_forward_per_along: -values[0] / robot.wheelbase_m,
             leaning_n,
             lifting_n: turned(leaning_n * outward),
             force_n: turned(leaning_n * outward * moment.acceleration.forward_mps2 / STANDARD_GRAVITY_MPS2),

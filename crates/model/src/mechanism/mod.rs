@@ -78,6 +78,8 @@ pub struct Adjustment {
     pub load_left: f64,
     /// The same per tan φ, φ the roll.
     pub load_left_per_tilt: f64,
+    /// Share of the load that is shifted from the rear to the front axle, per sin γ sin β.
+    pub load_forward_per_along: f64,
     /// Wheel force of each side, forward [N].
     pub force_n: Sides<f64>,
     /// The same straight up, of which a slope has the share sin γ sin β [N].
@@ -102,6 +104,7 @@ impl Default for Adjustment {
             mu_roll_per_steepness: 0.0,
             load_left: 0.0,
             load_left_per_tilt: 0.0,
+            load_forward_per_along: 0.0,
             force_n: Sides::both(0.0),
             lifting_n: Sides::both(0.0),
             leaning_n: 0.0,
@@ -123,6 +126,7 @@ impl Adjustment {
             mu_roll_per_steepness: self.mu_roll_per_steepness + other.mu_roll_per_steepness,
             load_left: self.load_left + other.load_left,
             load_left_per_tilt: self.load_left_per_tilt + other.load_left_per_tilt,
+            load_forward_per_along: self.load_forward_per_along + other.load_forward_per_along,
             force_n: self.force_n.zip(other.force_n).map(|(a, b)| a + b),
             lifting_n: self.lifting_n.zip(other.lifting_n).map(|(a, b)| a + b),
             leaning_n: self.leaning_n + other.leaning_n,
