@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    Error,
+    Error, candidates,
     discrepancy::{Discrepancy, Whitened},
     knobs::Knob,
     noise::{Noise, Whitening},
@@ -27,6 +27,8 @@ pub(crate) struct Baseline {
     pub(crate) predicted_w: Vec<f64>,
     /// Change of predictions with each knob, per width of the file.
     pub(crate) columns: Vec<Vec<f64>>,
+    /// Change of predictions per unit of each size of each mechanism that acts.
+    pub(crate) sizes: Vec<Vec<Vec<f64>>>,
     /// Change of predictions with half a row of delay of power behind speeds, in suspect and in healthy drives: less than a
     /// row is the sensors' business.
     pub(crate) delays: [Vec<f64>; 2],
@@ -88,8 +90,9 @@ impl Baseline {
         }
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
+        let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
-        Ok(Baseline { robot, knobs, moved, predicted_w, columns, delays, noise })
+        Ok(Baseline { robot, knobs, moved, predicted_w, columns, sizes, delays, noise })
     }
 
     /// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W]. They are many and long,

@@ -160,6 +160,35 @@ pub(crate) fn of_more(
     Ok(columns)
 }
 
+/// Parameters of a mechanism that acts which power follows in proportion.
+pub(crate) fn sizes(applied: &Applied) -> Vec<usize> {
+    let linear: Vec<usize> = grids(applied.mechanism).into_iter().flat_map(|(_, linear)| linear).collect();
+    (0..applied.values.len()).filter(|i| applied.values[*i] != 0.0 && linear.contains(i)).collect()
+}
+
+/// Change of predictions, made with mechanisms that act, per unit of more of each one's sizes.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn of_sizes(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted_w: &[f64],
+) -> Result<Vec<Vec<Vec<f64>>>, Error> {
+    let of = |which: usize| {
+        let (one, others) = apart(applied, which);
+        of_more(series, robot, &others, predicted_w, &one, &sizes(&one))
+    };
+    (0..applied.len()).into_par_iter().map(of).collect()
+}
+
+/// One of some mechanisms that act, and the others.
+pub(crate) fn apart(applied: &[Applied], which: usize) -> (Applied, Vec<Applied>) {
+    let mut others = applied.to_vec();
+    (others.remove(which), others)
+}
+
 /// Ground on which one change was found, which may change once more.
 fn other_ground(series: &Series, applied: &[Applied]) -> Option<&'static dyn mechanism::Mechanism> {
     let changes: Vec<&Applied> = applied.iter().filter(|a| a.mechanism.name() == GROUND).collect();

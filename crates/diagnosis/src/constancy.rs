@@ -8,7 +8,7 @@ use crate::{
     null::Null,
     search::State,
     series::{Average, Series},
-    weigh::system_with,
+    weigh::{Sizes, system_at},
 };
 
 /// Time over which it fades that a robot stood still [s].
@@ -76,7 +76,7 @@ pub(crate) fn doubt(
     let effect: Vec<f64> =
         fit.predicted_w.iter().zip(&without_w).map(|(with, without)| with - without).collect();
     let white = fit.whitening(series);
-    let system = system_with(series, fit, std::slice::from_ref(&effect));
+    let system = system_at(series, fit, Sizes::FreeBut(which), std::slice::from_ref(&effect));
     let blocks = system.blocks();
     let Ok(chance) = FisherSnedecor::new(1.0, (blocks as f64 - 2.0).max(2.0)) else { return Ok(None) };
     // Wind blows from somewhere.

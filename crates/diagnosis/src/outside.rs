@@ -11,7 +11,7 @@ use crate::{
     search::State,
     series::{Applied, Series},
     term::{self, Term},
-    weigh::{misfit, system, system_with},
+    weigh::{least_misfit, system, system_with},
 };
 
 /// By how much a term has to explain more, in squared errors over their variance: of thousands of terms, the best explains some 20
@@ -43,7 +43,7 @@ pub(crate) fn doubt(
     let without = Baseline::fit(series, file, &others)?;
     let system = system(series, &without);
     let (common, choice) = (null.common_discount(system.blocks()), (system.blocks() as f64).ln());
-    let whole = misfit(series, &without, &without) - misfit(series, &state.fit, &without);
+    let whole = least_misfit(series, &without, &without) - least_misfit(series, &state.fit, &without);
     let explained = whole / common - found.numbers() as f64 * choice;
     let white = without.whitening(series);
     let terms = term::all(series.channels());

@@ -145,19 +145,17 @@ fn revise(
     pair: &[Applied],
     null: &Null,
 ) -> Result<Option<State>, Error> {
-    let mut beside = pair.to_vec();
-    let mut state: Option<State> = None;
-    for _ in 0..2 {
-        beside.remove(0);
-        let fit = Baseline::fit(series, file, &beside)?;
-        let Some((rivals, gain)) = best(series, &fit, &beside, null)? else { return Ok(None) };
-        let (next, fit) = decide(series, file, &beside, (&rivals, gain), &fit, null)?;
-        beside.push(next.applied.clone());
-        let mut found = state.map_or_else(Vec::new, |state| state.found);
-        found.push(next);
-        state = Some(State { found, fit });
-    }
-    let Some(mut state) = state else { return Ok(None) };
+    let [_, b] = pair else { return Ok(None) };
+    let beside = [b.clone()];
+    let fit = Baseline::fit(series, file, &beside)?;
+    let Some((rivals, gain)) = best(series, &fit, &beside, null)? else { return Ok(None) };
+    let (first, _) = decide(series, file, (&beside, &fit), (&rivals, gain), null)?;
+    let beside = [first.applied.clone()];
+    let fit = Baseline::fit(series, file, &beside)?;
+    let Some((rivals, gain)) = best(series, &fit, &beside, null)? else { return Ok(None) };
+    let decided = decide(series, file, (&beside, &fit), (&rivals, gain), null)?;
+    let mut state = State { found: vec![first], fit };
+    state.take_up(decided);
     let is_needed = !drop_one(series, file, &mut state, before, null)? && !undo_each_other(series, &state)?;
     Ok(is_needed.then_some(state))
 }

@@ -6,22 +6,22 @@ use nalgebra::DMatrix;
 use crate::{
     Error,
     baseline::Baseline,
-    candidates,
+    candidates::{self, apart},
     regime::Regime,
     series::{Applied, Series},
-    weigh::{Weighed, misfit, system},
+    weigh::{Sizes, Weighed, misfit, system_at},
 };
 
-/// A fit with a mechanism more.
+/// A fit with mechanisms that act.
 pub(crate) struct Polished {
     pub(crate) base: Baseline,
-    /// The mechanism at its fitted values.
-    pub(crate) applied: Applied,
-    /// Half widths of the values' 95 % intervals; `None` for those taken from a grid.
-    pub(crate) half_widths: Vec<Option<f64>>,
+    /// The mechanisms at their fitted values, in the order in which they were given.
+    pub(crate) applied: Vec<Applied>,
+    /// Half widths of each one's values' 95 % intervals; `None` for those taken from a grid.
+    pub(crate) half_widths: Vec<Vec<Option<f64>>>,
 }
 
-/// Rounds in which robot and mechanism are fitted in turn.
+/// Rounds in which robot and mechanisms are fitted in turn.
 const POLISHES: usize = 3;
 /// Shares of a step that are tried: beyond a kink, as where wheels begin to be driven, a whole one leads away.
 const SHARES: [f64; 3] = [1.0, 0.3, 0.1];
@@ -30,7 +30,7 @@ const LEAST_GAIN: f64 = 1.0;
 /// 97.5 % quantile of the normal distribution.
 const NORMAL_975: f64 = 1.959_964;
 
-/// Fits a candidate beside mechanisms that act already, from a robot that is near the fit.
+/// Fits a candidate together with mechanisms that act already, from a robot that is near the fit; it is the last of them then.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -40,102 +40,175 @@ pub(crate) fn polish(
     (others, near): (&[Applied], &Robot),
     one: &Weighed,
 ) -> Result<Polished, Error> {
-    let linear = one.candidate.linear.clone();
-    let with = |applied: &Applied| [others, std::slice::from_ref(applied)].concat();
-    let fitted_with =
-        |applied: &Applied, near: &Robot| Baseline::fit_from(series, file, &with(applied), near);
-    let mut applied = candidates::moved(&one.candidate.applied, file, &linear, &one.evidence.values);
-    let mut base = fitted_with(&applied, near)?;
-    let mut covariance = one.evidence.covariance.clone();
-    for _ in 0..POLISHES {
-        // Sensitivities are differences from what is predicted with the mechanism as it stands.
-        let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, &applied, &linear)?;
-        let white = base.whitening(series);
-        let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
-        let Some(evidence) = system(series, &base).weigh(&columns) else { break };
-        covariance = evidence.covariance;
-        let before = misfit(series, &base, &base);
-        let mut better = None;
-        for share in SHARES {
-            let by: Vec<f64> = evidence.values.iter().map(|value| share * value).collect();
-            let moved = candidates::moved(&applied, file, &linear, &by);
-            let next = fitted_with(&moved, &base.robot)?;
-            if misfit(series, &next, &base) < before {
-                better = Some((moved, next));
-                break;
-            }
-        }
-        let Some(next) = better else { break };
-        (applied, base) = next;
-    }
-    let mut fitted = linear;
+    let own = &one.candidate.linear;
+    let mut applied = others.to_vec();
+    applied.push(candidates::moved(&one.candidate.applied, file, own, &one.evidence.values));
+    let mut free: Vec<Vec<usize>> = others.iter().map(candidates::sizes).collect();
+    free.push(own.clone());
+    let known = &one.evidence.covariance;
+    let before: usize = free.iter().rev().skip(1).map(Vec::len).sum();
+    let mut covariance = DMatrix::zeros(before + own.len(), before + own.len());
+    covariance.view_mut((before, before), known.shape()).copy_from(known);
+    let mut together = Together::settled(series, file, (applied, free), covariance, near)?;
     // Values from a grid are freed at last, as long as that explains more.
-    if fitted.len() < applied.values.len() {
+    let last = others.len();
+    if own.len() < together.applied[last].values.len() {
         for _ in 0..POLISHES {
-            let grid = &one.candidate.linear;
-            let Some(freed) = freed(series, file, others, (&applied, &base), grid)? else { break };
-            (applied, base, covariance, fitted) = freed;
+            let Some(next) = together.freed(series, file, own)? else { break };
+            together = next;
         }
     }
-    // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the Particle
-    // Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
-    let wider = discord(series, others, (&applied, &base), &fitted)?.sqrt();
-    let mut half_widths = vec![None; applied.values.len()];
-    for (j, parameter) in fitted.iter().enumerate() {
-        half_widths[*parameter] = Some(wider * NORMAL_975 * covariance[(j, j)].max(0.0).sqrt());
-    }
-    Ok(Polished { base, applied, half_widths })
+    together.polished(series)
 }
 
-/// How far the size of what was fitted scatters from regime to regime, over what chance makes of it, squared.
-fn discord(
-    series: &Series,
-    others: &[Applied],
-    (applied, base): (&Applied, &Baseline),
-    fitted: &[usize],
-) -> Result<f64, Error> {
-    let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, applied, fitted)?;
-    let white = base.whitening(series);
-    let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
-    let values: Vec<f64> = fitted.iter().map(|parameter| applied.values[*parameter]).collect();
-    let (system, regime) =
-        (system(series, base), series.averages.iter().map(Regime::on_slope).collect::<Vec<_>>());
-    let Some(evidence) = system.weigh(&columns) else { return Ok(1.0) };
-    Ok(system.discord_on_slopes(&evidence, &values, &regime))
-}
-
-/// Values, the fit with them, their covariance, and which of them that is of.
-type Freed = (Applied, Baseline, DMatrix<f64>, Vec<usize>);
-
-/// One step of all values together, or of those that are within their bounds; `None` where neither explains more.
-fn freed(
+/// Fits mechanisms that act together with each other and the robot.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn settle(
     series: &Series,
     file: &Robot,
-    others: &[Applied],
-    (applied, base): (&Applied, &Baseline),
-    linear: &[usize],
-) -> Result<Option<Freed>, Error> {
-    let all: Vec<usize> = (0..applied.values.len()).collect();
-    let is_within = |parameter: &usize| {
-        let [low, high] = candidates::range(applied.mechanism, file, *parameter);
-        (low..high).contains(&applied.values[*parameter]) && applied.values[*parameter] > low
-    };
-    let within: Vec<usize> = all.iter().copied().filter(is_within).collect();
-    let before = misfit(series, base, base);
-    for free in [all, within] {
-        let at = candidates::of_more(series, &base.robot, others, &base.predicted_w, applied, &free)?;
-        let white = base.whitening(series);
-        let columns: Vec<Vec<f64>> = at.iter().map(|c| white.of(c)).collect();
-        let Some(evidence) = system(series, base).weigh(&columns) else { continue };
-        let by = limited(applied, &free, &evidence.values, linear);
-        let moved = candidates::moved(applied, file, &free, &by);
-        let all = [others, std::slice::from_ref(&moved)].concat();
-        let next = Baseline::fit_from(series, file, &all, &base.robot)?;
-        if misfit(series, &next, base) < before - LEAST_GAIN {
-            return Ok(Some((moved, next, evidence.covariance, free)));
+    applied: &[Applied],
+    near: &Robot,
+) -> Result<Polished, Error> {
+    let free: Vec<Vec<usize>> = applied.iter().map(candidates::sizes).collect();
+    let count = free.iter().map(Vec::len).sum();
+    let covariance = DMatrix::zeros(count, count);
+    Together::settled(series, file, (applied.to_vec(), free), covariance, near)?.polished(series)
+}
+
+/// Mechanisms with the robot fitted to them.
+struct Together {
+    applied: Vec<Applied>,
+    /// Parameters of each that are fitted.
+    free: Vec<Vec<usize>>,
+    base: Baseline,
+    /// Covariance of all that are fitted, one mechanism after the other.
+    covariance: DMatrix<f64>,
+}
+
+impl Together {
+    /// Fits robot and mechanisms in turn.
+    fn settled(
+        series: &Series,
+        file: &Robot,
+        (applied, free): (Vec<Applied>, Vec<Vec<usize>>),
+        covariance: DMatrix<f64>,
+        near: &Robot,
+    ) -> Result<Self, Error> {
+        let base = Baseline::fit_from(series, file, &applied, near)?;
+        let mut last = Together { applied, free, base, covariance };
+        for _ in 0..POLISHES {
+            let Some((values, covariance)) = last.weighed(series)? else { break };
+            last.covariance = covariance;
+            let before = misfit(series, &last.base, &last.base);
+            let mut better = None;
+            for share in SHARES {
+                let by: Vec<f64> = values.iter().map(|value| share * value).collect();
+                let moved = last.moved(file, &by);
+                let next = Baseline::fit_from(series, file, &moved, &last.base.robot)?;
+                if misfit(series, &next, &last.base) < before {
+                    better = Some((moved, next));
+                    break;
+                }
+            }
+            let Some(next) = better else { break };
+            (last.applied, last.base) = next;
         }
+        Ok(last)
     }
-    Ok(None)
+
+    /// By how much to move all values that are fitted, and their covariance; `None` where the drives do not tell them.
+    fn weighed(&self, series: &Series) -> Result<Option<(Vec<f64>, DMatrix<f64>)>, Error> {
+        let white = self.base.whitening(series);
+        let mut columns = Vec::new();
+        for which in 0..self.applied.len() {
+            // Sensitivities are differences from what is predicted with the mechanism as it stands.
+            columns.extend(self.columns(series, which)?.iter().map(|column| white.of(column)));
+        }
+        let evidence = system_at(series, &self.base, Sizes::Fixed, &[]).weigh(&columns);
+        Ok(evidence.map(|evidence| (evidence.values, evidence.covariance)))
+    }
+
+    /// Sensitivities to what is fitted of one.
+    fn columns(&self, series: &Series, which: usize) -> Result<Vec<Vec<f64>>, Error> {
+        let (one, others) = apart(&self.applied, which);
+        let base = &self.base;
+        candidates::of_more(series, &base.robot, &others, &base.predicted_w, &one, &self.free[which])
+    }
+
+    /// All mechanisms moved, within bounds.
+    fn moved(&self, file: &Robot, by: &[f64]) -> Vec<Applied> {
+        let mut first = 0;
+        let moved = |(one, free): (&Applied, &Vec<usize>)| {
+            let own = &by[first..first + free.len()];
+            first += free.len();
+            candidates::moved(one, file, free, own)
+        };
+        self.applied.iter().zip(&self.free).map(moved).collect()
+    }
+
+    /// One step of all values of the last together, or of those that are within their bounds; `None` where neither explains more.
+    /// `linear` are those that do not come from a grid.
+    fn freed(&self, series: &Series, file: &Robot, linear: &[usize]) -> Result<Option<Self>, Error> {
+        let last = self.applied.len() - 1;
+        let (applied, others) = apart(&self.applied, last);
+        let all: Vec<usize> = (0..applied.values.len()).collect();
+        let is_within = |parameter: &usize| {
+            let [low, high] = candidates::range(applied.mechanism, file, *parameter);
+            (low..high).contains(&applied.values[*parameter]) && applied.values[*parameter] > low
+        };
+        let within: Vec<usize> = all.iter().copied().filter(is_within).collect();
+        let before = misfit(series, &self.base, &self.base);
+        for own in [all, within] {
+            let mut free = self.free.clone();
+            free[last] = own.clone();
+            let with = Together {
+                applied: self.applied.clone(),
+                free,
+                base: self.base.clone(),
+                covariance: DMatrix::zeros(0, 0),
+            };
+            let Some((values, covariance)) = with.weighed(series)? else { continue };
+            let by = limited(&applied, &own, &values[values.len() - own.len()..], linear);
+            let moved = [others.clone(), vec![candidates::moved(&applied, file, &own, &by)]].concat();
+            let next = Baseline::fit_from(series, file, &moved, &self.base.robot)?;
+            if misfit(series, &next, &self.base) < before - LEAST_GAIN {
+                return Ok(Some(Together { applied: moved, base: next, covariance, ..with }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The fit with the widths of what was fitted.
+    fn polished(self, series: &Series) -> Result<Polished, Error> {
+        let mut half_widths: Vec<Vec<Option<f64>>> =
+            self.applied.iter().map(|one| vec![None; one.values.len()]).collect();
+        let mut at = 0;
+        for which in 0..self.applied.len() {
+            // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the
+            // Particle Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
+            let wider = self.discord(series, which)?.sqrt();
+            for parameter in &self.free[which] {
+                let variance = self.covariance[(at, at)];
+                half_widths[which][*parameter] = Some(wider * NORMAL_975 * variance.max(0.0).sqrt());
+                at += 1;
+            }
+        }
+        Ok(Polished { base: self.base, applied: self.applied, half_widths })
+    }
+
+    /// How far the size of one scatters from regime to regime, over what chance makes of it, squared.
+    fn discord(&self, series: &Series, which: usize) -> Result<f64, Error> {
+        let white = self.base.whitening(series);
+        let columns: Vec<Vec<f64>> =
+            self.columns(series, which)?.iter().map(|column| white.of(column)).collect();
+        let values: Vec<f64> = self.free[which].iter().map(|i| self.applied[which].values[*i]).collect();
+        let system = system_at(series, &self.base, Sizes::FreeBut(which), &[]);
+        let regime: Vec<usize> = series.averages.iter().map(Regime::on_slope).collect();
+        let Some(evidence) = system.weigh(&columns) else { return Ok(1.0) };
+        Ok(system.discord_on_slopes(&evidence, &values, &regime))
+    }
 }
 
 /// A move of all values, in which those that come from a grid go no farther than to its next point: half their size.

@@ -2,7 +2,7 @@
 
 use model::Robot;
 
-use crate::{Error, baseline::Baseline, search::State, series::Series};
+use crate::{Error, search::State, series::Series};
 
 /// A mechanism that explains much and is not what is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub(crate) fn refuse(
         };
         let mechanism = state.found.remove(which).applied.mechanism.name();
         refused.push(Refused { mechanism, why });
-        state.fit = Baseline::fit(series, file, &state.applied())?;
+        state.refit(series, file)?;
         which = 0;
     }
     Ok(refused)

@@ -12,10 +12,10 @@ use crate::{
     null::Null,
     onset::{self, Bounded},
     outside, pairs,
-    polish::{Polished, polish},
+    polish::{Polished, polish, settle},
     refused::{Refused, refuse},
     series::{Applied, Series},
-    weigh::{Weighed, left, misfit, system},
+    weigh::{Weighed, least_misfit, left, misfit, system},
 };
 
 /// Mechanisms that are looked for at most.
@@ -86,6 +86,31 @@ impl State {
     pub(crate) fn applied(&self) -> Vec<Applied> {
         self.found.iter().map(|f| f.applied.clone()).collect()
     }
+
+    /// Takes up what was decided for beside all that was found before.
+    pub(crate) fn take_up(&mut self, (next, fitted): (Found, Polished)) {
+        self.found.push(next);
+        self.take(fitted);
+    }
+
+    /// All that was found as it was fitted together.
+    fn take(&mut self, fitted: Polished) {
+        let values = fitted.applied.into_iter().zip(fitted.half_widths);
+        for (found, (applied, half_widths)) in self.found.iter_mut().zip(values) {
+            (found.applied, found.half_widths) = (applied, half_widths);
+        }
+        self.fit = fitted.base;
+    }
+
+    /// Fits all together anew, as when something was left out.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub(crate) fn refit(&mut self, series: &Series, file: &Robot) -> Result<(), Error> {
+        let fitted = settle(series, file, &self.applied(), &self.fit.robot)?;
+        self.take(fitted);
+        Ok(())
+    }
 }
 
 /// Looks for mechanisms in the suspect drives; `healthy` are those that the series holds beside them.
@@ -106,12 +131,10 @@ pub fn search(
     let mut state = State { found: Vec::new(), fit: before.clone() };
     for round in 0..MOST {
         progress("weighing mechanisms", 0.1 + 0.25 * round as f64);
-        let applied = state.applied();
-        let Some((rivals, held_out_gain)) = best(series, &state.fit, &applied, &null)? else { break };
+        let Some((rivals, held_out_gain)) = best(series, &state.fit, &state.applied(), &null)? else { break };
         progress("fitting what was found", 0.2 + 0.25 * round as f64);
-        let (next, fit) = decide(series, file, &applied, (&rivals, held_out_gain), &state.fit, &null)?;
-        state.found.push(next);
-        state.fit = fit;
+        let decided = decide(series, file, (&state.applied(), &state.fit), (&rivals, held_out_gain), &null)?;
+        state.take_up(decided);
         while drop_one(series, file, &mut state, &before, &null)? {}
     }
     progress("trying pairs", 0.9);
@@ -125,15 +148,15 @@ pub fn search(
     Ok(Search { found, refused, before, after, left, null })
 }
 
-/// Fits every rival in full and takes the one that explains most; those that explain as much stay beside it.
+/// Fits every rival in full, beside mechanisms that act, and decides for the one that explains most; those that explain as much stay
+/// beside it.
 pub(crate) fn decide(
     series: &Series,
     file: &Robot,
-    applied: &[Applied],
+    (applied, by): (&[Applied], &Baseline),
     (rivals, held_out_gain): (&[Weighed], f64),
-    by: &Baseline,
     null: &Null,
-) -> Result<(Found, Baseline), Error> {
+) -> Result<(Found, Polished), Error> {
     let blocks = system(series, by).blocks();
     let common = null.common_discount(blocks);
     let bounded: Vec<Option<Bounded>> = rivals
@@ -167,19 +190,17 @@ pub(crate) fn decide(
         .collect();
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
-    let Some(Polished { base, applied, half_widths }) = fit else {
-        unreachable!("the winner is one of the fits")
-    };
+    let Some(fit) = fit else { unreachable!("the winner is one of the fits") };
     let found = Found {
-        applied,
-        half_widths,
+        applied: fit.applied[applied.len()].clone(),
+        half_widths: fit.half_widths[applied.len()].clone(),
         limits_95,
         p_value: rival.p_value,
         delta_bic: rival.score,
         held_out_gain,
         indistinguishable_from,
     };
-    Ok((found, base))
+    Ok((found, fit))
 }
 
 /// Whether healthy drives show that the model misses hardly anything.
@@ -212,14 +233,14 @@ pub(crate) fn drop_one(
         let mut others = state.applied();
         others.remove(i);
         let without = Baseline::fit_from(series, file, &others, &state.fit.robot)?;
-        let lost = misfit(series, &without, &state.fit) - whole;
+        let lost = least_misfit(series, &without, &state.fit) - whole;
         let count = state.found[i].numbers() as f64;
         // The last one was just found to be needed.
         let is_needed = i + 1 == state.found.len()
             || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;
         if !is_needed || lost < least {
             state.found.remove(i);
-            state.fit = without;
+            state.refit(series, file)?;
             return Ok(true);
         }
     }

@@ -20,9 +20,26 @@ use crate::{
 /// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
 pub(crate) const BLOCK_S: f64 = 20.0;
 
+/// Which sizes of mechanisms that act are fitted whatever the candidate. What is found later may take over a part of what was found
+/// first, so that nothing is ranked on what a frozen size left.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sizes {
+    /// All.
+    Free,
+    /// All but those of one mechanism, by its number.
+    FreeBut(usize),
+    /// None.
+    Fixed,
+}
+
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
-    system_by(series, base, base, true, &[])
+    system_by(series, (base, Sizes::Free), base, true, &[])
+}
+
+/// The same with fewer sizes fitted, beside columns that are.
+pub(crate) fn system_at(series: &Series, base: &Baseline, sizes: Sizes, beside: &[Vec<f64>]) -> System {
+    system_by(series, (base, sizes), base, true, beside)
 }
 
 /// Whitened errors that nothing takes, average by average.
@@ -32,21 +49,32 @@ pub(crate) fn left(series: &Series, base: &Baseline) -> Vec<f64> {
 
 /// The same beside columns that are fitted too.
 pub(crate) fn system_with(series: &Series, base: &Baseline, beside: &[Vec<f64>]) -> System {
-    system_by(series, base, base, true, beside)
+    system_at(series, base, Sizes::Free, beside)
 }
 
 /// The same for the candidate that is a delay itself.
 pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
-    system_by(series, base, base, false, &[])
+    system_by(series, (base, Sizes::Free), base, false, &[])
 }
 
 /// How well a fit explains the drives, by the noise of another, so that fits can be compared: squared errors that nothing
 /// takes, what departures from the robot's file cost included.
 pub(crate) fn misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
-    system_by(series, fit, by, true, &[]).left().norm_squared()
+    system_by(series, (fit, Sizes::Fixed), by, true, &[]).left().norm_squared()
 }
 
-fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, beside: &[Vec<f64>]) -> System {
+/// The same with mechanisms' sizes at their best, as far as power follows them in proportion.
+pub(crate) fn least_misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
+    system_by(series, (fit, Sizes::Free), by, true, &[]).left().norm_squared()
+}
+
+fn system_by(
+    series: &Series,
+    (base, sizes): (&Baseline, Sizes),
+    by: &Baseline,
+    delayed: bool,
+    beside: &[Vec<f64>],
+) -> System {
     let white = by.whitening(series);
     let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white.of(c)).collect();
     let mut offset: Vec<f64> = base.moved.iter().map(|m| -m).collect();
@@ -57,8 +85,14 @@ fn system_by(series: &Series, base: &Baseline, by: &Baseline, delayed: bool, bes
         columns.push(white.of(&base.delays[0]));
     }
     let mut known = vec![1.0; columns.len()];
-    // Of what stands beside nothing is known before.
-    columns.extend(beside.iter().map(|c| white.of(c)));
+    // Of sizes and of what stands beside nothing is known before.
+    let is_free = |which: usize| match sizes {
+        Sizes::Free => true,
+        Sizes::FreeBut(one) => which != one,
+        Sizes::Fixed => false,
+    };
+    let free = (0..base.sizes.len()).filter(|which| is_free(*which)).flat_map(|which| &base.sizes[which]);
+    columns.extend(free.chain(beside).map(|c| white.of(c)));
     known.resize(columns.len(), 0.0);
     offset.resize(columns.len(), 0.0);
     let shared: Vec<Vec<f64>> = by.shared(series).iter().map(|c| white.of(c)).collect();
