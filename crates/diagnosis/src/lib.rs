@@ -29,6 +29,7 @@ mod linear;
 mod locate;
 mod manner;
 mod meter;
+mod needed;
 mod next_drive;
 mod noise;
 mod nuisance;

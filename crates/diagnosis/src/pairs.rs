@@ -8,8 +8,9 @@ use crate::{
     baseline::Baseline,
     foremost::Foremost,
     gates::best,
+    needed::{drop_one, last_undoes, undo},
     null::Null,
-    search::{AS_GOOD, Found, State, decide, drop_one, is_told},
+    search::{AS_GOOD, Found, State, decide, is_told},
     series::{Applied, Series},
     weigh::{Weighed, misfit, system},
 };
@@ -20,10 +21,26 @@ const TRIED: usize = 12;
 const SECOND: f64 = 14.4;
 /// The same as a share of what that explains, where the model misses something itself: less may be just that.
 const MORE: f64 = 0.25;
-/// Least share of the squares of what two mechanisms do that both together do.
-const LEFT_OF_BOTH: f64 = 0.5;
 
-/// What was found, or two mechanisms that explain more together; each is weighed again beside the other.
+/// Two mechanisms that were found, each weighed again beside the other, if that explains more; anything else as it is.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn revised(
+    series: &Series,
+    file: &Robot,
+    before: &Baseline,
+    state: State,
+    null: &Null,
+) -> Result<State, Error> {
+    if state.found.len() != 2 {
+        return Ok(state);
+    }
+    let revised = revise(series, file, &state.applied(), null)?;
+    Ok(better(series, before, state, revised, null))
+}
+
+/// What was found, or two mechanisms that explain more together.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -31,18 +48,15 @@ pub(crate) fn tried(
     series: &Series,
     file: &Robot,
     before: &Baseline,
-    state: State,
+    mut state: State,
     null: &Null,
 ) -> Result<State, Error> {
-    let revised =
-        if state.found.len() == 2 { revise(series, file, before, &state.applied(), null)? } else { None };
-    let mut state = better(series, before, state, revised, null);
     let is_delayed = state.found.iter().any(|f| f.applied.mechanism.name() == "clock_offset");
     if state.found.len() < 3
         && !is_delayed
         && let Some(pair) = pair(series, before, &state.applied(), null)?
     {
-        let other = revise(series, file, before, &pair, null)?;
+        let other = revise(series, file, &pair, null)?;
         state = better(series, before, state, other, null);
     }
     Ok(state)
@@ -123,28 +137,8 @@ fn parts(pair: &[&Weighed; 2], values: &[f64]) -> [DVector<f64>; 2] {
     [of(pair[0], first), of(pair[1], second)]
 }
 
-/// Whether two changes mostly undo each other: what is left of them is a third thing, a pulse between two times, say.
-fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
-    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
-}
-
-/// Whether two mechanisms that were found do.
-fn undo_each_other(series: &Series, state: &State) -> Result<bool, Error> {
-    let applied = state.applied();
-    let [a, b] = &applied[..] else { return Ok(false) };
-    let predict = |applied: &[Applied]| series.predict(&state.fit.robot, applied).map(DVector::from_vec);
-    let none = predict(&[])?;
-    Ok(undo(&(predict(std::slice::from_ref(a))? - &none), &(predict(std::slice::from_ref(b))? - &none)))
-}
-
 /// Weighs each of two mechanisms beside the other; `None` if one of them is not needed.
-fn revise(
-    series: &Series,
-    file: &Robot,
-    before: &Baseline,
-    pair: &[Applied],
-    null: &Null,
-) -> Result<Option<State>, Error> {
+fn revise(series: &Series, file: &Robot, pair: &[Applied], null: &Null) -> Result<Option<State>, Error> {
     let [_, b] = pair else { return Ok(None) };
     let beside = [b.clone()];
     let fit = Baseline::fit(series, file, &beside)?;
@@ -156,6 +150,6 @@ fn revise(
     let decided = decide(series, file, (&beside, &fit), (&rivals, gain), null)?;
     let mut state = State { found: vec![first], fit };
     state.take_up(decided);
-    let is_needed = !drop_one(series, file, &mut state, before, null)? && !undo_each_other(series, &state)?;
+    let is_needed = !drop_one(series, file, &mut state, null)? && !last_undoes(series, &state)?;
     Ok(is_needed.then_some(state))
 }

@@ -9,13 +9,14 @@ use crate::{
     baseline::Baseline,
     constancy,
     gates::{best, cosine},
+    needed::{drop_one, last_undoes},
     null::Null,
     onset::{self, Bounded},
     outside, pairs,
     polish::{Polished, polish, settle},
     refused::{Refused, refuse},
     series::{Applied, Series},
-    weigh::{Weighed, least_misfit, left, misfit, system},
+    weigh::{Weighed, left, misfit, system},
 };
 
 /// Mechanisms that are looked for at most.
@@ -30,8 +31,6 @@ const AS_GOOD_WHERE_TOLD: f64 = 3.0;
 const AS_GOOD_SHARE: f64 = 0.03;
 /// Cosine from which two are parallel, of what they explain beside all that is fitted whatever the mechanism.
 const PARALLEL: f64 = 0.95;
-/// Share of what all findings explain that each has to, where the model misses something itself: less may be just that.
-const LEAST_PART: f64 = 0.1;
 /// What a model may miss of healthy drives where it can be relied on, as a share of power.
 const TOLD: f64 = 0.005;
 
@@ -135,7 +134,13 @@ pub fn search(
         progress("fitting what was found", 0.2 + 0.25 * round as f64);
         let decided = decide(series, file, (&state.applied(), &state.fit), (&rivals, held_out_gain), &null)?;
         state.take_up(decided);
-        while drop_one(series, file, &mut state, &before, &null)? {}
+        if last_undoes(series, &state)? {
+            state.found.pop();
+            state.refit(series, file)?;
+            break;
+        }
+        while drop_one(series, file, &mut state, &null)? {}
+        state = pairs::revised(series, file, &before, state, &null)?;
     }
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
@@ -207,42 +212,4 @@ pub(crate) fn decide(
 pub(crate) fn is_told(series: &Series) -> bool {
     let missed = series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()));
     series.has_healthy() && missed <= TOLD
-}
-
-/// Leaves out what others found later explain as well, and says whether there was any.
-pub(crate) fn drop_one(
-    series: &Series,
-    file: &Robot,
-    state: &mut State,
-    before: &Baseline,
-    null: &Null,
-) -> Result<bool, Error> {
-    if state.found.len() < 2 {
-        return Ok(false);
-    }
-    let whole = misfit(series, &state.fit, &state.fit);
-    let blocks = system(series, &state.fit).blocks();
-    let explained = misfit(series, before, &state.fit) - whole;
-    let least = if is_told(series) { 0.0 } else { LEAST_PART * explained };
-    for i in 0..state.found.len() {
-        let name = state.found[i].applied.mechanism.name();
-        if name == "clock_offset" {
-            // Delays up to half a row are fitted anyway, so that its loss does not show.
-            continue;
-        }
-        let mut others = state.applied();
-        others.remove(i);
-        let without = Baseline::fit_from(series, file, &others, &state.fit.robot)?;
-        let lost = least_misfit(series, &without, &state.fit) - whole;
-        let count = state.found[i].numbers() as f64;
-        // The last one was just found to be needed.
-        let is_needed = i + 1 == state.found.len()
-            || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;
-        if !is_needed || lost < least {
-            state.found.remove(i);
-            state.refit(series, file)?;
-            return Ok(true);
-        }
-    }
-    Ok(false)
 }

@@ -25,13 +25,6 @@ impl Mechanism for LoadTransfer {
         &[Parameter { name: "height_m", unit: "m", bounds: [-1.0, 3.0], probe: 0.02 }]
     }
 
-    /// Higher up, the robot would tip over on the side slope that its limits allow: tan φ = b / (2 h).
-    fn bounds(&self, robot: &Robot, _: usize) -> [f64; 2] {
-        let tips_m = robot.track_m / 2.0 / robot.limits.max_roll_rad.tan();
-        let [low_m, high_m] = self.parameters()[0].bounds;
-        [low_m.max(-tips_m), high_m.min(tips_m)]
-    }
-
     fn equation(&self) -> &'static str {
         "n_l = ½ − λ, n_f = ½ − h/a sinγ sinβ, (F_r − F_l) b/2 = … + λ b (m g sinγ sinβ + m dv/dt), λ = h/b (tan φ + v ω / g)"
     }

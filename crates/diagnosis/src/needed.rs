@@ -1,0 +1,91 @@
+//! Which of several mechanisms are needed beside the others.
+
+use model::Robot;
+use nalgebra::DVector;
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    null::Null,
+    search::{AS_GOOD, State, is_told},
+    series::{Applied, Series},
+    weigh::{least_misfit, misfit, system},
+};
+
+/// Share of the squares of what other mechanisms do that one has to exceed where it acts, if the model misses something itself: the
+/// form of a strong mechanism is no better known, and what that misses would pass for a weak one.
+const FORM: f64 = 0.05;
+/// Least share of what is lost without a mechanism that has to be beyond that.
+const BEYOND_FORM: f64 = 0.5;
+/// Least share of the squares of what two mechanisms do that both together do.
+const LEFT_OF_BOTH: f64 = 0.5;
+
+/// Leaves out what others found later explain as well, and says whether there was any.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn drop_one(series: &Series, file: &Robot, state: &mut State, null: &Null) -> Result<bool, Error> {
+    if state.found.len() < 2 {
+        return Ok(false);
+    }
+    let whole = misfit(series, &state.fit, &state.fit);
+    let blocks = system(series, &state.fit).blocks();
+    for i in 0..state.found.len() {
+        let name = state.found[i].applied.mechanism.name();
+        if name == "clock_offset" {
+            // Delays up to half a row are fitted anyway, so that its loss does not show.
+            continue;
+        }
+        let mut others = state.applied();
+        others.remove(i);
+        let without = Baseline::fit_from(series, file, &others, &state.fit.robot)?;
+        let lost = least_misfit(series, &without, &state.fit) - whole;
+        let count = state.found[i].numbers() as f64;
+        // The last one was just found to be needed.
+        let is_needed = i + 1 == state.found.len()
+            || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;
+        if !is_needed || !is_told(series) && !is_beyond_form(series, state, &others, lost)? {
+            state.found.remove(i);
+            state.refit(series, file)?;
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Whether what is lost without a mechanism is more, where it acts, than the others' forms may miss.
+fn is_beyond_form(series: &Series, state: &State, others: &[Applied], lost: f64) -> Result<bool, Error> {
+    let white = state.fit.whitening(series);
+    let without_w = series.predict(&state.fit.robot, others)?;
+    let none_w = series.predict(&state.fit.robot, &[])?;
+    let difference =
+        |a: &[f64], b: &[f64]| white.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+    let (own, beside) = (difference(&state.fit.predicted_w, &without_w), difference(&without_w, &none_w));
+    let squares: f64 = own.iter().map(|x| x * x).sum();
+    let share = lost / squares.max(1e-300);
+    let beyond =
+        own.iter().zip(&beside).map(|(own, beside)| (share * own * own - FORM * beside * beside).max(0.0));
+    Ok(beyond.sum::<f64>() >= BEYOND_FORM * lost)
+}
+
+/// Whether what was found last and something found before mostly undo each other.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn last_undoes(series: &Series, state: &State) -> Result<bool, Error> {
+    let Some((last, before)) = state.found.split_last() else { return Ok(false) };
+    let predict = |applied: &[Applied]| series.predict(&state.fit.robot, applied).map(DVector::from_vec);
+    let none = predict(&[])?;
+    let last = predict(std::slice::from_ref(&last.applied))? - &none;
+    for one in before {
+        if undo(&last, &(predict(std::slice::from_ref(&one.applied))? - &none)) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Whether two changes mostly undo each other: what is left of them is a third thing, a pulse between two times, say.
+pub(crate) fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
+    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
+}
