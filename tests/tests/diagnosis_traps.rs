@@ -7,7 +7,7 @@ mod worlds;
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
 use model::Robot;
 use recording::{Channel, Recording};
-use world::{Effect, EffectName};
+use world::{Effect, EffectName, Side};
 use worlds::drive;
 
 fn record(seed: u64, effects: Vec<Effect>) -> Recording {
@@ -93,4 +93,29 @@ fn a_mass_that_stands_high_is_told_from_one_that_slides() {
     let found = said(&robot, &sliding, &healthy);
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(!names(&found).contains(&"load_transfer"), "{}", found.sentence);
+}
+
+/// The same drive as a meter at the battery sees it, which does not tell the sides apart.
+fn by_one_meter(mut drive: Recording) -> Recording {
+    let sides = [Channel::LeftPower, Channel::RightPower].map(|side| drive.channels.remove(&side).unwrap());
+    let whole_w = sides[0].iter().zip(&sides[1]).map(|(left_w, right_w)| left_w + right_w).collect();
+    drive.channels.insert(Channel::Power, whole_w);
+    drive
+}
+
+#[test]
+fn two_that_look_alike_share_what_is_missing_as_they_should() {
+    // By itself, either takes most of what both do: the drag would be of 17 N, and hardly anything be left of the other.
+    let robot = model::builtin::husky_a200();
+    let healthy = by_one_meter(record(31, vec![]));
+    let drag = Effect { side: Some(Side::Right), ..Effect::new(EffectName::DrivetrainDrag, 10.0) };
+    let suspect = by_one_meter(record(32, vec![drag, Effect::new(EffectName::SpeedDependentFriction, 0.5)]));
+    let found = said(&robot, &suspect, &healthy);
+    let value = |mechanism: &str, parameter: &str| {
+        let finding = found.findings.iter().find(|finding| finding.mechanism == mechanism).unwrap();
+        finding.parameters.iter().find(|one| one.name == parameter).unwrap().value
+    };
+    assert_eq!(names(&found).len(), 2, "{}", found.sentence);
+    assert!((value("drivetrain_drag", "right_n") - 10.0).abs() < 1.0, "{}", found.sentence);
+    assert!((value("speed_dependent_friction", "per_mps") - 0.5).abs() < 0.1, "{}", found.sentence);
 }

@@ -6,9 +6,11 @@ use nalgebra::DVector;
 use crate::{
     Error,
     baseline::Baseline,
+    candidates::apart,
     null::Null,
     search::{AS_GOOD, State, is_told},
     series::{Applied, Series},
+    span::Span,
     weigh::{least_misfit, misfit, system},
 };
 
@@ -17,6 +19,9 @@ use crate::{
 const FORM: f64 = 0.05;
 /// Least share of what is lost without a mechanism that has to be beyond that.
 const BEYOND_FORM: f64 = 0.5;
+/// Share of the squares of all that others do that what acts in a place has to exceed: among many places, one
+/// has what their form misses.
+const LEAST_IN_PLACE: f64 = 0.1;
 /// Least share of the squares of what two mechanisms do that both together do.
 const LEFT_OF_BOTH: f64 = 0.5;
 
@@ -44,7 +49,7 @@ pub(crate) fn drop_one(series: &Series, file: &Robot, state: &mut State, null: &
         // The last one was just found to be needed.
         let is_needed = i + 1 == state.found.len()
             || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;
-        if !is_needed || !is_told(series) && !is_beyond_form(series, state, &others, lost)? {
+        if !is_needed || !is_told(series) && !is_beyond_form(series, state, i, lost)? {
             state.found.remove(i);
             state.refit(series, file)?;
             return Ok(true);
@@ -54,15 +59,19 @@ pub(crate) fn drop_one(series: &Series, file: &Robot, state: &mut State, null: &
 }
 
 /// Whether what is lost without a mechanism is more, where it acts, than the others' forms may miss.
-fn is_beyond_form(series: &Series, state: &State, others: &[Applied], lost: f64) -> Result<bool, Error> {
+fn is_beyond_form(series: &Series, state: &State, which: usize, lost: f64) -> Result<bool, Error> {
     let white = state.fit.whitening(series);
-    let without_w = series.predict(&state.fit.robot, others)?;
+    let (one, others) = apart(&state.applied(), which);
+    let without_w = series.predict(&state.fit.robot, &others)?;
     let none_w = series.predict(&state.fit.robot, &[])?;
     let difference =
         |a: &[f64], b: &[f64]| white.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
     let (own, beside) = (difference(&state.fit.predicted_w, &without_w), difference(&without_w, &none_w));
-    let squares: f64 = own.iter().map(|x| x * x).sum();
-    let share = lost / squares.max(1e-300);
+    let squares = |effect: &[f64]| effect.iter().map(|x| x * x).sum::<f64>();
+    if matches!(one.span, Span::Within(_)) && lost < LEAST_IN_PLACE * squares(&beside) {
+        return Ok(false);
+    }
+    let share = lost / squares(&own).max(1e-300);
     let beyond =
         own.iter().zip(&beside).map(|(own, beside)| (share * own * own - FORM * beside * beside).max(0.0));
     Ok(beyond.sum::<f64>() >= BEYOND_FORM * lost)
@@ -85,7 +94,26 @@ pub(crate) fn last_undoes(series: &Series, state: &State) -> Result<bool, Error>
     Ok(false)
 }
 
-/// Whether two changes mostly undo each other: what is left of them is a third thing, a pulse between two times, say.
+/// Whether two changes mostly undo each other where both act: what is left of them is a third thing, a pulse between two times, say, or
+/// ground whose place goes with what the robot does there.
 pub(crate) fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
-    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
+    let both = a.iter().zip(b).filter(|(a, b)| **a != 0.0 && **b != 0.0);
+    let (together, apart) = both
+        .fold((0.0, 0.0), |(together, apart), (a, b)| (together + (a + b).powi(2), apart + a * a + b * b));
+    together < LEFT_OF_BOTH * apart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_undoes_another_where_it_acts_is_no_second_thing() {
+        let from = |first: usize, by: f64| DVector::from_fn(10, |i, _| if i < first { 0.0 } else { by });
+        assert!(undo(&from(2, 1.0), &from(7, -1.0)), "a pulse");
+        assert!(undo(&from(0, -0.34), &from(8, 0.66)), "the other sign for a little while");
+        assert!(!undo(&from(0, 1.0), &from(5, 0.3)) && !undo(&from(0, 1.0), &from(5, -0.2)));
+        let parts = |i: usize, _| if i < 5 { 0.0 } else { -1.0 };
+        assert!(!undo(&(from(0, 1.0) - from(5, 1.0)), &DVector::from_fn(10, parts)), "never at once");
+    }
 }
