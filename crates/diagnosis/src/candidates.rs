@@ -208,11 +208,8 @@ const OTHER: f64 = 0.1;
 /// Without healthy drives to compare with, what acts all the time looks like what the model itself misses; only what sets in,
 /// grows in time or shifts it can then be told.
 fn spans(series: &Series, name: &str) -> Vec<Span> {
-    match name {
-        "motor_heating" | "clock_offset" => return vec![Span::ALL],
-        // From some time on it is parallel to drag on one side, and together with other ground it would stand in for that.
-        "center_of_mass" => return series.has_healthy().then_some(Span::ALL).into_iter().collect(),
-        _ => {}
+    if let "motor_heating" | "clock_offset" = name {
+        return vec![Span::ALL];
     }
     let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
     let longest_s = series.longest_s();

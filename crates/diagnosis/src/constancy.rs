@@ -49,7 +49,7 @@ fn known(value: f64) -> f64 {
 /// ice, the same all through, changes by 0.3 on real ground.
 const LEAST_CHANGE: f64 = 0.35;
 /// Chance, over all quantities, of as clear a change where there is none.
-const LEVEL: f64 = 1e-4;
+const LEVEL: f64 = 1e-3;
 /// How much earlier or later than the model has it a mechanism may act, by what sensors and the smoothing of attitudes may be late [s].
 const LEAST_LAG_S: f64 = 0.3;
 /// Standard deviations beyond which a quantity counts as so many: rare extremes would rule.
