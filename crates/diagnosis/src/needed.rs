@@ -19,11 +19,11 @@ use crate::{
 const FORM: f64 = 0.05;
 /// Least share of what is lost without a mechanism that has to be beyond that.
 const BEYOND_FORM: f64 = 0.5;
-/// Share of the squares of all that others do that what acts in a place has to exceed: among many places, one
-/// has what their form misses.
+/// Share of the squares of all that others do that what acts in a place has to exceed: among many places,
+/// one has what their form misses.
 const LEAST_IN_PLACE: f64 = 0.1;
 /// Least share of the squares of what two mechanisms do that both together do.
-const LEFT_OF_BOTH: f64 = 0.5;
+const LEFT_OF_BOTH: f64 = 0.25;
 
 /// Leaves out what others found later explain as well, and says whether there was any.
 ///
@@ -77,30 +77,32 @@ fn is_beyond_form(series: &Series, state: &State, which: usize, lost: f64) -> Re
     Ok(beyond.sum::<f64>() >= BEYOND_FORM * lost)
 }
 
-/// Whether what was found last and something found before mostly undo each other.
+/// Whether what was found last and something found before almost undo each other while both act: what is left of them is a third thing,
+/// a pulse between two times, say, or ground whose place goes with what the robot does there.
 ///
 /// # Errors
 /// A surface that the robot does not know.
 pub(crate) fn last_undoes(series: &Series, state: &State) -> Result<bool, Error> {
     let Some((last, before)) = state.found.split_last() else { return Ok(false) };
-    let predict = |applied: &[Applied]| series.predict(&state.fit.robot, applied).map(DVector::from_vec);
-    let none = predict(&[])?;
-    let last = predict(std::slice::from_ref(&last.applied))? - &none;
+    let none_w = series.predict(&state.fit.robot, &[])?;
+    let alone = |one: &Applied| series.predict(&state.fit.robot, std::slice::from_ref(one));
+    let last_w = alone(&last.applied)?;
     for one in before {
-        if undo(&last, &(predict(std::slice::from_ref(&one.applied))? - &none)) {
+        let one_w = alone(&one.applied)?;
+        let act = |i: &usize| [one, last].iter().all(|f| series.averages[*i].is_in(f.applied.span));
+        let both: Vec<usize> = (0..none_w.len()).filter(act).collect();
+        let of =
+            |with_w: &[f64]| DVector::from_iterator(both.len(), both.iter().map(|i| with_w[*i] - none_w[*i]));
+        if undo(&of(&last_w), &of(&one_w)) {
             return Ok(true);
         }
     }
     Ok(false)
 }
 
-/// Whether two changes mostly undo each other where both act: what is left of them is a third thing, a pulse between two times, say, or
-/// ground whose place goes with what the robot does there.
+/// Whether two changes almost undo each other.
 pub(crate) fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
-    let both = a.iter().zip(b).filter(|(a, b)| **a != 0.0 && **b != 0.0);
-    let (together, apart) = both
-        .fold((0.0, 0.0), |(together, apart), (a, b)| (together + (a + b).powi(2), apart + a * a + b * b));
-    together < LEFT_OF_BOTH * apart
+    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
 }
 
 #[cfg(test)]
@@ -108,12 +110,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_undoes_another_where_it_acts_is_no_second_thing() {
-        let from = |first: usize, by: f64| DVector::from_fn(10, |i, _| if i < first { 0.0 } else { by });
-        assert!(undo(&from(2, 1.0), &from(7, -1.0)), "a pulse");
-        assert!(undo(&from(0, -0.34), &from(8, 0.66)), "the other sign for a little while");
-        assert!(!undo(&from(0, 1.0), &from(5, 0.3)) && !undo(&from(0, 1.0), &from(5, -0.2)));
-        let parts = |i: usize, _| if i < 5 { 0.0 } else { -1.0 };
-        assert!(!undo(&(from(0, 1.0) - from(5, 1.0)), &DVector::from_fn(10, parts)), "never at once");
+    fn one_that_takes_back_what_another_does_is_no_second_thing_and_one_that_takes_back_its_half_is() {
+        let both_sides = DVector::from_element(10, 1.0);
+        let of_left = DVector::from_fn(10, |i, _| if i % 2 == 0 { -1.0 } else { 0.0 });
+        assert!(undo(&both_sides, &(-0.66 * &both_sides)) && undo(&both_sides, &(-1.0 * &both_sides)));
+        assert!(!undo(&both_sides, &of_left), "one side of what both sides do");
+        assert!(!undo(&both_sides, &(0.5 * &both_sides)) && !undo(&both_sides, &(-0.2 * &both_sides)));
     }
 }

@@ -105,9 +105,8 @@ fn system_by(
 
 /// Blocks of neighbouring averages of a drive; channels of the same time share one.
 pub(crate) fn blocks(series: &Series) -> Vec<usize> {
-    let mut names: Vec<(usize, usize)> = Vec::new();
     let key = |a: &Average| (a.run, (a.t_s / BLOCK_S) as usize);
-    names.extend(series.averages.iter().map(key));
+    let names: Vec<(usize, usize)> = series.averages.iter().map(key).collect();
     let mut distinct = names.clone();
     distinct.sort_unstable();
     distinct.dedup();
