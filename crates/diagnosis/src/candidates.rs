@@ -6,8 +6,11 @@ use rayon::prelude::*;
 use crate::{
     Error,
     region::regions,
+    second_ground::{self, GROUND},
     series::{Applied, Series},
     span::{Span, Timeline},
+    visits::Visits,
+    weigh::blocks,
 };
 
 /// A mechanism with its sensitivities: the change of every prediction per unit of each of its linear parameters.
@@ -104,7 +107,7 @@ pub(crate) fn all(
 ) -> Result<Vec<Family>, Error> {
     let probes: Vec<(Applied, Vec<usize>)> = series
         .others(applied)
-        .chain(other_ground(series, applied))
+        .chain(second_ground::second(series, applied))
         .flat_map(|mechanism| {
             grids(mechanism)
                 .into_iter()
@@ -115,7 +118,8 @@ pub(crate) fn all(
         let is_new = |span: &Span| {
             applied.iter().all(|a| a.mechanism.name() != probe.mechanism.name() || a.span != *span)
         };
-        let spans = spans(series, probe.mechanism.name()).into_iter().filter(is_new).collect();
+        let spans = spans(series, probe.mechanism.name()).into_iter();
+        let spans = spans.filter(|span| is_new(span) && !stands_in(&probe, span, applied)).collect();
         Ok(Family { always: of(series, robot, applied, predicted_w, probe, linear)?, spans })
     };
     probes.into_par_iter().map(family).collect()
@@ -160,6 +164,12 @@ pub(crate) fn of_more(
     Ok(columns)
 }
 
+/// Whether a load that shifts during a drive would, beside something else, stand in for drag on one side, as other ground and such a
+/// load do together.
+fn stands_in(probe: &Applied, span: &Span, beside: &[Applied]) -> bool {
+    probe.mechanism.name() == "center_of_mass" && !span.is_all() && !beside.is_empty()
+}
+
 /// Parameters of a mechanism that acts which power follows in proportion.
 pub(crate) fn sizes(applied: &Applied) -> Vec<usize> {
     let linear: Vec<usize> = grids(applied.mechanism).into_iter().flat_map(|(_, linear)| linear).collect();
@@ -189,19 +199,6 @@ pub(crate) fn apart(applied: &[Applied], which: usize) -> (Applied, Vec<Applied>
     (others.remove(which), others)
 }
 
-/// Ground on which one change was found, which may change once more.
-fn other_ground(series: &Series, applied: &[Applied]) -> Option<&'static dyn mechanism::Mechanism> {
-    let changes: Vec<&Applied> = applied.iter().filter(|a| a.mechanism.name() == GROUND).collect();
-    let is_large = |change: &&Applied| change.values.iter().any(|share| share.abs() > OTHER);
-    (changes.len() == 1 && changes.iter().all(is_large))
-        .then(|| series.others(&[]).find(|one| one.name() == GROUND))
-        .flatten()
-}
-
-const GROUND: &str = "surface_change";
-/// Grounds that differ by less are one: a second, small change would stand in for whatever else acts.
-const OTHER: f64 = 0.1;
-
 /// Spans in which a mechanism is tried: from the beginning, shares of each drive, and of several drives their beginnings and shares
 /// of all the time driven, since what happens to a robot stays with it in the drives that follow.
 ///
@@ -212,17 +209,19 @@ fn spans(series: &Series, name: &str) -> Vec<Span> {
         return vec![Span::ALL];
     }
     let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
-    let longest_s = series.longest_s();
-    tried.extend(ONSETS.map(|share| Span::EachDrive(share * longest_s)));
     let line = series.timeline();
     if line.drives() > 1 {
-        tried.extend(moments(&line));
+        let longest_s = series.longest_s();
+        tried.extend(ONSETS.map(|share| Span::EachDrive(share * longest_s)));
     }
+    tried.extend(moments(&line));
     if is_of_ground(name) {
         tried.extend(moments(&line).into_iter().map(Span::until));
         // Alone, what the model misses on the slopes of one place would pass for its ground.
         if series.has_healthy() {
-            tried.extend(regions(&series.averages).into_iter().map(Span::Within));
+            let visits = Visits::of(&series.averages, blocks(series));
+            let often = regions(&series.averages).into_iter().filter(|region| visits.are_enough(*region));
+            tried.extend(often.map(Span::Within));
         }
     }
     tried

@@ -8,7 +8,8 @@ use crate::{
     region::{EDGES, Region, extent_m, part_m},
     series::{Applied, Series},
     span::Span,
-    weigh::Weighed,
+    visits::Visits,
+    weigh::{Weighed, blocks},
 };
 
 /// Places of an edge that are looked at on each side of the last.
@@ -17,12 +18,15 @@ const STEPS: i32 = 16;
 const ROUNDS: usize = 3;
 
 /// The profile over regions.
-struct Regions<'a>(Profile<'a>);
+struct Regions<'a> {
+    profile: Profile<'a>,
+    visits: Visits<'a>,
+}
 
 impl Regions<'_> {
     /// Drop of squared errors by what the mechanism explains in each of some regions.
     fn explained(&self, regions: &[Region]) -> Vec<f64> {
-        self.0.explained(&regions.iter().copied().map(Span::Within).collect::<Vec<_>>())
+        self.profile.explained(&regions.iter().copied().map(Span::Within).collect::<Vec<_>>())
     }
 
     /// The region without edges beyond which it might as well act.
@@ -55,8 +59,11 @@ impl Regions<'_> {
         for (edge, at_m) in region.edges_m().into_iter().enumerate().filter(|(_, at_m)| at_m.is_finite()) {
             let part_m = part_m(extent_m)[edge / 2];
             let places_m = places_m(extent_m[edge / 2], at_m, part_m);
-            let regions: Vec<Region> =
-                places_m.iter().map(|place_m| region.with_edge(edge, *place_m)).collect();
+            let (places_m, regions): (Vec<f64>, Vec<Region>) = places_m
+                .into_iter()
+                .map(|place_m| (place_m, region.with_edge(edge, place_m)))
+                .filter(|(_, region)| self.visits.are_enough(*region))
+                .unzip();
             let found: Vec<(f64, f64)> = places_m.into_iter().zip(self.explained(&regions)).collect();
             let (best_m, most) = found.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))?;
             region = region.with_edge(edge, best_m);
@@ -82,7 +89,8 @@ pub(crate) fn refine(
     discount: f64,
 ) -> Result<Option<Bounded>, Error> {
     let Some(extent_m) = extent_m(&series.averages) else { return Ok(None) };
-    let regions = Regions(Profile::of(series, base, others, first)?);
+    let profile = Profile::of(series, base, others, first)?;
+    let regions = Regions { profile, visits: Visits::of(&series.averages, blocks(series)) };
     let mut bounded = (region, Vec::new());
     for _ in 0..ROUNDS {
         let opened = regions.opened(bounded.0, discount);
@@ -90,7 +98,7 @@ pub(crate) fn refine(
         bounded = moved;
     }
     let (region, limits_95) = bounded;
-    let weighed = regions.0.weighed(Span::Within(region), discount);
+    let weighed = regions.profile.weighed(Span::Within(region), discount);
     Ok(weighed.map(|weighed| Bounded { weighed, limits_95 }))
 }
 

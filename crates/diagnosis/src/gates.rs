@@ -10,13 +10,12 @@ use crate::{
     manner,
     null::Null,
     series::{Applied, Series},
+    visits,
     weigh::{Weighed, blocks, judged, system, system_with, undelayed},
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
 pub(crate) const LEVEL: f64 = 0.01;
-/// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
-const LEAST_VISITS: usize = 6;
 /// Standard errors by which the fit of blocks that were held out has to gain.
 pub(crate) const LEAST_GAIN_SIGMAS: f64 = 2.5;
 /// The same for changes of power that are more than what models miss: few blocks may hold all of it, as those in which a robot spins
@@ -113,7 +112,8 @@ pub(crate) fn passes(
 ) -> Option<f64> {
     let acts = acting(system, series, evidence);
     let is_suspect = suspects(system, series);
-    if acts.iter().zip(&is_suspect).filter(|(acts, suspect)| **acts && **suspect).count() < LEAST_VISITS {
+    let visits = acts.iter().zip(&is_suspect).filter(|(acts, suspect)| **acts && **suspect).count();
+    if (visits as f64) < visits::LEAST {
         return None;
     }
     let gains = system.held_out(columns, FOLDS);

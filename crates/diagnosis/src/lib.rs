@@ -50,12 +50,14 @@ mod region;
 pub mod report;
 mod search;
 mod secant;
+mod second_ground;
 mod series;
 mod shapes;
 mod shared;
 mod span;
 mod term;
 mod turning;
+mod visits;
 mod weigh;
 mod words;
 

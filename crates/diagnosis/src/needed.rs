@@ -9,6 +9,7 @@ use crate::{
     candidates::apart,
     null::Null,
     search::{AS_GOOD, State, is_told},
+    second_ground::take_turns,
     series::{Applied, Series},
     span::Span,
     weigh::{least_misfit, misfit, system},
@@ -19,8 +20,8 @@ use crate::{
 const FORM: f64 = 0.05;
 /// Least share of what is lost without a mechanism that has to be beyond that.
 const BEYOND_FORM: f64 = 0.5;
-/// Share of the squares of all that others do that what acts in a place has to exceed: among many places,
-/// one has what their form misses.
+/// The same of all that the others do, and for what acts in a place: among many places, one has what their form misses.
+const LEAST_OF_ALL: f64 = 0.05;
 const LEAST_IN_PLACE: f64 = 0.1;
 /// Least share of the squares of what two mechanisms do that both together do.
 const LEFT_OF_BOTH: f64 = 0.25;
@@ -68,7 +69,8 @@ fn is_beyond_form(series: &Series, state: &State, which: usize, lost: f64) -> Re
         |a: &[f64], b: &[f64]| white.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
     let (own, beside) = (difference(&state.fit.predicted_w, &without_w), difference(&without_w, &none_w));
     let squares = |effect: &[f64]| effect.iter().map(|x| x * x).sum::<f64>();
-    if matches!(one.span, Span::Within(_)) && lost < LEAST_IN_PLACE * squares(&beside) {
+    let least = if matches!(one.span, Span::Within(_)) { LEAST_IN_PLACE } else { LEAST_OF_ALL };
+    if lost < least * squares(&beside) {
         return Ok(false);
     }
     let share = lost / squares(&own).max(1e-300);
@@ -87,7 +89,7 @@ pub(crate) fn last_undoes(series: &Series, state: &State) -> Result<bool, Error>
     let none_w = series.predict(&state.fit.robot, &[])?;
     let alone = |one: &Applied| series.predict(&state.fit.robot, std::slice::from_ref(one));
     let last_w = alone(&last.applied)?;
-    for one in before {
+    for one in before.iter().filter(|one| !take_turns(&one.applied, &last.applied)) {
         let one_w = alone(&one.applied)?;
         let act = |i: &usize| [one, last].iter().all(|f| series.averages[*i].is_in(f.applied.span));
         let both: Vec<usize> = (0..none_w.len()).filter(act).collect();

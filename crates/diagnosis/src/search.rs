@@ -15,6 +15,7 @@ use crate::{
     outside, pairs,
     polish::{Polished, polish, settle},
     refused::{Refused, refuse},
+    second_ground,
     series::{Applied, Series},
     weigh::{Weighed, left, misfit, system},
 };
@@ -144,6 +145,7 @@ pub fn search(
     }
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
+    second_ground::part(series, file, &mut state)?;
     let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
     let mut refused = refuse(series, file, &mut state, &of_many_sizes)?;
     let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);

@@ -73,6 +73,15 @@ impl Span {
         }
     }
 
+    /// The part in which it does not act, where that is one that goes on or ends at one time.
+    pub(crate) fn rest(self) -> Option<Span> {
+        match self {
+            Span::From { run, t_s } => Some(Span::Until { run, t_s }),
+            Span::Until { run, t_s } => Some(Span::From { run, t_s }),
+            Span::EachDrive(_) | Span::Within(_) => None,
+        }
+    }
+
     /// What ends where this begins.
     pub(crate) fn until(self) -> Span {
         match self {
@@ -156,6 +165,7 @@ mod tests {
         let moments = [(0, 500.0), (1, 29.0), (1, 30.0), (2, 0.0)];
         let acts = |span: Span, run, t_s| span.acts(run, t_s, [0.0; 2]);
         assert!(moments.iter().all(|(run, t_s)| acts(until, *run, *t_s) != acts(span, *run, *t_s)));
+        assert_eq!((span.rest(), until.rest(), Span::ALL.rest()), (Some(until), Some(span), None));
         assert!(!acts(span, 0, 500.0) && !acts(span, 1, 29.0) && acts(span, 1, 30.0) && acts(span, 2, 0.0));
         let each = Span::EachDrive(30.0);
         assert!(acts(each, 0, 30.0) && !acts(each, 2, 29.0));
