@@ -77,6 +77,9 @@ pub(crate) fn settle(
     Together::settled(series, file, (applied.to_vec(), free), covariance, near)?.polished(series)
 }
 
+/// By how much to move all values that are fitted, one mechanism after the other, and their covariance.
+type Step = (Vec<f64>, DMatrix<f64>);
+
 /// Mechanisms with the robot fitted to them.
 struct Together {
     applied: Vec<Applied>,
@@ -118,8 +121,8 @@ impl Together {
         Ok(last)
     }
 
-    /// By how much to move all values that are fitted, and their covariance; `None` where the drives do not tell them.
-    fn weighed(&self, series: &Series) -> Result<Option<(Vec<f64>, DMatrix<f64>)>, Error> {
+    /// The step that the drives ask for; `None` where the drives do not tell them.
+    fn weighed(&self, series: &Series) -> Result<Option<Step>, Error> {
         let white = self.base.whitening(series);
         let mut columns = Vec::new();
         for which in 0..self.applied.len() {
@@ -184,15 +187,13 @@ impl Together {
     fn polished(self, series: &Series) -> Result<Polished, Error> {
         let mut half_widths: Vec<Vec<Option<f64>>> =
             self.applied.iter().map(|one| vec![None; one.values.len()]).collect();
-        let mut at = 0;
-        for which in 0..self.applied.len() {
+        let mut variances = (0..self.covariance.nrows()).map(|i| self.covariance[(i, i)]);
+        for (which, own) in half_widths.iter_mut().enumerate() {
             // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the
             // Particle Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
             let wider = self.discord(series, which)?.sqrt();
-            for parameter in &self.free[which] {
-                let variance = self.covariance[(at, at)];
-                half_widths[which][*parameter] = Some(wider * NORMAL_975 * variance.max(0.0).sqrt());
-                at += 1;
+            for (parameter, variance) in self.free[which].iter().zip(&mut variances) {
+                own[*parameter] = Some(wider * NORMAL_975 * variance.max(0.0).sqrt());
             }
         }
         Ok(Polished { base: self.base, applied: self.applied, half_widths })
