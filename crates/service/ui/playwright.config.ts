@@ -8,15 +8,16 @@ const executablePath = process.env.CHROMIUM ?? browsers.find((path) => existsSyn
 export default defineConfig({
   testDir: "tests",
   workers: 1,
-  timeout: 180_000,
-  expect: { timeout: 20_000 },
+  // Drawing in software takes long where a machine has little to give; none of these bounds says how quick the page should be.
+  timeout: 300_000,
+  expect: { timeout: 60_000 },
   reporter: [["list"]],
   use: {
     // Containers have neither a graphics card nor user namespaces.
     launchOptions: { executablePath, args: ["--enable-unsafe-swiftshader", "--no-sandbox"] },
     reducedMotion: "reduce",
-    actionTimeout: 10_000,
-    navigationTimeout: 10_000,
+    actionTimeout: 60_000,
+    navigationTimeout: 60_000,
     trace: "off",
   },
   projects: [
