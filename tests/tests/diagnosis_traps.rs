@@ -95,6 +95,28 @@ fn a_mass_that_stands_high_is_told_from_one_that_slides() {
     assert!(!names(&found).contains(&"load_transfer"), "{}", found.sentence);
 }
 
+#[test]
+fn what_the_form_of_a_strong_effect_misses_is_no_second_effect() {
+    // Beside soft soil, ground that skids more and rolls less explains a little more than ground that does both more.
+    let robot = model::builtin::husky_a200();
+    let suspect = record(33, vec![Effect::new(EffectName::SurfaceChange, 0.08)]);
+    let found = said(&robot, &suspect, &record(31, vec![]));
+    assert_eq!(names(&found), ["surface_change"], "{}", found.sentence);
+    for change in &found.findings[0].parameters {
+        assert!((change.value - 0.08).abs() < 0.02, "{}", found.sentence);
+    }
+}
+
+#[test]
+fn a_fault_of_the_meters_hides_no_ground_that_is_weaker() {
+    // What they read too much has no form that could miss something, however much it is.
+    let robot = model::builtin::husky_a200();
+    let ground = Effect { onset_s: 300.0, ..Effect::new(EffectName::SurfaceChange, 0.06) };
+    let suspect = record(32, vec![Effect::new(EffectName::PowerOffset, 12.0), ground]);
+    let found = said(&robot, &suspect, &record(31, vec![]));
+    assert_eq!(names(&found), ["power_offset", "surface_change"], "{}", found.sentence);
+}
+
 /// The same drive as a meter at the battery sees it, which does not tell the sides apart.
 fn by_one_meter(mut drive: Recording) -> Recording {
     let sides = [Channel::LeftPower, Channel::RightPower].map(|side| drive.channels.remove(&side).unwrap());

@@ -1,16 +1,19 @@
 //! The robot's own numbers fitted to the drives, and how predictions hang on them.
 
+use std::sync::{Arc, OnceLock};
+
 use model::{Robot, mechanism};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    Error, candidates,
+    Error, candidates, channel,
     discrepancy::{Discrepancy, Whitened},
     knobs::Knob,
     noise::{Noise, Whitening},
     nuisance,
     series::{Applied, Series},
+    shared::Shared,
     span::Span,
 };
 
@@ -35,6 +38,8 @@ pub(crate) struct Baseline {
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
+    /// What [`Baseline::missed`] made.
+    missed: OnceLock<Arc<[Shared]>>,
 }
 
 /// Steps of Gauss and Newton at most; two or three do.
@@ -92,18 +97,52 @@ impl Baseline {
         let delays = delays(series, &robot, applied, &predicted_w)?;
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
-        Ok(Baseline { robot, knobs, moved, predicted_w, columns, sizes, delays, noise })
+        Ok(Baseline {
+            robot,
+            knobs,
+            moved,
+            predicted_w,
+            columns,
+            sizes,
+            delays,
+            noise,
+            missed: OnceLock::new(),
+        })
     }
 
-    /// What models miss, the same in suspect and in healthy drives: columns with weights of one sigma 1 [W]. They are many and long,
-    /// so they are made anew whenever they are needed.
+    /// What models miss, the same in suspect and in healthy drives, channel by channel: its averages, and columns over them with
+    /// weights of one sigma 1 [W].
+    fn of_channels(&self, series: &Series) -> Vec<(Vec<usize>, Vec<Vec<f64>>)> {
+        let averages = &series.averages;
+        let of = |(channel, mean_w): (usize, f64)| {
+            let places = channel::places(averages, channel);
+            let mut columns = nuisance::of_channel(averages, &places, mean_w);
+            columns.extend(series.discrepancy.get().iter().flat_map(|one| one.of_channel(channel, mean_w)));
+            (places, columns)
+        };
+        nuisance::means(averages, &self.predicted_w).into_iter().enumerate().map(of).collect()
+    }
+
+    /// The same as columns over all averages [W].
     pub(crate) fn shared(&self, series: &Series) -> Vec<Vec<f64>> {
-        let mut shared = nuisance::columns(&series.averages, &self.predicted_w);
-        if let Some(discrepancy) = series.discrepancy.get() {
-            let means = nuisance::means(&series.averages, &self.predicted_w);
-            shared.extend(discrepancy.columns(&series.averages, &means));
-        }
-        shared
+        let spread = |(places, columns): (Vec<usize>, Vec<Vec<f64>>)| {
+            channel::spread(&columns, &places, series.averages.len())
+        };
+        self.of_channels(series).into_iter().flat_map(spread).collect()
+    }
+
+    /// The same, whitened, to be taken out of other columns. They are many and long and asked for again and again.
+    pub(crate) fn missed(&self, series: &Series) -> Arc<[Shared]> {
+        let make = || {
+            let white = self.whitening(series);
+            let of = |(places, columns): (Vec<usize>, Vec<Vec<f64>>)| {
+                let columns: Vec<_> =
+                    columns.iter().map(|column| white.of_channel(&places, column)).collect();
+                Shared::new(places, &columns)
+            };
+            self.of_channels(series).into_iter().filter_map(of).collect()
+        };
+        Arc::clone(self.missed.get_or_init(make))
     }
 
     /// What makes errors about the fit independent and of one sigma 1.

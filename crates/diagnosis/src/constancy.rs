@@ -5,9 +5,10 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
     Error,
+    average::Average,
     null::Null,
     search::State,
-    series::{Average, Series},
+    series::Series,
     weigh::{Sizes, system_at},
 };
 
@@ -128,7 +129,7 @@ fn changing(series: &Series, effect: &[f64], of: Quantity) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::Input;
+    use crate::average::Input;
 
     #[test]
     fn an_effect_changes_as_fast_as_its_drive_shows_it() {

@@ -7,8 +7,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
+    average::{Average, Input},
+    channel,
     noise::Whitening,
-    series::{Average, Input},
 };
 
 /// Spreads of an input over which the function changes.
@@ -53,11 +54,10 @@ impl Discrepancy {
     /// where none is known to be healthy.
     pub(crate) fn learn(averages: &[Average], means: &[f64], beside: &Whitened<'_>) -> Self {
         let process = |(channel, mean): (usize, &f64)| {
-            let functions = functions(averages, channel);
-            Process {
-                share: share(averages, channel, &spread(averages, channel, &functions, *mean), beside),
-                functions,
-            }
+            let places = channel::places(averages, channel);
+            let functions = functions(averages, &places);
+            let columns = channel::spread(&scaled(&functions, *mean), &places, averages.len());
+            Process { share: share(averages, channel, &columns, beside), functions }
         };
         Discrepancy { channels: means.iter().enumerate().map(process).collect() }
     }
@@ -67,30 +67,17 @@ impl Discrepancy {
         self.channels.iter().take(channels).map(|process| process.share).fold(0.0, f64::max)
     }
 
-    /// Columns with weights of one sigma 1, by the mean size of each channel.
-    pub(crate) fn columns(&self, averages: &[Average], means: &[f64]) -> Vec<Vec<f64>> {
-        let told =
-            self.channels.iter().zip(means).enumerate().filter(|(_, (process, _))| process.share > 0.0);
-        told.flat_map(|(channel, (process, mean))| {
-            spread(averages, channel, &process.functions, process.share * mean)
-        })
-        .collect()
+    /// Columns over the averages of a channel of such a mean size, with weights of one sigma 1; none where it misses nothing.
+    pub(crate) fn of_channel(&self, channel: usize, mean: f64) -> Vec<Vec<f64>> {
+        match self.channels.get(channel) {
+            Some(Process { functions, share }) if *share > 0.0 => scaled(functions, share * mean),
+            _ => Vec::new(),
+        }
     }
 }
 
-/// Functions over the averages of a channel, scaled, as columns over all averages.
-fn spread(averages: &[Average], channel: usize, functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
-    let places = places(averages, channel);
-    let column = |function: &Vec<f64>| {
-        let mut column = vec![0.0; averages.len()];
-        places.iter().zip(function).for_each(|(place, value)| column[*place] = value * by);
-        column
-    };
-    functions.iter().map(column).collect()
-}
-
-fn places(averages: &[Average], channel: usize) -> Vec<usize> {
-    (0..averages.len()).filter(|i| averages[*i].channel == channel).collect()
+fn scaled(functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
+    functions.iter().map(|function| function.iter().map(|value| value * by).collect()).collect()
 }
 
 /// The likeliest size of a channel's function, as a share of those given.
@@ -140,8 +127,8 @@ fn log_likelihood(
 /// Functions over the averages of a channel, whose sum with independent weights of one sigma 1 is the process with one sigma 1.
 ///
 /// They are the columns of the pivoted Cholesky factor of the covariance exp(−d²/2).
-fn functions(averages: &[Average], channel: usize) -> Vec<Vec<f64>> {
-    cholesky(&standardised(averages, &places(averages, channel)))
+fn functions(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>> {
+    cholesky(&standardised(averages, places))
 }
 
 /// Inputs of the averages over their spreads and the length.
@@ -239,7 +226,10 @@ mod tests {
     #[test]
     fn products_of_the_functions_are_the_covariance_and_channels_stay_apart() {
         let averages = averages(300);
-        let of = |channel| spread(&averages, channel, &functions(&averages, channel), 1.0);
+        let of = |channel| {
+            let places = channel::places(&averages, channel);
+            channel::spread(&functions(&averages, &places), &places, averages.len())
+        };
         let functions = [of(0), of(1)].concat();
         let covariance = |i: usize, j: usize| -> f64 { functions.iter().map(|f| f[i] * f[j]).sum() };
         for i in (0..300).step_by(7) {

@@ -1,10 +1,12 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
+use std::sync::Arc;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
     regime::{self, Regime},
-    shared::Shared,
+    shared::{self, Shared},
 };
 
 /// Candidates that are weighed in one go: enough for products of matrices, few enough for a processor's caches.
@@ -18,7 +20,7 @@ pub(crate) struct System {
     /// What is fitted in every channel: the robot's own numbers.
     columns: DMatrix<f64>,
     /// What models miss, channel by channel.
-    shared: Vec<Shared>,
+    shared: Arc<[Shared]>,
     /// Rows of the errors that are recorded, the rest being what is known before.
     rows: usize,
     /// Block by row.
@@ -42,7 +44,7 @@ pub(crate) struct Fitted<'a> {
     pub(crate) known: &'a [f64],
     pub(crate) offset: &'a [f64],
     /// Columns of one channel each, with weights of one sigma 1.
-    pub(crate) shared: &'a [Vec<f64>],
+    pub(crate) shared: &'a Arc<[Shared]>,
 }
 
 /// What a candidate explains.
@@ -64,16 +66,15 @@ pub(crate) struct Evidence {
 }
 
 impl System {
-    /// Puts a system together of errors, whose rows belong to channels and blocks.
+    /// Puts a system together of errors, whose rows belong to blocks and regimes.
     pub(crate) fn new(
         errors: Vec<f64>,
         fitted: &Fitted<'_>,
-        channel: &[usize],
         (block, regime): (Vec<usize>, Vec<usize>),
     ) -> Self {
         let (rows, count) = (errors.len(), fitted.columns.len());
-        let shared = Shared::of(fitted.shared, channel, rows + count);
-        let all = rows + count + fitted.shared.len();
+        let shared = Arc::clone(fitted.shared);
+        let all = rows + count + shared::count(&shared);
         let mut columns = DMatrix::zeros(all, count);
         for (j, column) in fitted.columns.iter().enumerate() {
             columns.view_mut((0, j), (rows, 1)).copy_from_slice(column);
@@ -84,9 +85,9 @@ impl System {
         extended.resize(all, 0.0);
         let errors = DVector::from_vec(extended);
         let mut own = columns.clone();
-        shared.iter().for_each(|shared| shared.take(&mut own));
+        shared::take(&shared, rows + count, &mut own);
         let mut left = DMatrix::from_column_slice(all, 1, errors.as_slice());
-        shared.iter().for_each(|shared| shared.take(&mut left));
+        shared::take(&shared, rows + count, &mut left);
         let transposed = own.transpose();
         let inverse = inverse(&transposed * &own);
         let left = left.column(0) - &own * (&inverse * (&transposed * left.column(0)));
@@ -105,7 +106,7 @@ impl System {
         for (j, column) in columns.iter().enumerate() {
             own.view_mut((0, j), (self.rows, 1)).copy_from_slice(column);
         }
-        self.shared.iter().for_each(|shared| shared.take(&mut own));
+        shared::take(&self.shared, self.rows + self.columns.ncols(), &mut own);
         let share = &self.inverse * (&self.transposed * &own);
         own - &self.own * share
     }
@@ -211,7 +212,7 @@ impl System {
     /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
     fn dense(&self, columns: &[Vec<f64>]) -> (DMatrix<f64>, DVector<f64>) {
         let always = self.columns.ncols();
-        let shared: usize = self.shared.iter().map(|shared| shared.columns.ncols()).sum();
+        let shared = shared::count(&self.shared);
         let count = always + shared + columns.len();
         let mut with = DMatrix::zeros(self.rows, count);
         let mut known = DVector::zeros(count);
@@ -220,7 +221,7 @@ impl System {
             known[j] = self.columns[(self.rows + j, j)].powi(2);
         }
         let mut at = always;
-        for one in &self.shared {
+        for one in self.shared.iter() {
             for j in 0..one.columns.ncols() {
                 one.places
                     .iter()

@@ -1,9 +1,10 @@
 //! How much of what is left of the errors smooth functions of the inputs explain: none, where nothing is missing.
 
 use crate::{
+    average::Average,
     baseline::Baseline,
     linear::{FOLDS, Folded},
-    series::{Average, Series},
+    series::Series,
     span::Span,
     weigh::blocks,
 };

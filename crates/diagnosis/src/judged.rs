@@ -245,7 +245,10 @@ fn finding(series: &Series, found: &Found, [before_w, after_w]: [f64; 2]) -> Fin
             name: parameter.name,
             value,
             unit: parameter.unit,
-            interval_95: half.map(|half| [value - half, value + half]),
+            // Beyond what there can be is no interval.
+            interval_95: half.map(|half| {
+                [value - half, value + half].map(|edge| edge.clamp(parameter.bounds[0], parameter.bounds[1]))
+            }),
         })
         .collect();
     let mut statement = words::capital(&mechanism.statement(&applied.values));

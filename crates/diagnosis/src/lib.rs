@@ -6,8 +6,10 @@
 //! by blocks of time, and on drives that were held out.
 
 mod alternatives;
+mod average;
 mod baseline;
 mod candidates;
+mod channel;
 mod chart;
 mod constancy;
 mod corrected;
@@ -57,10 +59,12 @@ mod shared;
 mod span;
 mod term;
 mod turning;
+mod usual;
 mod visits;
 mod weigh;
 mod words;
 
+pub use average::{Average, Input};
 pub use diagnose::{Question, diagnose, diagnose_watched};
 pub use error::Error;
 pub use imitate::imitate;
@@ -69,5 +73,5 @@ pub use refused::Refused;
 pub use region::Region;
 pub use report::{Diagnosis, Verdict};
 pub use search::{Found, Search, search};
-pub use series::{Applied, Average, Input, Series};
+pub use series::{Applied, Series};
 pub use span::Span;

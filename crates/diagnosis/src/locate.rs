@@ -3,9 +3,10 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::{
+    average::Average,
     region::{Region, regions},
     report::{Place, Range},
-    series::{Average, Series},
+    series::Series,
     span::Span,
     weigh::blocks,
 };

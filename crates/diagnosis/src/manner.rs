@@ -1,6 +1,9 @@
 //! How drives under suspicion were driven, as smooth functions: what acts in a place has to do so whatever the robot does there.
 
-use crate::series::{Average, Input, Series};
+use crate::{
+    average::{Average, Input},
+    series::Series,
+};
 
 /// Differences of rim speeds by which a robot keeps to a straight line [m/s].
 const STEERING_MPS: f64 = 0.02;

@@ -1,27 +1,31 @@
 //! Which of several mechanisms are needed beside the others.
 
-use model::Robot;
+use model::{
+    Robot,
+    mechanism::{self, Kind},
+};
 use nalgebra::DVector;
 
 use crate::{
     Error,
-    baseline::Baseline,
-    candidates::apart,
     null::Null,
-    search::{AS_GOOD, State, is_told},
+    polish::{Polished, settle},
+    search::{AS_GOOD, Found, State, is_told},
     second_ground::take_turns,
     series::{Applied, Series},
     span::Span,
-    weigh::{least_misfit, misfit, system},
+    weigh::{misfit, system},
 };
 
-/// Share of the squares of what other mechanisms do that one has to exceed where it acts, if the model misses something itself: the
-/// form of a strong mechanism is no better known, and what that misses would pass for a weak one.
+/// Share of the squares of what other mechanisms do that one has to exceed where it acts: the form of a strong mechanism is no better
+/// known, healthy drives say nothing of it, and what it misses would pass for a weak one.
 const FORM: f64 = 0.05;
-/// Least share of what is lost without a mechanism that has to be beyond that.
+/// Least share of what a mechanism adds to the others that has to be beyond that.
 const BEYOND_FORM: f64 = 0.5;
-/// The same of all that the others do, and for what acts in a place: among many places, one has what their form misses.
+/// Share of the squares of all that the others do that one has to add at least: where the model misses something itself, where healthy
+/// drives show that it hardly does, and for what acts in a place, as among many places one has what their form misses.
 const LEAST_OF_ALL: f64 = 0.05;
+const LEAST_OF_ALL_WHERE_TOLD: f64 = 0.02;
 const LEAST_IN_PLACE: f64 = 0.1;
 /// Least share of the squares of what two mechanisms do that both together do.
 const LEFT_OF_BOTH: f64 = 0.25;
@@ -44,39 +48,52 @@ pub(crate) fn drop_one(series: &Series, file: &Robot, state: &mut State, null: &
         }
         let mut others = state.applied();
         others.remove(i);
-        let without = Baseline::fit_from(series, file, &others, &state.fit.robot)?;
-        let lost = least_misfit(series, &without, &state.fit) - whole;
+        let without = settle(series, file, &others, &state.fit.robot)?;
+        let lost = misfit(series, &without.base, &state.fit) - whole;
         let count = state.found[i].numbers() as f64;
         // The last one was just found to be needed.
         let is_needed = i + 1 == state.found.len()
             || lost / null.discount(name, blocks) >= count * (blocks as f64).ln() + AS_GOOD;
-        if !is_needed || !is_told(series) && !is_beyond_form(series, state, i, lost)? {
+        if !is_needed || !is_beyond_form(series, state, i, &without)? {
             state.found.remove(i);
-            state.refit(series, file)?;
+            state.take(without);
             return Ok(true);
         }
     }
     Ok(false)
 }
 
-/// Whether what is lost without a mechanism is more, where it acts, than the others' forms may miss.
-fn is_beyond_form(series: &Series, state: &State, which: usize, lost: f64) -> Result<bool, Error> {
+/// Whether what a mechanism adds to the others, fitted without it, is more, where it acts, than their forms may miss.
+fn is_beyond_form(series: &Series, state: &State, which: usize, without: &Polished) -> Result<bool, Error> {
     let white = state.fit.whitening(series);
-    let (one, others) = apart(&state.applied(), which);
-    let without_w = series.predict(&state.fit.robot, &others)?;
-    let none_w = series.predict(&state.fit.robot, &[])?;
+    let one = &state.found[which].applied;
+    let others = state.found.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, found)| found);
+    let with_one_form = others.zip(&without.applied).filter(|(found, _)| has_one_form(found));
+    let of_one_form: Vec<Applied> = with_one_form.map(|(_, applied)| applied.clone()).collect();
+    let none_w = series.predict(&without.base.robot, &of_one_form)?;
     let difference =
         |a: &[f64], b: &[f64]| white.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
-    let (own, beside) = (difference(&state.fit.predicted_w, &without_w), difference(&without_w, &none_w));
+    let added = difference(&state.fit.predicted_w, &without.base.predicted_w);
+    let beside = difference(&without.base.predicted_w, &none_w);
     let squares = |effect: &[f64]| effect.iter().map(|x| x * x).sum::<f64>();
-    let least = if matches!(one.span, Span::Within(_)) { LEAST_IN_PLACE } else { LEAST_OF_ALL };
-    if lost < least * squares(&beside) {
-        return Ok(false);
+    let whole = squares(&added);
+    if is_told(series) {
+        return Ok(whole >= LEAST_OF_ALL_WHERE_TOLD * squares(&beside));
     }
-    let share = lost / squares(&own).max(1e-300);
-    let beyond =
-        own.iter().zip(&beside).map(|(own, beside)| (share * own * own - FORM * beside * beside).max(0.0));
-    Ok(beyond.sum::<f64>() >= BEYOND_FORM * lost)
+    let least = if matches!(one.span, Span::Within(_)) { LEAST_IN_PLACE } else { LEAST_OF_ALL };
+    let beyond: f64 = added.iter().zip(&beside).map(|(a, b)| (a * a - FORM * b * b).max(0.0)).sum();
+    Ok(whole >= least * squares(&beside) && beyond >= BEYOND_FORM * whole)
+}
+
+/// Whether there is no doubt of what it does: faults of meters and standing loads do the same whatever robot and ground are like. What may
+/// be something else as well is doubted.
+fn has_one_form(found: &Found) -> bool {
+    let is_certain = |name: &str| {
+        let is_of_a_meter = mechanism::by_name(name).is_some_and(|one| one.kind() == Kind::Measurement);
+        is_of_a_meter || name == "hotel_load"
+    };
+    is_certain(found.applied.mechanism.name())
+        && found.indistinguishable_from.iter().all(|name| is_certain(name))
 }
 
 /// Whether what was found last and something found before almost undo each other while both act: what is left of them is a third thing,

@@ -5,7 +5,7 @@ use model::{
     robot::Surface,
 };
 
-use crate::{alternatives::Explanation, noise::Noise, series::Input};
+use crate::{alternatives::Explanation, average::Input, noise::Noise};
 
 /// A manoeuvre that anyone can drive.
 struct Figure {

@@ -1,6 +1,6 @@
 //! How far averages scatter about a model that is right, and how they hang together in time.
 
-use crate::series::{Average, Input};
+use crate::average::{Average, Input};
 
 /// Scatter of each channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +105,16 @@ impl Whitening {
     pub(crate) fn of(&self, values: &[f64]) -> Vec<f64> {
         let before = |i: usize| if i > 0 { values[i - 1] } else { 0.0 };
         self.rows.iter().enumerate().map(|(i, [own, last])| own * values[i] - last * before(i)).collect()
+    }
+
+    /// The same of the values of one channel, whose averages lie at such places: what is taken out of one is of its channel too.
+    pub(crate) fn of_channel(&self, places: &[usize], values: &[f64]) -> Vec<f64> {
+        let before = |k: usize| if k > 0 { values[k - 1] } else { 0.0 };
+        let of = |(k, place): (usize, &usize)| {
+            let [own, last] = self.rows[*place];
+            own * values[k] - last * before(k)
+        };
+        places.iter().enumerate().map(of).collect()
     }
 }
 

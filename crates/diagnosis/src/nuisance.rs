@@ -1,40 +1,44 @@
 //! What the model itself misses of healthy drives: smooth functions of the inputs that suspect and healthy drives share.
 
-use crate::series::{Average, Input};
+use crate::{
+    average::{Average, Input},
+    channel,
+};
 
 /// Share of mean power that a function may take [-]: about what the force balance misses of a healthy Husky.
 const SHARE: f64 = 0.03;
 
-/// Functions of the inputs, scaled to one sigma of what they may take [W].
+/// Functions of the inputs, scaled to one sigma of what they may take, over the averages of a channel of such a mean size [W].
 ///
 /// What suspect and healthy drives share is nobody's mechanism. Without healthy drives they take the part of mechanisms that
 /// act all the time as well, which then cannot be told from what the model is wrong by and are not named: with a few functions
 /// only, a healthy drive alone was taken for one on soft ground.
+pub(crate) fn of_channel(averages: &[Average], places: &[usize], mean_w: f64) -> Vec<Vec<f64>> {
+    let column = |function: &fn(&Input) -> f64| {
+        let values: Vec<f64> = places.iter().map(|i| function(&averages[*i].input)).collect();
+        let size = (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt();
+        (size > 0.0).then(|| values.iter().map(|x| x / size * SHARE * mean_w).collect())
+    };
+    SHARED.iter().filter_map(column).collect()
+}
+
+/// The same of every channel, over all averages.
 pub(crate) fn columns(averages: &[Average], predicted_w: &[f64]) -> Vec<Vec<f64>> {
-    let mut columns = Vec::new();
-    for (channel, mean_w) in means(averages, predicted_w).into_iter().enumerate() {
-        for function in SHARED {
-            let of = |a: &Average| if a.channel == channel { function(&a.input) } else { 0.0 };
-            let values: Vec<f64> = averages.iter().map(of).collect();
-            let count = averages.iter().filter(|a| a.channel == channel).count().max(1) as f64;
-            let size = (values.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
-            if size > 0.0 {
-                columns.push(values.iter().map(|x| x / size * SHARE * mean_w).collect());
-            }
-        }
-    }
-    columns
+    let of = |(channel, mean_w): (usize, f64)| {
+        let places = channel::places(averages, channel);
+        channel::spread(&of_channel(averages, &places, mean_w), &places, averages.len())
+    };
+    means(averages, predicted_w).into_iter().enumerate().flat_map(of).collect()
 }
 
 /// Mean size of what is predicted, by channel.
 pub(crate) fn means(averages: &[Average], predicted: &[f64]) -> Vec<f64> {
-    let channels = averages.iter().map(|a| a.channel + 1).max().unwrap_or(0);
     let mean = |channel: usize| {
         let own = averages.iter().zip(predicted).filter(|(a, _)| a.channel == channel);
         let (sum, count) = own.fold((0.0, 0.0), |(sum, count), (_, p)| (sum + p.abs(), count + 1.0));
         sum / f64::max(count, 1.0)
     };
-    (0..channels).map(mean).collect()
+    (0..channel::count(averages)).map(mean).collect()
 }
 
 const SHARED: [fn(&Input) -> f64; 14] = [

@@ -8,9 +8,10 @@ use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
 use crate::{
-    Error, ground,
+    Error,
+    average::{Average, Input},
+    ground,
     meter::Meter,
-    series::{Average, Input},
     shapes::Shapes,
 };
 

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::series::Average;
+use crate::average::Average;
 
 /// What a robot does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

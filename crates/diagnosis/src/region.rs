@@ -1,6 +1,6 @@
 //! Rectangles on the ground that drives went through.
 
-use crate::series::Average;
+use crate::average::Average;
 
 /// A part of the ground, from west to east and from south to north; open where it reaches beyond what was driven.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ pub(crate) fn part_m(extent_m: [[f64; 2]; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::Input;
+    use crate::average::Input;
 
     fn at(x_m: f64, y_m: f64) -> Average {
         let input = Input { position_m: [x_m, y_m], ..Input::default() };

@@ -8,12 +8,12 @@ use crate::{
     Error,
     baseline::Baseline,
     constancy,
-    gates::{best, cosine},
+    gates::best,
     needed::{drop_one, last_undoes},
     null::Null,
     onset::{self, Bounded},
     outside, pairs,
-    polish::{Polished, polish, settle},
+    polish::{Polished, form_sigma, polish, settle},
     refused::{Refused, refuse},
     second_ground,
     series::{Applied, Series},
@@ -22,16 +22,10 @@ use crate::{
 
 /// Mechanisms that are looked for at most.
 const MOST: usize = 3;
-/// Fits that fall short of the best by less are as good: twice the log of a likelihood ratio of 20.
+/// What is not needed by more than this is not: twice the log of a likelihood ratio of 20.
 pub(crate) const AS_GOOD: f64 = 6.0;
-/// The same where healthy drives show nothing that the model misses, so that likelihoods can be relied on: of 84 concealed cases in
-/// the model's own world, the truth fell short by more in three.
-const AS_GOOD_WHERE_TOLD: f64 = 3.0;
-/// Share of what the best fit explains by which one that is parallel to it may fall short and be as good, where the model misses
-/// something itself: the form of a mechanism is no better known than that of the model, which misses about so much of power.
-const AS_GOOD_SHARE: f64 = 0.03;
-/// Cosine from which two are parallel, of what they explain beside all that is fitted whatever the mechanism.
-const PARALLEL: f64 = 0.95;
+/// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
+const AS_GOOD_A_NAME: f64 = 3.0;
 /// What a model may miss of healthy drives where it can be relied on, as a share of power.
 const TOLD: f64 = 0.005;
 
@@ -87,6 +81,14 @@ impl State {
         self.found.iter().map(|f| f.applied.clone()).collect()
     }
 
+    /// Whether the same mechanisms act in the same parts of the drives.
+    fn acts_as(&self, others: &[Applied]) -> bool {
+        let is_one = |(own, other): (&Found, &Applied)| {
+            own.applied.mechanism.name() == other.mechanism.name() && own.applied.span == other.span
+        };
+        self.found.len() == others.len() && self.found.iter().zip(others).all(is_one)
+    }
+
     /// Takes up what was decided for beside all that was found before.
     pub(crate) fn take_up(&mut self, (next, fitted): (Found, Polished)) {
         self.found.push(next);
@@ -94,7 +96,7 @@ impl State {
     }
 
     /// All that was found as it was fitted together.
-    fn take(&mut self, fitted: Polished) {
+    pub(crate) fn take(&mut self, fitted: Polished) {
         let values = fitted.applied.into_iter().zip(fitted.half_widths);
         for (found, (applied, half_widths)) in self.found.iter_mut().zip(values) {
             (found.applied, found.half_widths) = (applied, half_widths);
@@ -131,9 +133,10 @@ pub fn search(
     let mut state = State { found: Vec::new(), fit: before.clone() };
     for round in 0..MOST {
         progress("weighing mechanisms", 0.1 + 0.25 * round as f64);
-        let Some((rivals, held_out_gain)) = best(series, &state.fit, &state.applied(), &null)? else { break };
+        let last = state.applied();
+        let Some((rivals, held_out_gain)) = best(series, &state.fit, &last, &null)? else { break };
         progress("fitting what was found", 0.2 + 0.25 * round as f64);
-        let decided = decide(series, file, (&state.applied(), &state.fit), (&rivals, held_out_gain), &null)?;
+        let decided = decide(series, file, (&last, &state.fit), (&rivals, held_out_gain), &null)?;
         state.take_up(decided);
         if last_undoes(series, &state)? {
             state.found.pop();
@@ -141,6 +144,10 @@ pub fn search(
             break;
         }
         while drop_one(series, file, &mut state, &null)? {}
+        // What was taken up and left out again would be so once more.
+        if state.acts_as(&last) {
+            break;
+        }
         state = pairs::revised(series, file, &before, state, &null)?;
     }
     progress("trying pairs", 0.9);
@@ -175,24 +182,15 @@ pub(crate) fn decide(
         .into_par_iter()
         .map(|i| polish(series, file, (applied, &by.robot), at_best(i)))
         .collect::<Result<_, _>>()?;
-    let cost = |i: usize| {
-        misfit(series, &fits[i].base, by) / common
-            + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln()
-    };
+    let misfits: Vec<f64> = fits.iter().map(|fit| misfit(series, &fit.base, by) / common).collect();
+    let explained = misfit(series, by, by) / common - misfits.iter().copied().fold(f64::INFINITY, f64::min);
+    // What a form leaves open of all that is explained tells no form from another.
+    let unit = (form_sigma(series).powi(2) * explained).max(1.0);
+    let cost = |i: usize| misfits[i] / unit + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln();
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    let explained = misfit(series, by, by) / common - costs[winner];
-    let rows = series.recorded.len();
-    let as_good = |i: usize| {
-        let is_parallel = cosine(&at_best(i).evidence, &at_best(winner).evidence, rows) > PARALLEL;
-        match is_told(series) {
-            true => AS_GOOD_WHERE_TOLD,
-            false if is_parallel => AS_GOOD.max(AS_GOOD_SHARE * explained),
-            false => AS_GOOD,
-        }
-    };
     let indistinguishable_from = (0..fits.len())
-        .filter(|i| *i != winner && costs[*i] < costs[winner] + as_good(*i))
+        .filter(|i| *i != winner && costs[*i] < costs[winner] + AS_GOOD_A_NAME)
         .map(|i| rivals[i].candidate.applied.mechanism.name().to_owned())
         .collect();
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));

@@ -13,6 +13,7 @@ use recording::{PowerForm, Recording, Watch, unwatched};
 
 use crate::{
     Error,
+    average::Average,
     discrepancy::Discrepancy,
     meter::Meter,
     part::Part,
@@ -55,58 +56,6 @@ pub struct Series {
     pub(crate) discrepancy: OnceLock<Discrepancy>,
     /// What repeats with every turn of the wheels, if anything does.
     pub(crate) turning: Option<Line>,
-}
-
-/// What one value is an average of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Average {
-    /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, 3 for the
-    /// speed over ground and 4 for the yaw rate.
-    pub channel: usize,
-    /// Which drive; drives under suspicion and healthy ones count on.
-    pub run: usize,
-    /// Whether the drive is under suspicion.
-    pub suspect: bool,
-    /// Time since the drive began [s].
-    pub t_s: f64,
-    /// Means of the inputs.
-    pub input: Input,
-}
-
-impl Average {
-    /// Whether what acts in a span acts on it.
-    pub(crate) fn is_in(&self, span: Span) -> bool {
-        span.acts(self.run, self.t_s, self.input.position_m)
-    }
-}
-
-/// Means of what drives the robot, over one average.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Input {
-    /// Mean of both rim speeds, and right less left [m/s].
-    pub speed_mps: f64,
-    /// See [`Input::speed_mps`].
-    pub difference_mps: f64,
-    /// Rim speed of the channel's own side, or the mean [m/s].
-    pub rim_mps: f64,
-    /// Pitch and roll [rad].
-    pub pitch_rad: f64,
-    /// See [`Input::pitch_rad`].
-    pub roll_rad: f64,
-    /// Rate of change of speed [m/s²].
-    pub accel_mps2: f64,
-    /// Rate of change of the difference [m/s²].
-    pub swing_mps2: f64,
-    /// Heading; NaN where unknown [rad].
-    pub heading_rad: f64,
-    /// Height above the mean of the drives of the same kind; NaN where unknown [m].
-    pub height_m: f64,
-    /// Towards east and north; NaN where unknown [m].
-    pub position_m: [f64; 2],
-    /// Time since the robot last stood still [s].
-    pub moving_s: f64,
-    /// How near the wheels are to where each turn takes most, 0 to 1, of the side and in the drives in which turns show; else 0.
-    pub nearness: f64,
 }
 
 impl Series {

@@ -11,39 +11,30 @@ pub(crate) struct Shared {
     transposed: DMatrix<f64>,
     /// Of their products, with what is known before.
     root: Cholesky<f64, Dyn>,
-    /// Row of the first of them.
-    first: usize,
 }
 
 impl Shared {
-    /// Columns by channel; rows of what is known before begin at `first`.
-    pub(crate) fn of(columns: &[Vec<f64>], channel: &[usize], mut first: usize) -> Vec<Shared> {
-        let of_channel = |column: &Vec<f64>| column.iter().position(|x| *x != 0.0).map(|i| channel[i]);
-        let names: Vec<Option<usize>> = columns.iter().map(of_channel).collect();
-        let mut all = Vec::new();
-        for name in 0..channel.iter().max().map_or(0, |c| c + 1) {
-            let own: Vec<&Vec<f64>> =
-                columns.iter().zip(&names).filter(|(_, n)| **n == Some(name)).map(|(c, _)| c).collect();
-            let places: Vec<usize> = (0..channel.len()).filter(|i| channel[*i] == name).collect();
-            let columns = DMatrix::from_fn(places.len(), own.len(), |i, j| own[j][places[i]]);
-            let transposed = columns.transpose();
-            let square = &transposed * &columns + DMatrix::identity(own.len(), own.len());
-            let Some(root) = Cholesky::new(square) else { continue };
-            all.push(Shared { places, columns, transposed, root, first });
-            first += own.len();
+    /// Columns over the averages of a channel, which lie at such places; `None` where there are none.
+    pub(crate) fn new(places: Vec<usize>, columns: &[Vec<f64>]) -> Option<Shared> {
+        if columns.is_empty() {
+            return None;
         }
-        all
+        let columns = DMatrix::from_fn(places.len(), columns.len(), |i, j| columns[j][i]);
+        let transposed = columns.transpose();
+        let square = &transposed * &columns + DMatrix::identity(columns.ncols(), columns.ncols());
+        let root = Cholesky::new(square)?;
+        Some(Shared { places, columns, transposed, root })
     }
 
-    /// Takes the shared part out of columns, and puts its weights where what is known before of them stands.
-    pub(crate) fn take(&self, columns: &mut DMatrix<f64>) {
+    /// Takes the shared part out of columns, and puts its weights in rows from `first` on, where what is known before of them stands.
+    fn take(&self, columns: &mut DMatrix<f64>, first: usize) {
         let Some(own) = self.own(columns) else { return };
         let weights = self.root.solve(&(&self.transposed * &own));
         let left = own - &self.columns * &weights;
         for (mut column, left) in columns.column_iter_mut().zip(left.column_iter()) {
             self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
         }
-        columns.rows_mut(self.first, weights.nrows()).copy_from(&-weights);
+        columns.rows_mut(first, weights.nrows()).copy_from(&-weights);
     }
 
     /// Products of the shared columns with others, and the weights of the shared ones in them; `None` where both are nothing.
@@ -59,5 +50,18 @@ impl Shared {
         let own =
             || DMatrix::from_fn(self.places.len(), columns.ncols(), |i, j| columns[(self.places[i], j)]);
         (!is_nothing).then(own)
+    }
+}
+
+/// Number of columns of some channels.
+pub(crate) fn count(shared: &[Shared]) -> usize {
+    shared.iter().map(|one| one.columns.ncols()).sum()
+}
+
+/// Takes the shared parts of all channels out of columns; rows of what is known before of them begin at `first`.
+pub(crate) fn take(shared: &[Shared], mut first: usize, columns: &mut DMatrix<f64>) {
+    for one in shared {
+        one.take(columns, first);
+        first += one.columns.ncols();
     }
 }

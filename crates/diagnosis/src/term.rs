@@ -3,8 +3,8 @@
 use model::{Robot, STANDARD_GRAVITY_MPS2};
 
 use crate::{
+    average::{Average, Input},
     constancy::MOVING_S,
-    series::{Average, Input},
 };
 
 /// A power that a term is measured in; it brings the unit, so that all else has none.

@@ -1,6 +1,6 @@
 //! How often drives came through a part of the ground.
 
-use crate::{region::Region, series::Average};
+use crate::{average::Average, region::Region};
 
 /// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
 pub(crate) const LEAST: f64 = 6.0;
@@ -40,7 +40,7 @@ impl<'a> Visits<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::Input;
+    use crate::average::Input;
 
     #[test]
     fn a_long_stay_is_one_visit_and_coming_back_counts() {

@@ -7,13 +7,14 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
+    average::Average,
     baseline::{Baseline, differences},
     candidates::{self, Candidate, Family},
     evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
     regime::Regime,
-    series::{Applied, Average, Series},
+    series::{Applied, Series},
     span::Span,
 };
 
@@ -95,12 +96,10 @@ fn system_by(
     columns.extend(free.chain(beside).map(|c| white.of(c)));
     known.resize(columns.len(), 0.0);
     offset.resize(columns.len(), 0.0);
-    let shared: Vec<Vec<f64>> = by.shared(series).iter().map(|c| white.of(c)).collect();
     let errors = white.of(&differences(&series.recorded, &base.predicted_w));
     let regimes = series.averages.iter().map(|average| Regime::of(average) as usize).collect();
-    let channel: Vec<usize> = series.averages.iter().map(|a| a.channel).collect();
-    let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &shared };
-    System::new(errors, &fitted, &channel, (blocks(series), regimes))
+    let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &by.missed(series) };
+    System::new(errors, &fitted, (blocks(series), regimes))
 }
 
 /// Blocks of neighbouring averages of a drive; channels of the same time share one.

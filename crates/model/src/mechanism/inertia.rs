@@ -5,6 +5,10 @@ use crate::{
     mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
 };
 
+/// Inertia of the rotors and gears of a side that a robot may have at the rims, in masses of the robot: a rotor of 10⁻⁵ kg m² behind gears
+/// of 80:1 and wheels of 0.16 m is 2.5 kg, and no robot has thirty times as much.
+const MOST_MASSES: f64 = 1.5;
+
 /// Gears and armatures that are accelerated with the wheels, beyond the robot's own mass.
 pub(super) struct Inertia;
 
@@ -19,6 +23,12 @@ impl Mechanism for Inertia {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "kg_per_side", unit: "kg", bounds: [0.0, 400.0], probe: 1.0 }]
+    }
+
+    /// Rotors and gears that weigh on a robot like several of it are no robot's.
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        let [low, high] = self.parameters()[parameter].bounds;
+        [low, high.min(MOST_MASSES * robot.mass_kg)]
     }
 
     fn equation(&self) -> &'static str {

@@ -153,6 +153,11 @@ pub trait Mechanism: Sync {
         self.parameters()[parameter].bounds
     }
 
+    /// What a parameter usually is, where that is known before any drive, and the factor by which one in three is off by more.
+    fn usual(&self, _robot: &Robot, _parameter: usize) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Its equation, in the symbols of the paper.
     fn equation(&self) -> &'static str;
 

@@ -11,6 +11,11 @@ const AIR_KG_PER_M3: f64 = 1.225;
 /// Drag areas that a robot may have, in areas between its wheels: a mast and a tarpaulin on a small robot.
 const MOST_FOOTPRINTS: f64 = 4.0;
 
+/// Drag area that a robot usually has, in areas between its wheels, and the factor by which it may be off: a body seen from ahead is about
+/// as large as what lies between its wheels, with the drag coefficient of a cube, 0.8 to 1.05 (Hoerner, Fluid-Dynamic Drag, 1965,
+/// chapter 3), bare or with a mast.
+const USUAL_FOOTPRINTS: [f64; 2] = [1.0, 1.7];
+
 /// Air that stands or moves against the robot.
 pub(super) struct Wind;
 
@@ -38,8 +43,14 @@ impl Mechanism for Wind {
         if parameter == 0 { [low, high.min(most_m2)] } else { [low, high] }
     }
 
+    /// Drives tell the force of the air, and hardly whether much of it stands against a weak wind or little against a strong one.
+    fn usual(&self, robot: &Robot, parameter: usize) -> Option<[f64; 2]> {
+        let [footprints, factor] = USUAL_FOOTPRINTS;
+        (parameter == 0).then_some([footprints * robot.track_m * robot.wheelbase_m, factor])
+    }
+
     fn equation(&self) -> &'static str {
-        "F = ½ ρ C_d A |v − w| (v − w), w the wind along the heading, half on each side"
+        "F = ½ ρ C_d A |v − w| (v − w∥), |v − w| of the whole stream, w∥ the wind along the heading, half on each side"
     }
 
     fn statement(&self, values: &[f64]) -> String {
@@ -50,12 +61,45 @@ impl Mechanism for Wind {
     }
 
     fn adjust(&self, _: &Robot, values: &[f64], moment: &Moment) -> Adjustment {
-        let along_mps = moment.motion.heading_rad.map_or(0.0, |heading_rad| {
+        let [along_mps, across_mps] = moment.motion.heading_rad.map_or([0.0; 2], |heading_rad| {
             let (sin, cos) = heading_rad.sin_cos();
-            values[1] * cos + values[2] * sin
+            [values[1] * cos + values[2] * sin, values[2] * cos - values[1] * sin]
         });
         let towards_mps = moment.motion.speed_mps - along_mps;
-        let force_n = 0.5 * AIR_KG_PER_M3 * values[0] * towards_mps * towards_mps.abs();
+        let force_n = 0.5 * AIR_KG_PER_M3 * values[0] * towards_mps.hypot(across_mps) * towards_mps;
         Adjustment { force_n: Sides::both(force_n / 2.0), ..Adjustment::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Motion, builtin};
+
+    /// Force of 0.5 m² of air on a robot at 1 m/s, in a wind of 6 m/s [N].
+    fn force_n(heading_rad: f64, towards_rad: f64) -> f64 {
+        let robot = builtin::husky_a200();
+        let motion = Motion::of_body(&robot, 1.0, 0.0).heading(heading_rad);
+        let values = [0.5, 6.0 * towards_rad.cos(), 6.0 * towards_rad.sin()];
+        let adjustment = Wind.adjust(&robot, &values, &Moment::steady(motion));
+        adjustment.force_n.left + adjustment.force_n.right
+    }
+
+    #[test]
+    fn wind_from_ahead_behind_and_the_side_pushes_by_the_square_of_the_whole_stream() {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        // 0.30625 N per (m/s)²: against 7 m/s, with 5 m/s, and √37 m/s of which 1 m/s is from ahead.
+        for (towards_rad, expected_n) in [(PI, 15.006_25), (0.0, -7.656_25), (FRAC_PI_2, 1.862_85)] {
+            let found_n = force_n(0.0, towards_rad);
+            assert!((found_n - expected_n).abs() < 1e-4, "{found_n} N of {expected_n} N");
+        }
+    }
+
+    #[test]
+    fn only_the_angle_between_wind_and_heading_counts() {
+        for turned_rad in [0.3, 1.9, -2.6] {
+            let difference_n = force_n(turned_rad, 0.7 + turned_rad) - force_n(0.0, 0.7);
+            assert!(difference_n.abs() < 1e-12, "{difference_n} N");
+        }
     }
 }
