@@ -34,7 +34,7 @@ pub struct CaseScore {
     pub swapped: bool,
     /// Root mean square error after correction over that of the drive without effects, both held out.
     pub rmse_ratio: Option<f64>,
-    /// Share of the held-out mismatch that a discovered term explains.
+    /// Share of the held-out mismatch that discovered terms explain together.
     pub discovered: Option<f64>,
     /// The same drive without the effects.
     pub twin: Option<Twin>,
@@ -211,8 +211,12 @@ fn family_of(name: &str) -> Option<Family> {
 
 /// Share of the held-out mismatch that `unknown` findings take, the noise of the twin drive set aside.
 fn discovered(findings: &[Finding], twin_w: Option<f64>) -> Option<f64> {
-    let fit = findings.iter().find(|finding| finding.mechanism == UNKNOWN)?.fit;
-    let (before_w, after_w) = (fit.held_out_rmse_before_w?, fit.held_out_rmse_after_w?);
+    // Each is fitted beside those before it: from the first one's error to the last one's.
+    let mut unknown =
+        findings.iter().filter(|finding| finding.mechanism == UNKNOWN).map(|finding| finding.fit);
+    let first = unknown.next()?;
+    let last = unknown.next_back().unwrap_or(first);
+    let (before_w, after_w) = (first.held_out_rmse_before_w?, last.held_out_rmse_after_w?);
     let floor_w2 = twin_w?.min(before_w).powi(2);
     ratio(before_w.powi(2) - after_w.powi(2), before_w.powi(2) - floor_w2)
 }

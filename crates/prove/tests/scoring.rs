@@ -40,10 +40,14 @@ fn fits(verdict: &str, findings: &str, [before_w, after_w]: [f64; 2]) -> Outcome
 }
 
 fn finding(name: &str, others: &str) -> String {
+    fitting(name, others, [4.0, 2.5])
+}
+
+fn fitting(name: &str, others: &str, [before_w, after_w]: [f64; 2]) -> String {
     format!(
         r#"{{"mechanism": "{name}", "indistinguishable_from": [{others}],
             "parameters": [{{"name": "mass_kg", "value": 11.0, "unit": "kg", "interval_95": [9.0, 13.0]}}],
-            "fit": {{"held_out_rmse_before_w": 4.0, "held_out_rmse_after_w": 2.5}}}}"#
+            "fit": {{"held_out_rmse_before_w": {before_w}, "held_out_rmse_after_w": {after_w}}}}}"#
     )
 }
 
@@ -115,6 +119,13 @@ fn effects_outside_the_list_may_be_unknown_but_not_something_else() {
     // From 4 W down to 2.5 W, of a mismatch that ends at the 2 W of the twin's drive.
     assert_eq!(board.scores[0].discovered, Some((16.0 - 6.25) / (16.0 - 4.0)));
     assert_eq!((board.in_two.of, board.detected.of), (0, 0), "they are no part of the list's figures");
+}
+
+#[test]
+fn terms_that_are_discovered_count_together() {
+    let terms = [fitting("unknown", "", [4.0, 3.5]), fitting("unknown", "", [3.5, 2.5])].join(", ");
+    let found = one(EffectName::Puddles, &says("unexplained", &terms));
+    assert_eq!(found.discovered, Some((16.0 - 6.25) / (16.0 - 4.0)));
 }
 
 #[test]
