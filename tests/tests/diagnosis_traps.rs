@@ -96,6 +96,20 @@ fn a_mass_that_stands_high_is_told_from_one_that_slides() {
 }
 
 #[test]
+fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
+    // In the first drive what else would be found beside it hides that it fades, until that is left out.
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    let brake = || Effect { side: Some(Side::Right), ..Effect::new(EffectName::BindingBrake, 5.0) };
+    for seed in [32, 34] {
+        let found = said(&robot, &record(seed, vec![brake()]), &healthy);
+        assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+        assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
+        assert!(found.sentence.contains("the first minutes"), "{}", found.sentence);
+    }
+}
+
+#[test]
 fn what_the_form_of_a_strong_effect_misses_is_no_second_effect() {
     // Beside soft soil, ground that skids more and rolls less explains a little more than ground that does both more.
     let robot = model::builtin::husky_a200();

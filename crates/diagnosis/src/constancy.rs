@@ -15,12 +15,16 @@ use crate::{
 /// Time over which it fades that a robot stood still [s].
 pub(crate) const MOVING_S: f64 = 3.0;
 
+/// Time over which it fades that a drive began [s]: what warms up or wears in does so within some minutes.
+const FIRST_S: f64 = 300.0;
+
 /// A quantity by average.
 type Quantity = fn(&Average) -> f64;
 
 /// What the size of something else may go with.
-const WITH: [(&str, Quantity); 17] = [
+const WITH: [(&str, Quantity); 18] = [
     ("time", |a| a.t_s),
+    ("how long ago the drive began", |a| (-a.t_s / FIRST_S).exp()),
     ("speed", |a| a.input.speed_mps.abs()),
     ("how tight it turns", |a| a.input.difference_mps.abs()),
     ("the slope", |a| a.input.pitch_rad),

@@ -129,14 +129,29 @@ fn without_unit(name: &str) -> String {
     if let "from_s" | "until_s" = name {
         return name.replace("_s", "").replacen("", "acts ", 1);
     }
-    const UNITS: [&str; 11] =
-        ["_kg", "_n", "_w", "_s", "_m", "_rad", "_mps", "_k_per_w", "_per_mps", "_kg_per_m", "_per_rad"];
+    const UNITS: [&str; 12] = [
+        "_kg",
+        "_n",
+        "_w",
+        "_s",
+        "_m",
+        "_m2",
+        "_rad",
+        "_mps",
+        "_k_per_w",
+        "_per_mps",
+        "_kg_per_m",
+        "_per_rad",
+    ];
     let unit = UNITS.iter().filter(|unit| name.ends_with(**unit)).max_by_key(|unit| unit.len());
     name.strip_suffix(unit.copied().unwrap_or("")).unwrap_or(name).replace('_', " ")
 }
 
 /// Three figures that count.
 fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let digits = (2.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.digits$}")
 }
@@ -164,3 +179,15 @@ figure{margin:1rem 0}.quiet{color:var(--quiet);font-size:.9rem}.equation{font-fa
 article{background:var(--card);border-radius:.6rem;padding:1rem;margin:.6rem 0}article p{margin:.4rem 0}
 table{border-collapse:collapse}td{padding:.15rem 1.2rem .15rem 0;vertical-align:top}.number{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 svg{display:block;width:100%;height:auto}svg text{fill:var(--quiet);font-size:12px}ul{margin:.2rem 0;padding-left:1.3rem}";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_beside_values_and_nothing_is_nothing() {
+        let names = ["drag_area_m2", "east_mps", "from_s", "roll_change"].map(without_unit);
+        assert_eq!(names, ["drag area", "east", "acts from", "roll change"]);
+        assert_eq!([0.0, 0.1224, -3.937].map(number), ["0", "0.122", "-3.94"]);
+    }
+}

@@ -16,8 +16,8 @@ pub struct Refused {
 /// Why one of what was found, by its number, is not what is missing; `None` if it may be.
 pub(crate) type Doubt<'a> = dyn Fn(&State, usize) -> Result<Option<String>, Error> + 'a;
 
-/// Leaves out what is doubted, one by one, and fits the rest again each time. Without healthy drives nothing is: the model's own
-/// error would pass for a reason.
+/// Leaves out what is doubted, one by one, and fits the rest again each time, whose doubts may have been hidden by what was left out.
+/// Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a reason.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -25,19 +25,28 @@ pub(crate) fn refuse(
     series: &Series,
     file: &Robot,
     state: &mut State,
-    doubt: &Doubt<'_>,
+    doubts: &[&Doubt<'_>],
 ) -> Result<Vec<Refused>, Error> {
     let mut refused = Vec::new();
-    let mut which = 0;
-    while series.has_healthy() && which < state.found.len() {
-        let Some(why) = doubt(state, which)? else {
-            which += 1;
-            continue;
-        };
+    if !series.has_healthy() {
+        return Ok(refused);
+    }
+    while let Some((which, why)) = first_doubted(state, doubts)? {
         let mechanism = state.found.remove(which).applied.mechanism.name();
         refused.push(Refused { mechanism, why });
         state.refit(series, file)?;
-        which = 0;
     }
     Ok(refused)
+}
+
+/// What is doubted first, and why.
+fn first_doubted(state: &State, doubts: &[&Doubt<'_>]) -> Result<Option<(usize, String)>, Error> {
+    for doubt in doubts {
+        for which in 0..state.found.len() {
+            if let Some(why) = doubt(state, which)? {
+                return Ok(Some((which, why)));
+            }
+        }
+    }
+    Ok(None)
 }

@@ -154,12 +154,20 @@ pub fn search(
     let mut state = pairs::tried(series, file, &before, state, &null)?;
     second_ground::part(series, file, &mut state)?;
     let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
-    let mut refused = refuse(series, file, &mut state, &of_many_sizes)?;
     let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);
-    refused.extend(refuse(series, file, &mut state, &told_better)?);
-    let State { found, fit: after } = state;
+    let refused = refuse(series, file, &mut state, &[&of_many_sizes, &told_better])?;
+    let State { mut found, fit: after } = state;
+    tell_apart(&mut found);
     let left = [left_before, left(series, &after)];
     Ok(Search { found, refused, before, after, left, null })
+}
+
+/// What was found itself is no other name of what was found beside it.
+fn tell_apart(found: &mut [Found]) {
+    let names: Vec<&str> = found.iter().map(|one| one.applied.mechanism.name()).collect();
+    for one in found {
+        one.indistinguishable_from.retain(|other| !names.contains(&other.as_str()));
+    }
 }
 
 /// Fits every rival in full, beside mechanisms that act, and decides for the one that explains most; those that explain as much stay
@@ -212,4 +220,32 @@ pub(crate) fn decide(
 pub(crate) fn is_told(series: &Series) -> bool {
     let missed = series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()));
     series.has_healthy() && missed <= TOLD
+}
+
+#[cfg(test)]
+mod tests {
+    use model::mechanism;
+
+    use super::*;
+    use crate::span::Span;
+
+    #[test]
+    fn what_was_found_is_no_other_name_of_what_was_found_beside_it() {
+        let one = |name: &str, others: &[&str]| Found {
+            applied: Applied {
+                mechanism: mechanism::by_name(name).unwrap(),
+                values: Vec::new(),
+                span: Span::ALL,
+            },
+            half_widths: Vec::new(),
+            limits_95: Vec::new(),
+            p_value: 0.0,
+            delta_bic: 0.0,
+            held_out_gain: 0.0,
+            indistinguishable_from: others.iter().map(|other| (*other).to_owned()).collect(),
+        };
+        let mut found = [one("surface_change", &["center_of_mass", "soft_soil"]), one("center_of_mass", &[])];
+        tell_apart(&mut found);
+        assert_eq!(found[0].indistinguishable_from, ["soft_soil"]);
+    }
 }
