@@ -37,12 +37,23 @@ const ONSETS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const MOST_BORDERS: usize = 16;
 /// Time constants of heat that are tried [s].
 const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
+/// Where a search for a centre of mass behind the middle begins \[m\]: on level ground it shows as one before it does, on slopes not quite.
+const BEHIND_M: f64 = -1e-6;
+/// A file's centre of mass so near the middle is there for all that robot files know \[m\].
+const AT_THE_MIDDLE_M: f64 = 0.02;
+
 /// Range of a value that power does not follow in proportion, where the drives themselves would lead it away: heat that comes
-/// and goes within seconds is no heat, but power by another name.
-pub(crate) fn range(mechanism: &dyn mechanism::Mechanism, robot: &Robot, parameter: usize) -> [f64; 2] {
-    match (mechanism.name(), parameter) {
+/// and goes within seconds is no heat, but power by another name; and a centre of mass stays on the side of the middle where the search
+/// began, since what it does turns round there.
+pub(crate) fn range(applied: &Applied, robot: &Robot, parameter: usize) -> [f64; 2] {
+    let [low, high] = applied.mechanism.bounds(robot, parameter);
+    let filed_m = robot.center_of_mass.forward_m;
+    match (applied.mechanism.name(), parameter) {
         ("motor_heating", 1) => [MEMORIES_S[0], MEMORIES_S[MEMORIES_S.len() - 1]],
-        _ => mechanism.bounds(robot, parameter),
+        ("center_of_mass", 0) if filed_m.abs() < AT_THE_MIDDLE_M => {
+            if applied.values[0] < 0.0 { [low, (-filed_m).min(0.0)] } else { [(-filed_m).max(0.0), high] }
+        }
+        _ => [low, high],
     }
 }
 
@@ -50,7 +61,7 @@ pub(crate) fn range(mechanism: &dyn mechanism::Mechanism, robot: &Robot, paramet
 pub(crate) fn moved(applied: &Applied, robot: &Robot, parameters: &[usize], by: &[f64]) -> Applied {
     let mut moved = applied.clone();
     for (&parameter, by) in parameters.iter().zip(by) {
-        let [low, high] = range(applied.mechanism, robot, parameter);
+        let [low, high] = range(applied, robot, parameter);
         moved.values[parameter] = (moved.values[parameter] + by).clamp(low, high);
     }
     moved
@@ -155,7 +166,8 @@ pub(crate) fn of_more(
 ) -> Result<Vec<Vec<f64>>, Error> {
     let mut columns = Vec::new();
     for &parameter in linear {
-        let by = standing.mechanism.parameters()[parameter].probe;
+        // Away from nothing, where what a mechanism does may turn round.
+        let by = standing.mechanism.parameters()[parameter].probe.copysign(standing.values[parameter]);
         let mut more = standing.clone();
         more.values[parameter] += by;
         let seen = series.predict(robot, &[others, &[more]].concat())?;
@@ -254,7 +266,9 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
             winds
         }
         // To the side alone as well: how far forward it lies can only add.
-        "center_of_mass" => vec![(vec![0.0; 2], vec![0, 1]), (vec![0.0; 2], vec![1])],
+        "center_of_mass" => {
+            vec![(vec![0.0; 2], vec![0, 1]), (vec![BEHIND_M, 0.0], vec![0, 1]), (vec![0.0; 2], vec![1])]
+        }
         // One side drags; what holds both back alike is the ground.
         "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {

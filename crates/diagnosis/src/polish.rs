@@ -171,7 +171,7 @@ impl Together {
         let (applied, others) = apart(&self.applied, last);
         let all: Vec<usize> = (0..applied.values.len()).collect();
         let is_within = |parameter: &usize| {
-            let [low, high] = candidates::range(applied.mechanism, file, *parameter);
+            let [low, high] = candidates::range(&applied, file, *parameter);
             (low..high).contains(&applied.values[*parameter]) && applied.values[*parameter] > low
         };
         let within: Vec<usize> = all.iter().copied().filter(is_within).collect();

@@ -291,7 +291,7 @@ const LEAST_DELAY_ROWS: f64 = 0.9;
 
 fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bool {
     candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {
-        let [low, high] = candidate.applied.mechanism.bounds(robot, parameter);
+        let [low, high] = candidates::range(&candidate.applied, robot, parameter);
         let sigma = evidence.covariance[(j, j)].max(0.0).sqrt();
         let value = candidate.applied.values[parameter] + value;
         value + 2.0 * sigma >= low && value - 2.0 * sigma <= high

@@ -1,7 +1,8 @@
 //! The `force-balance` model: side forces from a quasi-static balance, continuous over every turning radius.
 
 use crate::{
-    Robot, Sides, lateral::SidewaysPull, mechanism::Adjustment, motion::Motion, robot::Surface, rolling, skid,
+    Robot, Sides, lateral::SidewaysPull, mechanism::Adjustment, motion::Motion, robot::Surface, rolling,
+    skid::{self, Skid},
 };
 
 /// Side forces of one motion on one surface, per newton of weight; the slope enters later.
@@ -28,22 +29,22 @@ pub(crate) struct SideForces {
 pub struct FrictionShape {
     /// s: direction of each side's rolling, −1 to 1 [-].
     rolling: Sides<f64>,
-    /// Moment of skid over μ_S and the normal load, with the sign of the turn [m].
-    skid_arm_m: f64,
-    /// That arm over the one of full skid [-].
-    mobilized: f64,
+    /// What skids.
+    skid: Skid,
+    /// ε: load share of the front axle beyond one half [-].
+    load_forward: f64,
 }
 
 /// What a robot and a surface make of every shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
-    /// c μ_R n: rolling resistance of each side over the normal load [-].
+    /// μ_R n: rolling resistance of each side over the normal load [-].
     rolling_per_load: Sides<f64>,
     /// μ_S [-].
     mu_skid: f64,
     /// b [m].
     track_m: f64,
-    /// c μ_R of each side [-].
+    /// μ_R of each side [-].
     mu_roll: Sides<f64>,
     /// See [`Adjustment::mu_roll_per_steepness`].
     steepening: f64,
@@ -56,12 +57,11 @@ pub struct Friction {
 impl Friction {
     /// Friction of a robot on a surface.
     pub fn new(robot: &Robot, surface: &Surface) -> Self {
-        let mu_roll = surface.mu_roll * rolling::center_of_mass_correction(robot);
         Friction {
-            rolling_per_load: rolling::load_share(robot).map(|n| mu_roll * n),
+            rolling_per_load: rolling::load_share(robot).map(|n| surface.mu_roll * n),
             mu_skid: surface.mu_skid,
             track_m: robot.track_m,
-            mu_roll: Sides::both(mu_roll),
+            mu_roll: Sides::both(surface.mu_roll),
             steepening: 0.0,
             load_left_per_tilt: 0.0,
             load_forward_per_along: 0.0,
@@ -87,23 +87,23 @@ impl Friction {
 impl FrictionShape {
     /// The shape of a motion on ground of a slip-angle scale α_s [rad].
     pub fn new(robot: &Robot, slip_angle_scale_rad: f64, motion: &Motion) -> Self {
-        let skid_arm_m = skid::arm_m(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps);
         FrictionShape {
             rolling: motion.rim_speeds_mps.map(rolling::direction),
-            skid_arm_m,
-            mobilized: skid_arm_m.abs() / skid::full_arm_m(robot),
+            skid: Skid::new(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps),
+            load_forward: skid::load_forward(robot),
         }
     }
 
     /// Balances rolling and skid resistance and gravity.
     ///
     /// ```text
-    /// F_l + F_r       = N c μ_R (n_l s_l + n_r s_r)                 + m g sinγ sinβ + m dv/dt
-    /// (F_r − F_l) b/2 = f M_skid + N c μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
+    /// F_l + F_r       = N μ_R (n_l s_l + n_r s_r)                 + m g sinγ sinβ + m dv/dt
+    /// (F_r − F_l) b/2 = f M_skid + N μ_R (n_r s_r − n_l s_l) b/2  + I dω/dt
     /// ```
     ///
-    /// n load share of a side (eq. 14), s direction of its rolling, c the correction of eq. 16, N normal load, f what
-    /// sideways pull leaves of the skid ([`SidewaysPull`]).
+    /// n load share of a side (eq. 14), s direction of its rolling, N normal load, f what sideways pull leaves of the skid
+    /// ([`SidewaysPull`]). The correction of μ_R in eq. 16 for a centre of mass off the middle, found there by experiment, is left out: the
+    /// wheels together carry the same load wherever it lies, and what such a robot skids less is in M_skid.
     #[inline]
     pub(crate) fn side_forces(&self, friction: &Friction) -> SideForces {
         let shifted = Sides { left: friction.load_left_per_tilt, right: -friction.load_left_per_tilt };
@@ -112,9 +112,9 @@ impl FrictionShape {
             rolling: friction.rolling_per_load.zip(self.rolling).map(|(r, s)| r * s),
             steepening: friction.steepening,
             shifting,
-            skid: self.skid_arm_m * friction.mu_skid / friction.track_m,
-            pull: SidewaysPull::new(friction.mu_skid, self.mobilized)
-                .shifted(friction.load_forward_per_along, self.mobilized * self.skid_arm_m.signum()),
+            skid: self.skid.arm_m * friction.mu_skid / friction.track_m,
+            pull: SidewaysPull::new(friction.mu_skid, &self.skid)
+                .shifted([self.load_forward, friction.load_forward_per_along], &self.skid),
             gravity_share: Sides::both(0.5),
         }
     }

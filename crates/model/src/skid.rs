@@ -1,65 +1,90 @@
 //! Lateral skid of the wheels while turning.
 
-use crate::{Robot, robot::Surface};
+use crate::{Robot, lateral, robot::Surface};
 
 /// Moment that skid sets against the turn, per newton of normal load [m].
 ///
 /// ```text
-/// M_skid / N = sgn(ω) Σ_i |x_i − δx| · n_i · μ_S · tanh(α_i / α_s),   α_i = atan2(|vy_i|, |vx_i|)
-/// vx_i = v − ω y_i,   vy_i = ω (x_i − δx)
+/// M_skid / N = sgn(ω) f S m μ_S,   S = 2a (¼ − (δx/a)²),   m = Σ_i n_i tanh(α_i / α_s),   α_i = atan2(|ω| a/2, |v − ω y_i|)
 /// ```
 ///
-/// Wheels at (±a/2, ±b/2), n_i the load share of eq. 14, α_i the slip angle. The instantaneous centre lies
-/// abreast of the centre of mass, as eq. 15 assumes, so the lever arms start there. α_s → 0 is the paper's
-/// Coulomb skid; α_s > 0 lets wide arcs skid less than tight ones, as rubber does.
+/// S arm of full skid (eq. 15), m share of it that the slip angles α_i of a turn about the middle of the base call up, n_i load share of a
+/// side (eq. 14). α_s → 0 is the paper's Coulomb skid; α_s > 0 lets wide arcs skid less than tight ones, as rubber does.
+///
+/// f is what moving the centre of turning leaves ([`lateral::level_share`]). Eq. 15 takes it abreast of the centre of mass. Wherever all
+/// wheels skid as hard as they can, the heavier axle would then push sideways more than the other and nothing would hold against it, so that
+/// the robot really turns about a place nearer to that axle: in a spin on Coulomb ground at the axle itself, where f S is the lighter
+/// axle's load share times the wheelbase. Arcs so wide that tyres answer in proportion to their slip angles keep eq. 15, f = 1.
 pub fn moment_per_load_m(robot: &Robot, surface: &Surface, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
-    arm_m(robot, surface.slip_angle_scale_rad, speed_mps, yaw_rate_radps) * surface.mu_skid
+    let law = |slip_angle_rad| saturation(slip_angle_rad, surface.slip_angle_scale_rad);
+    mobilized_arm_m(robot, speed_mps, yaw_rate_radps, law) * sign(yaw_rate_radps) * surface.mu_skid
 }
 
-/// The moment of [`moment_per_load_m`] over μ_S [m].
-pub(crate) fn arm_m(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
-    let law = |slip_angle_rad| saturation(slip_angle_rad, slip_angle_scale_rad);
-    mobilized_arm_m(robot, speed_mps, yaw_rate_radps, law) * sign(yaw_rate_radps)
+/// What a turn calls up of the full skid resistance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Skid {
+    /// f S m of [`moment_per_load_m`], with the sign of the turn [m].
+    pub(crate) arm_m: f64,
+    /// m [-].
+    pub(crate) mobilized: f64,
+    /// f [-].
+    pub(crate) level_share: f64,
 }
 
-/// The arm of full skid, Σ_i |x_i − δx| · n_i [m]; never 0, so that it can divide.
-pub(crate) fn full_arm_m(robot: &Robot) -> f64 {
-    let (half_m, forward_m) = (robot.wheelbase_m / 2.0, robot.center_of_mass.forward_m);
-    let share = forward_m / robot.wheelbase_m;
-    let arm_m = (half_m - forward_m) * (0.5 + share) + (half_m + forward_m) * (0.5 - share);
-    arm_m.max(f64::MIN_POSITIVE)
+impl Default for Skid {
+    /// None.
+    fn default() -> Self {
+        Skid { arm_m: 0.0, mobilized: 0.0, level_share: 1.0 }
+    }
 }
 
-/// Σ_i |x_i − δx| · n_i · σ(α_i) of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel
-/// feels at a slip angle, 0 to π/2 [m].
+impl Skid {
+    pub(crate) fn new(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, yaw_rate_radps: f64) -> Self {
+        let law = |slip_angle_rad| saturation(slip_angle_rad, slip_angle_scale_rad);
+        let of = Skid::of_law(robot, speed_mps, yaw_rate_radps, law);
+        Skid { arm_m: of.arm_m * sign(yaw_rate_radps), ..of }
+    }
+
+    /// For any law σ of how much a wheel feels at a slip angle; the arm without a sign.
+    fn of_law(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, law: impl Fn(f64) -> f64) -> Self {
+        let mobilized = mobilized(robot, speed_mps, yaw_rate_radps, law);
+        let level_share = lateral::level_share(load_forward(robot), mobilized);
+        Skid { arm_m: level_share * full_arm_m(robot) * mobilized, mobilized, level_share }
+    }
+}
+
+/// ε: load share of the front axle beyond one half (eq. 14), −½ to ½.
+pub(crate) fn load_forward(robot: &Robot) -> f64 {
+    robot.center_of_mass.forward_m / robot.wheelbase_m
+}
+
+/// S of [`moment_per_load_m`], Σ_i |x_i − δx| · n_i [m].
+fn full_arm_m(robot: &Robot) -> f64 {
+    2.0 * robot.wheelbase_m * (0.25 - load_forward(robot).powi(2))
+}
+
+/// f S m of [`moment_per_load_m`], for any law σ of how much of the full skid resistance a wheel feels at a slip angle, 0 to π/2 [m].
 pub fn mobilized_arm_m(
     robot: &Robot,
     speed_mps: f64,
     yaw_rate_radps: f64,
     mobilized: impl Fn(f64) -> f64,
 ) -> f64 {
-    let com = &robot.center_of_mass;
-    let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
-    let [front_m, rear_m] = [half_a - com.forward_m, -half_a - com.forward_m];
-    let of_axle = |arm_m: f64| {
-        [half_b, -half_b].map(|y_m| {
-            let along_mps = speed_mps - yaw_rate_radps * y_m;
-            let across_mps = yaw_rate_radps * arm_m;
-            if across_mps == 0.0 { 0.0 } else { mobilized(across_mps.abs().atan2(along_mps.abs())) }
-        })
-    };
-    let front = of_axle(front_m);
-    // Axles as far from the centre slip at the same angles, and those are what costs.
-    let rear = if rear_m == -front_m { front } else { of_axle(rear_m) };
-    let mut sum_m = 0.0;
-    for (arm_m, x_sign, axle) in [(front_m, 1.0, front), (rear_m, -1.0, rear)] {
-        let share_x = 0.5 + com.forward_m / robot.wheelbase_m * x_sign;
-        for (y_sign, mobilized) in [1.0, -1.0].into_iter().zip(axle) {
-            let share_y = 0.5 + com.left_m / robot.track_m * y_sign;
-            sum_m += arm_m.abs() * share_x * share_y * mobilized;
-        }
+    Skid::of_law(robot, speed_mps, yaw_rate_radps, mobilized).arm_m
+}
+
+/// m of [`moment_per_load_m`].
+fn mobilized(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, law: impl Fn(f64) -> f64) -> f64 {
+    let across_mps = (yaw_rate_radps * robot.wheelbase_m / 2.0).abs();
+    if across_mps == 0.0 {
+        return 0.0;
     }
-    sum_m
+    let share = robot.center_of_mass.left_m / robot.track_m;
+    let side = |sign: f64| {
+        let along_mps = speed_mps - yaw_rate_radps * sign * robot.track_m / 2.0;
+        (0.5 + sign * share) * law(across_mps.atan2(along_mps.abs()))
+    };
+    side(1.0) + side(-1.0)
 }
 
 /// tanh(α/α_s): how much of the full skid resistance a wheel feels, 0 to 1.
@@ -95,7 +120,53 @@ mod tests {
         assert!(moment_m.abs() < 1e-12, "{moment_m}");
     }
 
+    /// The arm about the centre of turning at which tyres push to both sides alike, by bisection.
+    fn arm_by_search_m(robot: &Robot, scale_rad: f64, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
+        let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
+        let com = &robot.center_of_mass;
+        let about = |centre_m: f64| {
+            let (mut sideways, mut arm_m) = (0.0, 0.0);
+            for (x_m, y_m) in [(half_a, half_b), (half_a, -half_b), (-half_a, half_b), (-half_a, -half_b)] {
+                let load = (0.5 + com.forward_m * x_m.signum() / robot.wheelbase_m)
+                    * (0.5 + com.left_m * y_m.signum() / robot.track_m);
+                let across_mps = yaw_rate_radps * (x_m - centre_m);
+                let slip_rad = across_mps.abs().atan2((speed_mps - yaw_rate_radps * y_m).abs());
+                let skid = load * (slip_rad / scale_rad).tanh();
+                sideways += across_mps.signum() * skid;
+                arm_m += (x_m - centre_m).abs() * skid;
+            }
+            (sideways * yaw_rate_radps.signum(), arm_m)
+        };
+        let (mut low_m, mut high_m) = (-half_a, half_a);
+        for _ in 0..60 {
+            let middle_m = (low_m + high_m) / 2.0;
+            if about(middle_m).0 > 0.0 { low_m = middle_m } else { high_m = middle_m }
+        }
+        about(low_m).1
+    }
+
+    #[test]
+    fn a_spin_on_coulomb_ground_turns_about_the_heavier_axle() {
+        let mut robot = builtin::husky_a200();
+        robot.center_of_mass.forward_m = 0.08;
+        let surface = Surface { slip_angle_scale_rad: 0.0, ..robot.surfaces["marble"].clone() };
+        let lighter = 0.5 - 0.08 / 0.54;
+        let moment_m = moment_per_load_m(&robot, &surface, 0.0, 0.5);
+        assert_relative_eq!(moment_m, 0.29 * 0.54 * lighter, max_relative = 1e-12);
+    }
+
     proptest! {
+        #[test]
+        fn the_arm_is_that_of_the_centre_at_which_tyres_push_to_both_sides_alike(
+            forward_m in -0.11f64..0.11, left_m in -0.1f64..0.1, scale_rad in 0.02f64..0.3, v in -1.0f64..1.0, w in 0.1f64..2.0,
+        ) {
+            let mut robot = builtin::husky_a200();
+            (robot.center_of_mass.forward_m, robot.center_of_mass.left_m) = (forward_m, left_m);
+            let arm_m = Skid::new(&robot, scale_rad, v, w).arm_m;
+            let searched_m = arm_by_search_m(&robot, scale_rad, v, w);
+            prop_assert!((arm_m / searched_m - 1.0).abs() < 0.03, "{} m for {} m", arm_m, searched_m);
+        }
+
         #[test]
         fn skid_opposes_the_turn_and_never_exceeds_coulomb(v in -1.0f64..1.0, w in -3.0f64..3.0) {
             let robot = builtin::husky_a200();

@@ -35,24 +35,36 @@ fn effective_friction(robot: &Robot, surface: &Surface, radius_m: f64, v: f64) -
 
 proptest! {
     #[test]
-    fn coulomb_skid_reproduces_eq_16_for_any_centre_of_mass_and_eq_15_without_its_correction(
+    fn coulomb_skid_reproduces_eq_15_but_turns_about_the_heavier_axle(
+        forward in -0.25f64..0.25, left in -0.25f64..0.25, radius in 0.31f64..20.0,
+    ) {
+        let mut robot = builtin::husky_a200();
+        robot.center_of_mass.forward_m = forward;
+        robot.center_of_mass.left_m = left;
+        // Turning left, the right side is the outer one.
+        let (roll, skid) = turning_friction_columns(&robot, radius, -left, 1.0);
+        // Eq. 15's loads and arms, 2a (1/4 − (δx/a)²), against what the lighter axle holds over the wheelbase.
+        let share = forward.abs() / robot.wheelbase_m;
+        let balanced = (0.5 - share) / (2.0 * (0.25 - share * share));
+        let expected = 0.063 * roll + 0.29 * balanced * skid;
+        let found = effective_friction(&robot, &coulomb(), radius, 0.9);
+        prop_assert!((found - expected).abs() < 1e-6, "{found} against {expected}");
+    }
+
+    #[test]
+    fn the_printed_model_reproduces_eq_16_for_any_centre_of_mass(
         forward in -0.25f64..0.25, left in -0.25f64..0.25, radius in 0.31f64..20.0,
     ) {
         let mut robot = builtin::husky_a200();
         robot.center_of_mass.forward_m = forward;
         robot.center_of_mass.left_m = left;
         let (surface, correction) = (coulomb(), rolling::center_of_mass_correction(&robot));
-        // Turning left, the right side is the outer one.
-        let outward = -left;
-        let found = effective_friction(&robot, &surface, radius, 0.9);
-        let eq_16 = turning_friction(&robot, radius, outward, correction, (surface.mu_roll, surface.mu_skid));
+        let motion = Motion::of_body(&robot, 0.9, 0.9 / radius);
+        let p = power(PowerModel::DogruMarques, &robot, &surface, motion, Attitude::LEVEL, Sides::both(20.0));
+        let outer_mps = 0.9 * (1.0 + robot.track_m / 2.0 / radius);
+        let found = p.mechanical_w.right / (outer_mps * robot.mass_kg * STANDARD_GRAVITY_MPS2);
+        let eq_16 = turning_friction(&robot, radius, -left, correction, (surface.mu_roll, surface.mu_skid));
         prop_assert!((found - eq_16).abs() < 1e-6, "{found} against eq. 16's {eq_16}");
-
-        let uncorrected = Surface { mu_roll: surface.mu_roll / correction, ..surface };
-        let found = effective_friction(&robot, &uncorrected, radius, 0.9);
-        let (roll, skid) = turning_friction_columns(&robot, radius, outward, 1.0);
-        let eq_15 = 0.063 * roll + 0.29 * skid;
-        prop_assert!((found - eq_15).abs() < 1e-6, "{found} against eq. 15's {eq_15}");
     }
 
     #[test]

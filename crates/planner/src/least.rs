@@ -49,7 +49,8 @@ fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, mano
     let steepest = robot.limits.max_roll_rad.tan();
     let on = |manoeuvre: &Manoeuvre| {
         let (kernel, speed_mps) = (manoeuvre.kernel(), manoeuvre.motion().speed_mps.abs());
-        let skid_n = kernel.skid_n * kernel.pull.left_of_skid(steepest, 0.0);
+        let left = |tilt| kernel.pull.left_of_skid(tilt, 0.0);
+        let skid_n = kernel.skid_n * left(steepest).min(left(-steepest));
         let rims_mps = manoeuvre.motion().rim_speeds_mps;
         let friction_w = (kernel.rolling_n.left - skid_n) * rims_mps.left
             + (kernel.rolling_n.right + skid_n) * rims_mps.right;
