@@ -149,7 +149,8 @@ fn power_w(
     let yaw_radps = figure.yaw * 2.0 * fastest_mps / robot.slip_track_m;
     let motion = Motion::of_body(&robot, figure.speed * fastest_mps, yaw_radps);
     let attitude = Attitude { pitch_rad: figure.slope * RAMP_RAD, roll_rad: 0.0 };
-    let acceleration = Acceleration { forward_mps2: figure.gain_mps2, yaw_radps2: 0.0 };
+    let left_mps2 = motion.speed_mps * motion.yaw_rate_radps;
+    let acceleration = Acceleration { forward_mps2: figure.gain_mps2, yaw_radps2: 0.0, left_mps2 };
     let rim_mps2 = Sides::both(figure.gain_mps2);
     let motion = motion.heading(figure.heading_rad);
     let mut moment = Moment { motion, acceleration, rim_mps2, attitude, loss_w };

@@ -16,8 +16,7 @@ use crate::{Real, skid::Skid};
 ///
 /// m share of the full skid resistance that the turn alone calls up, ρ share that the sideways pull takes, f share that is left
 /// of the moment, φ roll. A spin with m → 1, the paper's Coulomb skid, keeps 1 − |ρ|; a wide arc keeps 1 − ρ². In a bend tyres
-/// also push inwards with m v ω; the paper's quasi-static balance leaves that out and so does this one: with it the outer
-/// side's mean of Table II would be 0.126, without it it is 0.133, and 0.134 was measured.
+/// also push inwards with m v ω, which enters with other accelerations ([`crate::Acceleration`]).
 ///
 /// A high centre of mass takes a share ε of the load from the rear to the front axle, on a climb the other way; then the axles hold
 ///

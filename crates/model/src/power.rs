@@ -162,10 +162,21 @@ impl Manoeuvre {
         self.power_on_grade(attitude.grade(), acceleration)
     }
 
+    /// Side forces on a grade where tyres hold the robot on a circle as well [N].
+    fn steady_n(&self, grade: Grade<f64>, left_mps2: f64) -> Sides<f64> {
+        if left_mps2 == 0.0 {
+            return self.kernel.forces_n(grade);
+        }
+        // Ground that rises to the left has to be held against as a turn to the left has.
+        let held = grade.tilt + left_mps2 / (STANDARD_GRAVITY_MPS2 * grade.normal);
+        let skid_n = self.kernel.skid_left_n(held, grade.along);
+        self.kernel.forces_of_n(grade, self.kernel.steepened(grade.normal), skid_n)
+    }
+
     /// Power where it is known how the ground carries the weight.
     #[inline]
     pub fn power_on_grade(&self, grade: Grade<f64>, acceleration: Acceleration) -> Power {
-        let steady_n = self.kernel.forces_n(grade);
+        let steady_n = self.steady_n(grade, acceleration.left_mps2);
         let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
         // What leans over the lower side resists being sped up there as it does being lifted.
         let leaning_n =

@@ -46,7 +46,7 @@ fn eqs_4_and_5_make_forces_of_mass_and_slope() {
     let motion = Motion::of_body(&robot, 0.5, 0.0);
     let marble = &robot.surfaces["marble"];
     let straight = Manoeuvre::new(PowerModel::ForceBalance, &robot, marble, motion, Sides::both(20.0));
-    let acceleration = Acceleration { forward_mps2: 0.3, yaw_radps2: 0.0 };
+    let acceleration = Acceleration { forward_mps2: 0.3, yaw_radps2: 0.0, left_mps2: 0.0 };
     let sides = straight.power_accelerating(attitude, acceleration).force_n;
 
     let mass = Mass::new::<kilogram>(robot.mass_kg);

@@ -68,7 +68,7 @@ mod tests {
     fn speeding_up_pushes_the_side_of_the_mass_as_a_climb_does() {
         let robot = crate::builtin::husky_a200();
         let motion = Motion::of_body(&robot, 0.5, 0.0);
-        let acceleration = Acceleration { forward_mps2: 0.2 * STANDARD_GRAVITY_MPS2, yaw_radps2: 0.0 };
+        let acceleration = Acceleration { forward_mps2: 0.2 * STANDARD_GRAVITY_MPS2, yaw_radps2: 0.0, left_mps2: 0.0 };
         let moment = Moment { acceleration, ..Moment::steady(motion) };
         let adjustment = CenterOfMass.adjust(&robot, &[0.0, 0.05], &moment);
         assert!(adjustment.force_n.left > 0.0);

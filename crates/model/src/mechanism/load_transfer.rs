@@ -84,7 +84,7 @@ mod tests {
             [(0.4, 0.2, 0.15, 0.0), (0.4, 0.2, -0.15, 0.3), (0.3, -0.25, 0.1, -0.2), (0.5, 0.0, 0.2, 0.4)]
         {
             let attitude = Attitude { pitch_rad, roll_rad };
-            let acceleration = Acceleration { forward_mps2, yaw_radps2: 0.0 };
+            let acceleration = Acceleration { forward_mps2, yaw_radps2: 0.0, left_mps2: 0.0 };
             let motion = Motion::of_body(&robot, 0.5, 0.0);
             let moment = Moment { acceleration, attitude, ..Moment::steady(motion) };
             let adjustment = LoadTransfer.adjust(&robot, &[height_m], &moment);

@@ -236,7 +236,7 @@ mod tests {
                 let motion = Motion::of_body(&robot, 0.5, 0.4).heading(0.7);
                 let mut moment = Moment {
                     motion,
-                    acceleration: Acceleration { forward_mps2: 0.1, yaw_radps2: 0.1 },
+                    acceleration: Acceleration { forward_mps2: 0.1, yaw_radps2: 0.1, left_mps2: 0.0 },
                     rim_mps2: Sides { left: 0.05, right: 0.15 },
                     attitude: Attitude { pitch_rad: -0.25, roll_rad: 0.1 },
                     loss_w: Sides::both(10.0),

@@ -38,5 +38,6 @@ impl Mechanism for WheelRadius {
         moment.rim_mps2 = moment.rim_mps2.map(|a| scale * a);
         moment.acceleration.forward_mps2 *= scale;
         moment.acceleration.yaw_radps2 *= scale;
+        moment.acceleration.left_mps2 *= scale * scale;
     }
 }

@@ -27,7 +27,9 @@ impl Mechanism for WheelSlip {
     }
 
     fn measure(&self, values: &[f64], moment: &mut Moment) {
-        moment.motion.speed_mps *= 1.0 - values[0];
-        moment.motion.yaw_rate_radps *= 1.0 - values[0];
+        let moved = 1.0 - values[0];
+        moment.motion.speed_mps *= moved;
+        moment.motion.yaw_rate_radps *= moved;
+        moment.acceleration.left_mps2 *= moved * moved;
     }
 }
