@@ -131,6 +131,20 @@ fn a_fault_of_the_meters_hides_no_ground_that_is_weaker() {
     assert_eq!(names(&found), ["power_offset", "surface_change"], "{}", found.sentence);
 }
 
+#[test]
+fn a_mass_ahead_of_the_middle_or_behind_it_is_neither_other_ground_nor_the_other() {
+    // On level ground both make spins as much easier; slopes and bends tell them apart.
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    for (direction_rad, forward_m) in [(0.0, 0.07), (std::f64::consts::PI, -0.07)] {
+        let shifted = Effect { direction_rad, ..Effect::new(EffectName::CenterOfMass, 0.07) };
+        let found = said(&robot, &record(32, vec![shifted]), &healthy);
+        assert_eq!(names(&found), ["center_of_mass"], "{}", found.sentence);
+        let told_m = found.findings[0].parameters[0].value;
+        assert!((told_m - forward_m).abs() < 0.015, "{told_m}: {}", found.sentence);
+    }
+}
+
 /// The same drive as a meter at the battery sees it, which does not tell the sides apart.
 fn by_one_meter(mut drive: Recording) -> Recording {
     let sides = [Channel::LeftPower, Channel::RightPower].map(|side| drive.channels.remove(&side).unwrap());

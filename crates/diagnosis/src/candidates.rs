@@ -67,6 +67,17 @@ pub(crate) fn moved(applied: &Applied, robot: &Robot, parameters: &[usize], by: 
     moved
 }
 
+/// The same as far on the other side of the middle, where a centre of mass shows nearly alike; `None` of anything else.
+pub(crate) fn mirrored(applied: &Applied, robot: &Robot) -> Option<Applied> {
+    let forward_m = robot.center_of_mass.forward_m;
+    let is_off = applied.mechanism.name() == "center_of_mass" && applied.values[0] != 0.0;
+    is_off.then(|| {
+        let mut mirrored = applied.clone();
+        mirrored.values[0] = -applied.values[0] - 2.0 * forward_m;
+        mirrored
+    })
+}
+
 /// Winds that are tried [m/s], in eight directions.
 const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
 

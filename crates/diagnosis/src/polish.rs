@@ -61,6 +61,9 @@ pub(crate) fn polish(
     let mut covariance = DMatrix::zeros(before + own.len(), before + own.len());
     covariance.view_mut((before, before), known.shape()).copy_from(known);
     let mut together = Together::settled(series, file, (applied, free), covariance, near)?;
+    if let Some(next) = together.on_the_other_side(series, file)? {
+        together = next;
+    }
     // Values from a grid are freed at last, as long as that explains more.
     let last = others.len();
     if own.len() < together.applied[last].values.len() {
@@ -130,6 +133,17 @@ impl Together {
             (last.applied, last.base) = next;
         }
         Ok(last)
+    }
+
+    /// The fit with the last of them on the other side of what it shows alike about, if that explains more.
+    fn on_the_other_side(&self, series: &Series, file: &Robot) -> Result<Option<Self>, Error> {
+        let (one, mut applied) = apart(&self.applied, self.applied.len() - 1);
+        let Some(mirrored) = candidates::mirrored(&one, file) else { return Ok(None) };
+        applied.push(mirrored);
+        let fitted = (applied, self.free.clone());
+        let other = Together::settled(series, file, fitted, self.covariance.clone(), &self.base.robot)?;
+        let costs = [&other, self].map(|one| cost(series, (&one.applied, &one.base), &self.base));
+        Ok((costs[0] < costs[1] - LEAST_GAIN).then_some(other))
     }
 
     /// The step that the drives ask for; `None` where the drives do not tell them.

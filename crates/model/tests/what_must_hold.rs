@@ -156,6 +156,23 @@ fn spinning_on_marble_draws_what_the_paper_measured_cold_and_warm() {
 }
 
 #[test]
+fn a_heavier_robot_spins_for_less_where_the_load_lies_over_the_rear_axle() {
+    // §V-B: up to 250 W with 14 kg on the front, which bring the centre of mass to the middle; only up to 200 W with 28 kg on the back,
+    // "even when rotating faster".
+    let spin_w = |model: PowerModel, robot: &Robot| {
+        let motion = Motion::of_body(robot, 0.0, 1.0);
+        power(model, robot, &marble(), motion, Attitude::LEVEL, Sides::both(20.0)).side_w.sum()
+    };
+    let share = |model| {
+        spin_w(model, &builtin::configuration_c()) / spin_w(model, &builtin::configuration_b())
+    };
+    let (balanced, printed) = (share(PowerModel::ForceBalance), share(PowerModel::DogruMarques));
+    assert!(balanced < 0.8, "{balanced} at the same rate");
+    // Eq. 16, whose centre of turning stays abreast of the centre of mass, would have the robot turn no faster at 200 W.
+    assert!(printed > 0.8, "{printed} at the same rate");
+}
+
+#[test]
 fn power_and_side_forces_have_no_jump_anywhere_from_spin_to_straight() {
     let robot = builtin::husky_a200();
     // Sweep the angle of (v, ω b/2) right round the circle: it passes R = 0, ±R_c and ±∞ twice each.
