@@ -4,7 +4,7 @@ use model::{Robot, mechanism};
 use rayon::prelude::*;
 
 use crate::{
-    Error,
+    Error, off_middle,
     region::regions,
     second_ground::{self, GROUND},
     series::{Applied, Series},
@@ -37,23 +37,13 @@ const ONSETS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const MOST_BORDERS: usize = 16;
 /// Time constants of heat that are tried [s].
 const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
-/// Where a search for a centre of mass behind the middle begins \[m\]: on level ground it shows as one before it does, on slopes not quite.
-const BEHIND_M: f64 = -1e-6;
-/// A file's centre of mass so near the middle is there for all that robot files know \[m\].
-const AT_THE_MIDDLE_M: f64 = 0.02;
-
 /// Range of a value that power does not follow in proportion, where the drives themselves would lead it away: heat that comes
-/// and goes within seconds is no heat, but power by another name; and a centre of mass stays on the side of the middle where the search
-/// began, since what it does turns round there.
+/// and goes within seconds is no heat, but power by another name; and a centre of mass stays on its side of the middle.
 pub(crate) fn range(applied: &Applied, robot: &Robot, parameter: usize) -> [f64; 2] {
-    let [low, high] = applied.mechanism.bounds(robot, parameter);
-    let filed_m = robot.center_of_mass.forward_m;
     match (applied.mechanism.name(), parameter) {
         ("motor_heating", 1) => [MEMORIES_S[0], MEMORIES_S[MEMORIES_S.len() - 1]],
-        ("center_of_mass", 0) if filed_m.abs() < AT_THE_MIDDLE_M => {
-            if applied.values[0] < 0.0 { [low, (-filed_m).min(0.0)] } else { [(-filed_m).max(0.0), high] }
-        }
-        _ => [low, high],
+        ("center_of_mass", 0) => off_middle::range_m(applied, robot),
+        _ => applied.mechanism.bounds(robot, parameter),
     }
 }
 
@@ -65,17 +55,6 @@ pub(crate) fn moved(applied: &Applied, robot: &Robot, parameters: &[usize], by: 
         moved.values[parameter] = (moved.values[parameter] + by).clamp(low, high);
     }
     moved
-}
-
-/// The same as far on the other side of the middle, where a centre of mass shows nearly alike; `None` of anything else.
-pub(crate) fn mirrored(applied: &Applied, robot: &Robot) -> Option<Applied> {
-    let forward_m = robot.center_of_mass.forward_m;
-    let is_off = applied.mechanism.name() == "center_of_mass" && applied.values[0] != 0.0;
-    is_off.then(|| {
-        let mut mirrored = applied.clone();
-        mirrored.values[0] = -applied.values[0] - 2.0 * forward_m;
-        mirrored
-    })
 }
 
 /// Winds that are tried [m/s], in eight directions.
@@ -277,9 +256,11 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
             winds
         }
         // To the side alone as well: how far forward it lies can only add.
-        "center_of_mass" => {
-            vec![(vec![0.0; 2], vec![0, 1]), (vec![BEHIND_M, 0.0], vec![0, 1]), (vec![0.0; 2], vec![1])]
-        }
+        "center_of_mass" => vec![
+            (vec![0.0; 2], vec![0, 1]),
+            (vec![off_middle::BEHIND_M, 0.0], vec![0, 1]),
+            (vec![0.0; 2], vec![1]),
+        ],
         // One side drags; what holds both back alike is the ground.
         "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {

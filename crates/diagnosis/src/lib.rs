@@ -36,6 +36,7 @@ mod next_drive;
 mod noise;
 mod nuisance;
 mod null;
+mod off_middle;
 mod onset;
 mod outside;
 mod page;

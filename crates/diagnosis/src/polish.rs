@@ -8,6 +8,7 @@ use crate::{
     baseline::Baseline,
     candidates::{self, apart},
     evidence::Evidence,
+    off_middle,
     regime::Regime,
     search::is_told,
     series::{Applied, Series},
@@ -138,7 +139,7 @@ impl Together {
     /// The fit with the last of them on the other side of what it shows alike about, if that explains more.
     fn on_the_other_side(&self, series: &Series, file: &Robot) -> Result<Option<Self>, Error> {
         let (one, mut applied) = apart(&self.applied, self.applied.len() - 1);
-        let Some(mirrored) = candidates::mirrored(&one, file) else { return Ok(None) };
+        let Some(mirrored) = off_middle::mirrored(&one, file) else { return Ok(None) };
         applied.push(mirrored);
         let fitted = (applied, self.free.clone());
         let other = Together::settled(series, file, fitted, self.covariance.clone(), &self.base.robot)?;

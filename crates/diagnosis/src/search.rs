@@ -11,6 +11,7 @@ use crate::{
     gates::best,
     needed::{drop_one, last_undoes},
     null::Null,
+    off_middle,
     onset::{self, Bounded},
     outside, pairs,
     polish::{Polished, form_sigma, polish, settle},
@@ -194,7 +195,12 @@ pub(crate) fn decide(
     let explained = misfit(series, by, by) / common - misfits.iter().copied().fold(f64::INFINITY, f64::min);
     // What a form leaves open of all that is explained tells no form from another.
     let unit = (form_sigma(series).powi(2) * explained).max(1.0);
-    let cost = |i: usize| misfits[i] / unit + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln();
+    let is_possible = |i: &usize| !off_middle::is_at_its_limit(&fits[*i].applied[applied.len()], file);
+    let are_possible = (0..fits.len()).any(|i| is_possible(&i));
+    let cost = |i: usize| match !are_possible || is_possible(&i) {
+        true => misfits[i] / unit + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln(),
+        false => f64::INFINITY,
+    };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
     let indistinguishable_from = (0..fits.len())

@@ -1,7 +1,12 @@
 //! The `force-balance` model: side forces from a quasi-static balance, continuous over every turning radius.
 
 use crate::{
-    Robot, Sides, lateral::SidewaysPull, mechanism::Adjustment, motion::Motion, robot::Surface, rolling,
+    Robot, Sides,
+    lateral::SidewaysPull,
+    mechanism::Adjustment,
+    motion::Motion,
+    robot::Surface,
+    rolling,
     skid::{self, Skid},
 };
 

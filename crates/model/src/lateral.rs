@@ -57,8 +57,7 @@ pub struct SidewaysPull<T> {
 /// search for the centre of turning, arms come out the same to 1 % for α_s ≤ 0.3 rad and |ε| ≤ 0.2, whatever the arc.
 pub(crate) fn level_share(load_forward: f64, mobilized: f64) -> f64 {
     let (shift, called_up) = (4.0 * load_forward * load_forward, mobilized * mobilized);
-    let (a, b, c) =
-        (called_up * (1.0 - shift), 1.0 - called_up + 2.0 * called_up * shift, called_up * shift);
+    let (a, b, c) = (called_up * (1.0 - shift), 1.0 - called_up + 2.0 * called_up * shift, called_up * shift);
     let root = (b * b + 4.0 * a * c).sqrt();
     if c > 0.0 { 1.0 - 2.0 * c / (b + root) } else { 1.0 }
 }
@@ -97,11 +96,7 @@ impl SidewaysPull<f64> {
     /// The same where the front axle carries so much more than half of the load, on level ground and per sin γ sin β.
     pub(crate) fn shifted(self, [load_forward, load_forward_per_along]: [f64; 2], skid: &Skid) -> Self {
         let per_load = 2.0 * skid.mobilized * skid.level_share * skid.arm_m.signum();
-        SidewaysPull {
-            ahead: per_load * load_forward,
-            per_along: per_load * load_forward_per_along,
-            ..self
-        }
+        SidewaysPull { ahead: per_load * load_forward, per_along: per_load * load_forward_per_along, ..self }
     }
 
     /// The same in single precision.
@@ -167,7 +162,11 @@ mod tests {
     /// along the robot until the four tyres hold it, with a share of the load shifted to the front; about a place that the
     /// share also moves (`carried`) or that stays in the middle. Bisection knows nothing of the closed form.
     fn spin_by_search(
-        robot: &Robot, scale_rad: f64, mu_skid: f64, [wanted, ahead]: [f64; 2], carried: bool,
+        robot: &Robot,
+        scale_rad: f64,
+        mu_skid: f64,
+        [wanted, ahead]: [f64; 2],
+        carried: bool,
     ) -> (f64, f64) {
         let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
         let about_m = if carried { ahead * robot.wheelbase_m } else { 0.0 };
@@ -202,7 +201,8 @@ mod tests {
             for tilt in [0.0, 0.02, -0.02, 0.06, -0.06, 0.12, -0.12] {
                 let (held_m, level_m) = spin_by_search(&robot, scale_rad, mu_skid, [tilt, ahead], true);
                 let turn = turn(mobilized, ahead);
-                let share = SidewaysPull::new(mu_skid, &turn).shifted([ahead, 0.0], &turn).left_of_skid(tilt, 0.0);
+                let share =
+                    SidewaysPull::new(mu_skid, &turn).shifted([ahead, 0.0], &turn).left_of_skid(tilt, 0.0);
                 let expected = held_m / level_m;
                 assert!((share - expected).abs() < 0.03, "{tilt}, {ahead}: {share} for {expected}");
             }

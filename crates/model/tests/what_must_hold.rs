@@ -163,9 +163,8 @@ fn a_heavier_robot_spins_for_less_where_the_load_lies_over_the_rear_axle() {
         let motion = Motion::of_body(robot, 0.0, 1.0);
         power(model, robot, &marble(), motion, Attitude::LEVEL, Sides::both(20.0)).side_w.sum()
     };
-    let share = |model| {
-        spin_w(model, &builtin::configuration_c()) / spin_w(model, &builtin::configuration_b())
-    };
+    let share =
+        |model| spin_w(model, &builtin::configuration_c()) / spin_w(model, &builtin::configuration_b());
     let (balanced, printed) = (share(PowerModel::ForceBalance), share(PowerModel::DogruMarques));
     assert!(balanced < 0.8, "{balanced} at the same rate");
     // Eq. 16, whose centre of turning stays abreast of the centre of mass, would have the robot turn no faster at 200 W.

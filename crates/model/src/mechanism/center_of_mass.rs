@@ -5,6 +5,10 @@ use crate::{
     mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
 };
 
+/// Farthest that it lies from the middle, as a share of what axles or sides are apart: an axle then carries three quarters. The paper's
+/// robot came to 0.2 with 28 kg on its back.
+const MOST_OFF: f64 = 0.25;
+
 /// A centre of mass off the place that the robot's file gives.
 pub(super) struct CenterOfMass;
 
@@ -22,6 +26,15 @@ impl Mechanism for CenterOfMass {
             Parameter { name: "forward_m", unit: "m", bounds: [-0.25, 0.25], probe: 0.01 },
             Parameter { name: "left_m", unit: "m", bounds: [-0.25, 0.25], probe: 0.01 },
         ]
+    }
+
+    /// No axle and no side carries more than three quarters: what stands so could hardly be driven.
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        let com = &robot.center_of_mass;
+        let (filed_m, apart_m) =
+            if parameter == 0 { (com.forward_m, robot.wheelbase_m) } else { (com.left_m, robot.track_m) };
+        let farthest_m = MOST_OFF * apart_m;
+        [(-farthest_m - filed_m).min(0.0), (farthest_m - filed_m).max(0.0)]
     }
 
     fn equation(&self) -> &'static str {
@@ -68,7 +81,8 @@ mod tests {
     fn speeding_up_pushes_the_side_of_the_mass_as_a_climb_does() {
         let robot = crate::builtin::husky_a200();
         let motion = Motion::of_body(&robot, 0.5, 0.0);
-        let acceleration = Acceleration { forward_mps2: 0.2 * STANDARD_GRAVITY_MPS2, yaw_radps2: 0.0, left_mps2: 0.0 };
+        let acceleration =
+            Acceleration { forward_mps2: 0.2 * STANDARD_GRAVITY_MPS2, yaw_radps2: 0.0, left_mps2: 0.0 };
         let moment = Moment { acceleration, ..Moment::steady(motion) };
         let adjustment = CenterOfMass.adjust(&robot, &[0.0, 0.05], &moment);
         assert!(adjustment.force_n.left > 0.0);
