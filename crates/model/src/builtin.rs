@@ -69,7 +69,7 @@ fn marble() -> Surface {
 
 /// Sandy loam, as fitted to the motor currents of a Husky A200 on eight drives (BorealTC, LaRocque et al., IROS 2024):
 /// `cargo run --release -p joulepath-calibration --example husky_table`. 95 % intervals: μ_R 0.129 to 0.184, with the no-load
-/// current of the motors in it; μ_S 0.302 to 0.524; the scale, which these drives hardly determine, 0.03 to 0.25 rad.
+/// current of the motors in it; μ_S 0.302 to 0.524; the scale, which these drives do not determine, 0.03 to 0.27 rad.
 fn sandy_loam() -> Surface {
     Surface {
         mu_roll: 0.157,
