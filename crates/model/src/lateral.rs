@@ -27,7 +27,7 @@ use crate::{Real, skid::Skid};
 /// in a turn to the right, which is the law above at ρ − 2 ε m f, and at ρ + 2 ε m f in one to the left, but for a moment ρ ε that is
 /// there straight on as well and for terms in ε². f stands on both sides, and is found in three steps; a search for the centre agrees to 0.01 of the moment.
 ///
-/// A centre of mass off the middle has such an ε on level ground too ([`level_share`]), and there the law is exact but for slip angles
+/// A centre of mass off the middle has such an ε on level ground too (`level_share`), and there the law is exact but for slip angles
 /// that add, since weight then pulls where the load lies. What is told of the pull is the share of the moment on level ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SidewaysPull<T> {

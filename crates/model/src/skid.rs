@@ -11,7 +11,7 @@ use crate::{Robot, lateral, robot::Surface};
 /// S arm of full skid (eq. 15), m share of it that the slip angles α_i of a turn about the middle of the base call up, n_i load share of a
 /// side (eq. 14). α_s → 0 is the paper's Coulomb skid; α_s > 0 lets wide arcs skid less than tight ones, as rubber does.
 ///
-/// f is what moving the centre of turning leaves ([`lateral::level_share`]). Eq. 15 takes it abreast of the centre of mass. Wherever all
+/// f is what moving the centre of turning leaves (`level_share` in `lateral.rs`). Eq. 15 takes it abreast of the centre of mass. Wherever all
 /// wheels skid as hard as they can, the heavier axle would then push sideways more than the other and nothing would hold against it, so that
 /// the robot really turns about a place nearer to that axle: in a spin on Coulomb ground at the axle itself, where f S is the lighter
 /// axle's load share times the wheelbase. Arcs so wide that tyres answer in proportion to their slip angles keep eq. 15, f = 1.
