@@ -96,6 +96,48 @@ fn a_mass_that_stands_high_is_told_from_one_that_slides() {
 }
 
 #[test]
+fn wheels_that_give_way_under_pull_show_in_turns_and_hide_no_meter_beside_them() {
+    // Its turns lose 4 %, and power hardly changes for the same wheels: the gyroscope tells.
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    let loose = || Effect::new(EffectName::WheelSlip, 0.04);
+    let found = said(&robot, &record(32, vec![loose()]), &healthy);
+    assert_eq!(
+        (found.verdict, names(&found)),
+        (Verdict::Explained, vec!["wheel_slip"]),
+        "{}",
+        found.sentence
+    );
+    let [slip, turning] = [0, 1].map(|i| found.findings[0].parameters[i].value);
+    assert!(slip.abs() < 0.01 && (0.03..0.06).contains(&turning), "{}", found.sentence);
+    let gain = Effect { onset_s: 250.0, ..Effect::new(EffectName::PowerScale, 0.05) };
+    let found = said(&robot, &record(32, vec![loose(), gain]), &healthy);
+    let is_named = |name: &str| {
+        found
+            .findings
+            .iter()
+            .any(|one| one.mechanism == name || one.indistinguishable_from.iter().any(|other| other == name))
+    };
+    assert!(is_named("wheel_slip") && is_named("power_scale"), "{}", found.sentence);
+}
+
+#[test]
+fn a_clock_that_jumps_on_the_way_is_told_with_its_time() {
+    let robot = model::builtin::husky_a200();
+    let late = Effect { onset_s: 350.0, ..Effect::new(EffectName::ClockOffset, 0.2) };
+    let found = said(&robot, &record(32, vec![late]), &record(31, vec![]));
+    assert_eq!(
+        (found.verdict, names(&found)),
+        (Verdict::Explained, vec!["clock_offset"]),
+        "{}",
+        found.sentence
+    );
+    let told: Vec<f64> = found.findings[0].parameters.iter().map(|parameter| parameter.value).collect();
+    // Within 15 % of the delay and half a minute of the time.
+    assert!((told[0] - 0.2).abs() < 0.03 && (told[1] - 350.0).abs() < 30.0, "{}", found.sentence);
+}
+
+#[test]
 fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
     // In the first drive what else would be found beside it hides that it fades, until that is left out.
     let robot = model::builtin::husky_a200();

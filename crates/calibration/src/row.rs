@@ -50,10 +50,11 @@ impl Row {
     /// dv/dt, dω/dt and v ω of a robot whose wheels move so.
     pub fn acceleration(&self, robot: &Robot) -> Acceleration {
         let moved = 1.0 - robot.wheel_slip();
+        let turned = moved * (1.0 - robot.turning_slip());
         let motion = self.motion(robot);
         Acceleration {
             forward_mps2: moved * self.rim_mps2.sum() / 2.0,
-            yaw_radps2: moved * (self.rim_mps2.right - self.rim_mps2.left) / robot.slip_track_m,
+            yaw_radps2: turned * (self.rim_mps2.right - self.rim_mps2.left) / robot.slip_track_m,
             left_mps2: motion.speed_mps * motion.yaw_rate_radps,
         }
     }

@@ -18,7 +18,32 @@ pub struct Average {
     pub input: Input,
 }
 
+/// What a meter is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// Power.
+    Power,
+    /// Speed over ground.
+    Speed,
+    /// Yaw rate.
+    YawRate,
+}
+
+impl Quantity {
+    /// All.
+    pub(crate) const ALL: [Quantity; 3] = [Quantity::Power, Quantity::Speed, Quantity::YawRate];
+}
+
 impl Average {
+    /// What its meter is of.
+    pub(crate) fn quantity(&self) -> Quantity {
+        match self.channel {
+            3 => Quantity::Speed,
+            4 => Quantity::YawRate,
+            _ => Quantity::Power,
+        }
+    }
+
     /// Whether what acts in a span acts on it.
     pub(crate) fn is_in(&self, span: Span) -> bool {
         span.acts(self.run, self.t_s, self.input.position_m)

@@ -32,8 +32,8 @@ pub(crate) struct Baseline {
     pub(crate) columns: Vec<Vec<f64>>,
     /// Change of predictions per unit of each size of each mechanism that acts.
     pub(crate) sizes: Vec<Vec<Vec<f64>>>,
-    /// Change of predictions with half a row of delay of power behind speeds, in suspect and in healthy drives: less than a
-    /// row is the sensors' business.
+    /// Change of predictions with half a row of delay of power behind speeds, in suspect drives and in all: less than a row is the
+    /// sensors' business, and what they are late by in healthy drives they are in the others too.
     pub(crate) delays: [Vec<f64>; 2],
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
@@ -67,7 +67,7 @@ impl Baseline {
         applied: &[Applied],
         near: &Robot,
     ) -> Result<Self, Error> {
-        let knobs = Knob::of(file, &series.surfaces(), series.sees_battery());
+        let knobs = Knob::of(file, &series.surfaces(), series.sees_battery(), series.sees_turning());
         let trusted = series.is_trusted();
         let fitted = if applied.is_empty() { trusted.clone() } else { vec![true; trusted.len()] };
         let mut robot = near.clone();
@@ -172,7 +172,9 @@ fn delays(
     let mut with = applied.to_vec();
     with.push(delay.clone());
     let seen = [series.predict(robot, &with)?, series.predict_with(robot, applied, &[delay])?];
-    Ok(seen.map(|seen| differences(&seen, predicted_w)))
+    let [suspect, healthy] = seen.map(|seen| differences(&seen, predicted_w));
+    let all = suspect.iter().zip(&healthy).map(|(a, b)| a + b).collect();
+    Ok([suspect, all])
 }
 
 fn columns_of(

@@ -80,7 +80,7 @@ impl Family {
 
     /// Its candidates, one by one.
     ///
-    /// What shifts in time or remembers has no onset but the beginning; all else does from some time on what it would always do.
+    /// What remembers has no onset but the beginning; all else does from some time on what it would always do.
     pub(crate) fn candidates<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = Candidate> + 'a {
         self.spans.iter().map(|&span| {
             let from = |column: &Vec<f64>| {
@@ -207,7 +207,7 @@ pub(crate) fn apart(applied: &[Applied], which: usize) -> (Applied, Vec<Applied>
 /// Without healthy drives to compare with, what acts all the time looks like what the model itself misses; only what sets in,
 /// grows in time or shifts it can then be told.
 fn spans(series: &Series, name: &str) -> Vec<Span> {
-    if let "motor_heating" | "clock_offset" = name {
+    if name == "motor_heating" {
         return vec![Span::ALL];
     }
     let mut tried: Vec<Span> = series.has_healthy().then_some(Span::ALL).into_iter().collect();
@@ -261,6 +261,8 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
             (vec![off_middle::BEHIND_M, 0.0], vec![0, 1]),
             (vec![0.0; 2], vec![1]),
         ],
+        // What spins carries the robot less far and turns it less; what gives way under pull shows in turns, where wheels pull hardest.
+        "wheel_slip" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1]), (vec![0.0; 2], vec![0, 1])],
         // One side drags; what holds both back alike is the ground.
         "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {

@@ -95,9 +95,11 @@ pub(crate) fn doubt(
         let (p_value, change) = judge(&changing(series, &effect, *of)?)?;
         (change.abs() > LEAST_CHANGE).then(|| (p_value, format!("its size goes with {with}")))
     });
+    // Treads wind up before they hold, so that what a turn loses is lost as it begins.
+    let may_be_early = applied[which].mechanism.name() == "wheel_slip";
     let of_time = judge(&rate_per_s(&series.averages, &effect)).and_then(|(p_value, early_s)| {
         let when = if early_s < 0.0 { "late" } else { "early" };
-        (early_s.abs() > LEAST_LAG_S)
+        (early_s.abs() > LEAST_LAG_S && !(may_be_early && early_s > 0.0))
             .then(|| (p_value, format!("it comes {:.1} s too {when}", early_s.abs())))
     });
     let clearest = of_sizes.chain(of_time).min_by(|a, b| a.0.total_cmp(&b.0));

@@ -22,16 +22,24 @@ enum Place {
     K2([bool; 2]),
     Electronics,
     Hotel,
+    SlipTrack,
 }
 
 /// Relative width of the slip-angle scale, which no robot file tells: as wide as that of ground that is new.
 const SCALE_SIGMA: f64 = 0.5;
+/// Relative width of the slip track: a Husky A200's effective track is 0.8 to 1.0 m on hard ground (BorealTC's drives).
+const SLIP_TRACK_SIGMA: f64 = 0.1;
 /// Width of standing loads that a robot file gives as nothing [W].
 const STANDING_SIGMA_W: f64 = 2.0;
 
 impl Knob {
-    /// The knobs of a robot on surfaces; the battery shows its hotel load, motor drivers do not.
-    pub(crate) fn of(robot: &Robot, surfaces: &[String], sees_battery: bool) -> Vec<Knob> {
+    /// The knobs of a robot on surfaces; the battery shows its hotel load, motor drivers do not, and only a gyroscope how far it turned.
+    pub(crate) fn of(
+        robot: &Robot,
+        surfaces: &[String],
+        sees_battery: bool,
+        sees_turning: bool,
+    ) -> Vec<Knob> {
         let u = robot.uncertainty;
         let mut knobs = Vec::new();
         let mut add = |name: String, place: Place, sigma: f64, bounds: [f64; 2]| {
@@ -58,6 +66,11 @@ impl Knob {
         add("drive_electronics_w".into(), Place::Electronics, standing(electronics_w), [-50.0, 1000.0]);
         if sees_battery {
             add("hotel_power_w".into(), Place::Hotel, standing(robot.hotel_power_w), [-50.0, 5000.0]);
+        }
+        if sees_turning {
+            let track_m = robot.slip_track_m;
+            let bounds_m = [0.5 * track_m, 4.0 * track_m];
+            add("slip_track_m".into(), Place::SlipTrack, SLIP_TRACK_SIGMA * track_m, bounds_m);
         }
         knobs
     }
@@ -94,6 +107,7 @@ impl Knob {
             Place::K2(_) => Some(&mut motors.right.k2),
             Place::Electronics => Some(&mut robot.drive_electronics_w),
             Place::Hotel => Some(&mut robot.hotel_power_w),
+            Place::SlipTrack => Some(&mut robot.slip_track_m),
         };
         place.into_iter().for_each(with);
     }

@@ -8,6 +8,7 @@ use nalgebra::DVector;
 
 use crate::{
     Error,
+    average::{Average, Quantity},
     null::Null,
     polish::{Polished, settle},
     search::{AS_GOOD, Found, State, is_told},
@@ -75,14 +76,22 @@ fn is_beyond_form(series: &Series, state: &State, which: usize, without: &Polish
         |a: &[f64], b: &[f64]| white.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
     let added = difference(&state.fit.predicted_w, &without.base.predicted_w);
     let beside = difference(&without.base.predicted_w, &none_w);
-    let squares = |effect: &[f64]| effect.iter().map(|x| x * x).sum::<f64>();
-    let whole = squares(&added);
+    let quantities = || series.averages.iter().map(Average::quantity);
+    let squares = |effect: &[f64], of: Quantity| {
+        let own = effect.iter().zip(quantities()).filter(|(_, quantity)| *quantity == of);
+        own.map(|(x, _)| x * x).sum::<f64>()
+    };
+    // What a form misses of one quantity does not pass for what shows in another.
+    let most = |a: &Quantity, b: &Quantity| squares(&added, *a).total_cmp(&squares(&added, *b));
+    let shown_in = Quantity::ALL.into_iter().max_by(most).unwrap_or(Quantity::Power);
+    let (whole, others) = (squares(&added, shown_in), squares(&beside, shown_in));
     if is_told(series) {
-        return Ok(whole >= LEAST_OF_ALL_WHERE_TOLD * squares(&beside));
+        return Ok(whole >= LEAST_OF_ALL_WHERE_TOLD * others);
     }
     let least = if matches!(one.span, Span::Within(_)) { LEAST_IN_PLACE } else { LEAST_OF_ALL };
-    let beyond: f64 = added.iter().zip(&beside).map(|(a, b)| (a * a - FORM * b * b).max(0.0)).sum();
-    Ok(whole >= least * squares(&beside) && beyond >= BEYOND_FORM * whole)
+    let both = added.iter().zip(&beside).zip(quantities()).filter(|(_, quantity)| *quantity == shown_in);
+    let beyond: f64 = both.map(|((a, b), _)| (a * a - FORM * b * b).max(0.0)).sum();
+    Ok(whole >= least * others && beyond >= BEYOND_FORM * whole)
 }
 
 /// Whether there is no doubt of what it does: faults of meters and standing loads do the same whatever robot and ground are like. What may

@@ -11,7 +11,7 @@ use crate::{
     noise::Whitening,
     series::{Applied, Series},
     span::Span,
-    weigh::{Weighed, blocks, system},
+    weigh::{Weighed, blocks, system, undelayed},
 };
 
 /// Parts that are weighed in one go: few enough that some dozens of them keep several processors busy.
@@ -42,7 +42,8 @@ impl<'a> Profile<'a> {
         let Candidate { applied, linear, .. } = &first.candidate;
         let always = Applied { span: Span::ALL, ..applied.clone() };
         let all = candidates::of(series, &base.robot, others, &base.predicted_w, always, linear.clone())?;
-        let (white, system) = (base.whitening(series), system(series, base));
+        let beside = if first.name() == "clock_offset" { undelayed } else { system };
+        let (white, system) = (base.whitening(series), beside(series, base));
         Ok(Profile { series, white, system, first, everywhere: all.columns })
     }
 

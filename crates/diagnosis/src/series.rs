@@ -193,6 +193,11 @@ impl Series {
         self.meters.iter().any(|meter| matches!(meter, Meter::Battery | Meter::Rest))
     }
 
+    /// Whether a gyroscope tells how far the robot turned.
+    pub(crate) fn sees_turning(&self) -> bool {
+        self.meters.contains(&Meter::Yaw)
+    }
+
     /// Whether there are healthy drives.
     pub fn has_healthy(&self) -> bool {
         self.parts.len() > 1

@@ -16,7 +16,7 @@ pub(crate) struct Shapes {
 /// Everything that shapes of recorded wheel speeds depend on.
 #[derive(Clone, Debug, PartialEq)]
 struct Key {
-    geometry: [f64; 6],
+    geometry: [f64; 7],
     scales_rad: Vec<f64>,
 }
 
@@ -29,8 +29,9 @@ impl Shapes {
         work_out: impl FnOnce(&[f64]) -> Vec<FrictionShape>,
     ) -> Arc<Vec<FrictionShape>> {
         let (forward_m, left_m) = (robot.center_of_mass.forward_m, robot.center_of_mass.left_m);
+        let [slip, turning] = [robot.wheel_slip(), robot.turning_slip()];
         let geometry =
-            [robot.wheelbase_m, robot.track_m, robot.slip_track_m, forward_m, left_m, robot.wheel_slip()];
+            [robot.wheelbase_m, robot.track_m, robot.slip_track_m, forward_m, left_m, slip, turning];
         let key = Key { geometry, scales_rad };
         let find = || {
             let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);

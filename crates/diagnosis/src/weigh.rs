@@ -286,8 +286,8 @@ fn beyond(evidence: &Evidence, misfit_variance: Vec<f64>) -> Option<f64> {
     Some(values.dot(&(covariance.try_inverse()? * &values)))
 }
 
-/// A delay of less than a row, but for rounding, is the sensors' business.
-const LEAST_DELAY_ROWS: f64 = 0.9;
+/// A delay of less than a row, but for what its estimate may be off by, is the sensors' business.
+const LEAST_DELAY_ROWS: f64 = 0.8;
 
 fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bool {
     candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {

@@ -25,7 +25,7 @@ pub struct KnownMechanism {
 pub struct KnownMechanismFile {
     /// Name of a mechanism of physics, as a diagnosis reports it.
     pub mechanism: String,
-    /// Its parameters, each named with its unit.
+    /// Its parameters, each named with its unit; those that older files lack may be left out.
     pub parameters: BTreeMap<String, f64>,
 }
 
@@ -106,9 +106,11 @@ impl TryFrom<KnownMechanismFile> for KnownMechanism {
             let names: Vec<&str> = wanted.iter().map(|p| p.name).collect();
             return Err(format!("`{name}` has no parameter `{unknown}`; it has {}", names.join(", ")));
         }
-        let value = |p: &mechanism::Parameter| {
-            let value =
-                *file.parameters.get(p.name).ok_or(format!("`{name}` lacks its parameter `{}`", p.name))?;
+        let value = |(i, p): (usize, &mechanism::Parameter)| {
+            let written = file.parameters.get(p.name).copied();
+            let value = written
+                .or(mechanism.is_optional(i).then_some(0.0))
+                .ok_or(format!("`{name}` lacks its parameter `{}`", p.name))?;
             let [low, high] = p.bounds;
             let hint = if p.unit == "1" { "give a ratio".to_owned() } else { format!("give {}", p.unit) };
             if (low..=high).contains(&value) {
@@ -117,7 +119,7 @@ impl TryFrom<KnownMechanismFile> for KnownMechanism {
                 Err(format!("`{}` of `{name}` is {value}, must be {low} to {high}; {hint}", p.name))
             }
         };
-        let values = wanted.iter().map(value).collect::<Result<_, _>>()?;
+        let values = wanted.iter().enumerate().map(value).collect::<Result<_, _>>()?;
         Ok(KnownMechanism { mechanism, values })
     }
 }
@@ -163,8 +165,17 @@ impl Robot {
 
     /// s of the mechanism `wheel_slip`: share by which the robot moves less than its wheels turn [-].
     pub fn wheel_slip(&self) -> f64 {
+        self.slips(0)
+    }
+
+    /// s_t of the mechanism `wheel_slip`: share by which the robot turns less beyond that [-].
+    pub fn turning_slip(&self) -> f64 {
+        self.slips(1)
+    }
+
+    fn slips(&self, parameter: usize) -> f64 {
         let slips = self.mechanisms.iter().filter(|known| known.mechanism.name() == "wheel_slip");
-        slips.filter_map(|known| known.values.first()).sum()
+        slips.filter_map(|known| known.values.get(parameter)).sum()
     }
 }
 
@@ -187,7 +198,7 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
             }
         }
     }
-    let (mass_kg, slip) = (robot.lifted_mass_kg(), robot.wheel_slip());
+    let (mass_kg, slip) = (robot.lifted_mass_kg(), robot.wheel_slip().max(robot.turning_slip()));
     let field = || "mechanisms".to_owned();
     if mass_kg <= 0.0 {
         let message =
@@ -263,11 +274,20 @@ mod tests {
 
     #[test]
     fn slipping_wheels_turn_faster_for_the_same_way() {
-        let robot = with(json!([{"mechanism": "wheel_slip", "parameters": {"slip": 0.2}}])).unwrap();
-        let motion = Motion::of_body(&robot, 0.4, 0.5);
-        let back = Motion::of_wheels(&robot, motion.rim_speeds_mps);
-        assert!((motion.rim_speeds_mps.sum() / 2.0 - 0.5).abs() < 1e-12);
-        assert!((back.speed_mps - 0.4).abs() < 1e-12 && (back.yaw_rate_radps - 0.5).abs() < 1e-12);
+        let slipping =
+            |parameters: Value| with(json!([{"mechanism": "wheel_slip", "parameters": parameters}])).unwrap();
+        for robot in [slipping(json!({"slip": 0.2})), slipping(json!({"slip": 0.2, "turning": 0.1}))] {
+            let motion = Motion::of_body(&robot, 0.4, 0.5);
+            let back = Motion::of_wheels(&robot, motion.rim_speeds_mps);
+            assert!((motion.rim_speeds_mps.sum() / 2.0 - 0.5).abs() < 1e-12);
+            assert!((back.speed_mps - 0.4).abs() < 1e-12 && (back.yaw_rate_radps - 0.5).abs() < 1e-12);
+        }
+        let turning = slipping(json!({"slip": 0.0, "turning": 0.1}));
+        let [firm, loose] = [builtin::husky_a200(), turning].map(|robot| {
+            let rims_mps = Motion::of_body(&robot, 0.4, 0.5).rim_speeds_mps;
+            rims_mps.right - rims_mps.left
+        });
+        assert!((loose - firm / 0.9).abs() < 1e-12, "its wheels turn against each other by a ninth more");
     }
 
     #[test]

@@ -31,9 +31,10 @@ impl Motion {
     /// The motion that wheel encoders report, when no gyroscope says otherwise.
     pub fn of_wheels(robot: &Robot, rim_speeds_mps: Sides<f64>) -> Self {
         let moved = 1.0 - robot.wheel_slip();
+        let turned = moved * (1.0 - robot.turning_slip());
         Motion {
             speed_mps: moved * rim_speeds_mps.sum() / 2.0,
-            yaw_rate_radps: moved * (rim_speeds_mps.right - rim_speeds_mps.left) / robot.slip_track_m,
+            yaw_rate_radps: turned * (rim_speeds_mps.right - rim_speeds_mps.left) / robot.slip_track_m,
             rim_speeds_mps,
             heading_rad: None,
         }

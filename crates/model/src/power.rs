@@ -70,7 +70,8 @@ impl Manoeuvre {
                 let pushed = adjustment.force_n != Sides::both(0.0)
                     || adjustment.lifting_n != Sides::both(0.0)
                     || adjustment.leaning_n != 0.0
-                    || robot.wheel_slip() != 0.0;
+                    || robot.wheel_slip() != 0.0
+                    || robot.turning_slip() != 0.0;
                 let floor = if pushed { Floor::Kept } else { Floor::None };
                 Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, floor)
             }

@@ -254,7 +254,7 @@ impl Robot {
     /// Rim speeds of the wheels at a body speed and yaw rate [m/s].
     pub fn rim_speeds_mps(&self, speed_mps: f64, yaw_rate_radps: f64) -> Sides<f64> {
         let turned = 1.0 / (1.0 - self.wheel_slip());
-        let half = yaw_rate_radps * self.half_slip_track_m();
+        let half = yaw_rate_radps * self.half_slip_track_m() / (1.0 - self.turning_slip());
         Sides { left: turned * (speed_mps - half), right: turned * (speed_mps + half) }
     }
 

@@ -24,12 +24,16 @@ impl Part {
             Some(memory_s) => losses::averaged(&self.drives, robot, memory_s),
             None => Vec::new(),
         };
-        let delay_s: f64 = applied.iter().map(|a| a.mechanism.delay_s(&a.values)).sum();
         let phase = self.phases(applied);
         let phases = 1 + phase.iter().max().copied().unwrap_or(0);
         let changed: Vec<Option<Changed<'_>>> = (0..phases)
             .map(|which| phase.contains(&which).then(|| self.changed(robot, applied, which)).transpose())
             .collect::<Result<_, _>>()?;
+        let delay_s = |which: usize| {
+            let own = applied.iter().enumerate().filter(|(j, _)| which >> j & 1 == 1);
+            own.map(|(_, a)| a.mechanism.delay_s(&a.values)).sum::<f64>()
+        };
+        let delays_s: Vec<f64> = (0..phases).map(delay_s).collect();
         let mut seen = vec![Seen::default(); self.drives.rows.len()];
         for stretch in &self.drives.stretches {
             let name = &self.drives.surfaces[stretch.surface];
@@ -45,10 +49,10 @@ impl Part {
                     *seen = self.seen(on, i, loss_w);
                 }
             });
-            if delay_s != 0.0 {
+            if delays_s.iter().any(|delay_s| *delay_s != 0.0) {
                 let rows = rows.to_vec();
                 for (i, row) in stretch.rows.clone().enumerate() {
-                    seen[row] = self.late(stretch, &rows, i, delay_s);
+                    seen[row] = self.late(stretch, &rows, i, delays_s[phase[row]]);
                 }
             }
         }

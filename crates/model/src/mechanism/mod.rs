@@ -153,6 +153,11 @@ pub trait Mechanism: Sync {
         self.parameters()[parameter].bounds
     }
 
+    /// Whether a robot's file may leave a parameter out.
+    fn is_optional(&self, _parameter: usize) -> bool {
+        false
+    }
+
     /// What a parameter usually is, where that is known before any drive, and the factor by which one in three is off by more.
     fn usual(&self, _robot: &Robot, _parameter: usize) -> Option<[f64; 2]> {
         None
