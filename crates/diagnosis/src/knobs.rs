@@ -68,9 +68,10 @@ impl Knob {
             add("hotel_power_w".into(), Place::Hotel, standing(robot.hotel_power_w), [-50.0, 5000.0]);
         }
         if sees_turning {
-            let track_m = robot.slip_track_m;
-            let bounds_m = [0.5 * track_m, 4.0 * track_m];
-            add("slip_track_m".into(), Place::SlipTrack, SLIP_TRACK_SIGMA * track_m, bounds_m);
+            // As far as a robot's file may have it.
+            let bounds_m = [0.5 * robot.track_m, 10.0 * robot.track_m];
+            let sigma_m = SLIP_TRACK_SIGMA * robot.slip_track_m;
+            add("slip_track_m".into(), Place::SlipTrack, sigma_m, bounds_m);
         }
         knobs
     }

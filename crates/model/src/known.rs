@@ -25,7 +25,7 @@ pub struct KnownMechanism {
 pub struct KnownMechanismFile {
     /// Name of a mechanism of physics, as a diagnosis reports it.
     pub mechanism: String,
-    /// Its parameters, each named with its unit; those that older files lack may be left out.
+    /// Its parameters, each named with its unit.
     pub parameters: BTreeMap<String, f64>,
 }
 

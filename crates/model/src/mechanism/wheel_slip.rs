@@ -6,7 +6,8 @@ use crate::mechanism::{Kind, Mechanism, Moment, Parameter};
 ///
 /// Slip grows with what a wheel pulls (Wong, Theory of Ground Vehicles, 4th ed., ch. 2): wheels that spin carry the robot less far and turn
 /// it less. On firm ground wheels pull hardly in going straight on and hard in every turn, where as long as tyres answer in proportion the
-/// skid falls with the radius as the share does by which both sides differ, so that the same share of every turn is lost.
+/// skid falls with the radius as the share does by which both sides differ, so that the same share of every turn is lost. A robot that turns
+/// more than its wheels would have it is on ground that holds it less: on ice wheels that hardly skid hardly slip.
 pub(super) struct WheelSlip;
 
 /// Below this a share is not worth a word.
@@ -24,7 +25,7 @@ impl Mechanism for WheelSlip {
     fn parameters(&self) -> &'static [Parameter] {
         &[
             Parameter { name: "slip", unit: "1", bounds: [-0.5, 0.9], probe: 0.02 },
-            Parameter { name: "turning", unit: "1", bounds: [-0.5, 0.9], probe: 0.02 },
+            Parameter { name: "turning", unit: "1", bounds: [0.0, 0.9], probe: 0.02 },
         ]
     }
 
