@@ -206,7 +206,8 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
         return Err(Error::Mechanism { field: field(), message });
     }
     if slip >= 1.0 {
-        let message = format!("wheels that slip by {slip:.2} do not move the robot; give less than 1 in all");
+        let message =
+            format!("wheels that slip by {slip:.2} do not move or turn the robot; give less than 1 in all");
         return Err(Error::Mechanism { field: field(), message });
     }
     Ok(())
@@ -307,6 +308,11 @@ mod tests {
                 json!([{"mechanism": "payload", "parameters": {"mass_kg": -60}}, {"mechanism": "payload", "parameters": {"mass_kg": -60}}]),
                 "mechanisms",
                 "weigh",
+            ),
+            (
+                json!([{"mechanism": "wheel_slip", "parameters": {"slip": 0, "turning": 0.6}}, {"mechanism": "wheel_slip", "parameters": {"slip": 0, "turning": 0.6}}]),
+                "mechanisms",
+                "turn the robot",
             ),
         ];
         for (mechanisms, place, hint) in cases {
