@@ -6,7 +6,7 @@ use crate::span::Span;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
     /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, 3 for the
-    /// speed over ground and 4 for the yaw rate.
+    /// speed over ground, 4 for the yaw rate and 5 for the battery's voltage.
     pub channel: usize,
     /// Which drive; drives under suspicion and healthy ones count on.
     pub run: usize,
@@ -27,11 +27,14 @@ pub(crate) enum Quantity {
     Speed,
     /// Yaw rate.
     YawRate,
+    /// Voltage.
+    Voltage,
 }
 
 impl Quantity {
     /// All.
-    pub(crate) const ALL: [Quantity; 3] = [Quantity::Power, Quantity::Speed, Quantity::YawRate];
+    pub(crate) const ALL: [Quantity; 4] =
+        [Quantity::Power, Quantity::Speed, Quantity::YawRate, Quantity::Voltage];
 }
 
 impl Average {
@@ -40,6 +43,7 @@ impl Average {
         match self.channel {
             3 => Quantity::Speed,
             4 => Quantity::YawRate,
+            5 => Quantity::Voltage,
             _ => Quantity::Power,
         }
     }

@@ -7,7 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    Error, candidates, channel,
+    Error,
+    average::{Average, Quantity},
+    candidates, channel,
     discrepancy::{Discrepancy, Whitened},
     knobs::Knob,
     noise::{Noise, Whitening},
@@ -35,6 +37,9 @@ pub(crate) struct Baseline {
     /// Change of predictions with half a row of delay of power behind speeds, in suspect drives and in all: less than a row is the
     /// sensors' business, and what they are late by in healthy drives they are in the others too.
     pub(crate) delays: [Vec<f64>; 2],
+    /// Change of predictions with the battery's resistance, per one sigma: in all drives, and in those under suspicion from their beginning and
+    /// as time goes on. A meter that reads otherwise does so in one of them, and at once.
+    pub(crate) sags: Vec<Vec<f64>>,
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
@@ -42,6 +47,8 @@ pub(crate) struct Baseline {
     missed: OnceLock<Arc<[Shared]>>,
 }
 
+/// Relative width of the battery's resistance, which voltages tell.
+const RESISTANCE_SIGMA: f64 = 0.1;
 /// Steps of Gauss and Newton at most; two or three do.
 const STEPS: usize = 5;
 /// A fit has settled when no knob moves by more than this, in widths of the file.
@@ -96,6 +103,7 @@ impl Baseline {
         let moved = knobs.iter().map(|k| (k.value(&robot) - k.value(file)) / k.sigma).collect();
         let delays = delays(series, &robot, applied, &predicted_w)?;
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
+        let sags = sags(series, &predicted_w);
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
         Ok(Baseline {
             robot,
@@ -105,6 +113,7 @@ impl Baseline {
             columns,
             sizes,
             delays,
+            sags,
             noise,
             missed: OnceLock::new(),
         })
@@ -175,6 +184,27 @@ fn delays(
     let [suspect, healthy] = seen.map(|seen| differences(&seen, predicted_w));
     let all = suspect.iter().zip(&healthy).map(|(a, b)| a + b).collect();
     Ok([suspect, all])
+}
+
+/// See [`Baseline::sags`].
+fn sags(series: &Series, predicted: &[f64]) -> Vec<Vec<f64>> {
+    let Some(change) = series.sag_change() else { return Vec::new() };
+    let whole_s = series.longest_s().max(1.0);
+    let column = |share: &dyn Fn(&Average) -> f64| {
+        let of = |(average, predicted): (&Average, &f64)| match average.quantity() {
+            Quantity::Voltage => share(average) * predicted,
+            _ => 0.0,
+        };
+        series.averages.iter().zip(predicted).map(of).collect::<Vec<f64>>()
+    };
+    let in_suspect = |share: f64, a: &Average| if a.suspect { share } else { 0.0 };
+    let mut sags = vec![column(&|_| RESISTANCE_SIGMA)];
+    if series.has_healthy() {
+        sags.push(column(&|a| in_suspect(change, a)));
+    }
+    // From its middle on either way, one sigma over all of a drive.
+    sags.push(column(&|a| in_suspect(change * 12.0_f64.sqrt() * (a.t_s / whole_s - 0.5), a)));
+    sags
 }
 
 fn columns_of(

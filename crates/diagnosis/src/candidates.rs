@@ -4,7 +4,9 @@ use model::{Robot, mechanism};
 use rayon::prelude::*;
 
 use crate::{
-    Error, off_middle,
+    Error,
+    as_hard::AsHard,
+    off_middle,
     region::regions,
     second_ground::{self, GROUND},
     series::{Applied, Series},
@@ -106,9 +108,12 @@ pub(crate) fn all(
     applied: &[Applied],
     predicted_w: &[f64],
 ) -> Result<Vec<Family>, Error> {
+    let grounds: Vec<&'static dyn mechanism::Mechanism> =
+        series.others(applied).filter(|one| one.name() == GROUND).map(|_| &AsHard as _).collect();
     let probes: Vec<(Applied, Vec<usize>)> = series
         .others(applied)
         .chain(second_ground::second(series, applied))
+        .chain(grounds)
         .flat_map(|mechanism| {
             grids(mechanism)
                 .into_iter()

@@ -1,6 +1,6 @@
 //! Recordings as the model itself would make them: what the wheels did is kept, what was measured of it is made anew.
 
-use model::Robot;
+use model::{Robot, mechanism::Kind};
 use recording::{Channel, PowerForm, Recording, unwatched};
 
 use crate::{
@@ -23,6 +23,7 @@ pub fn imitate(robot: &Robot, recording: &Recording, applied: &[Applied]) -> Res
     let seen = part.predict(robot, applied, &Meter::of(form))?;
     let mut told = vec![false; seen.len()];
     part.drives.stretches.iter().for_each(|stretch| told[stretch.rows.clone()].fill(true));
+    let made_v = voltages(robot, recording, (&part, form), applied)?;
     let column = |value: &dyn Fn(&Seen) -> f64| -> Vec<f64> {
         seen.iter().zip(&told).map(|(seen, told)| if *told { value(seen) } else { f64::NAN }).collect()
     };
@@ -38,12 +39,34 @@ pub fn imitate(robot: &Robot, recording: &Recording, applied: &[Applied]) -> Res
         made.channels.insert(Channel::Power, column(&|seen| seen[0]));
     }
     made.channels.insert(Channel::YawRate, column(&|seen| seen[5]));
+    match made_v {
+        Some(made_v) => made.channels.insert(Channel::Voltage, made_v),
+        None => made.channels.remove(&Channel::Voltage),
+    };
     if recording.channel(Channel::X).is_some() && recording.channel(Channel::Y).is_some() {
         let [x_m, y_m] = places(&part, recording, &seen);
         made.channels.insert(Channel::X, x_m);
         made.channels.insert(Channel::Y, y_m);
     }
     Ok(made)
+}
+
+/// Voltages that sag with the power that is truly drawn, as those that were recorded did; `None` where they tell nothing.
+fn voltages(
+    robot: &Robot,
+    recording: &Recording,
+    (part, form): (&Part, PowerForm),
+    applied: &[Applied],
+) -> Result<Option<Vec<f64>>, Error> {
+    let (Some(source), Some(volts)) = (part.source(), recording.channel(Channel::Voltage)) else {
+        return Ok(None);
+    };
+    let physics: Vec<Applied> =
+        applied.iter().filter(|a| a.mechanism.kind() == Kind::Physics).cloned().collect();
+    let drawn = part.predict(robot, &physics, &Meter::of(form))?;
+    let beyond_a = |(row, seen): (usize, &Seen)| seen[0..3].iter().sum::<f64>() / volts[row] - seen[6];
+    let sagged = drawn.iter().enumerate().map(|row| -source.resistance_ohm * beyond_a(row));
+    Ok(Some(volts.iter().zip(sagged).map(|(volts, by)| volts + by).collect()))
 }
 
 /// Where yaw rates and speeds lead from where each run began.
@@ -58,7 +81,7 @@ fn places(part: &Part, recording: &Recording, seen: &[Seen]) -> [Vec<f64>; 2] {
         let mut heading_rad = part.heading_rad[first];
         for row in run.rows.clone() {
             let step_s = part.drives.rows[row].step_s;
-            let [_, _, _, along_mps, across_mps, yaw_rate_radps] = seen[row];
+            let [_, _, _, along_mps, across_mps, yaw_rate_radps, _] = seen[row];
             let (sin, cos) = part.heading_rad[row].sin_cos();
             let speed_mps = along_mps * cos + across_mps * sin;
             if (speed_mps * yaw_rate_radps * step_s).is_finite() {

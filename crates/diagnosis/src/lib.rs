@@ -6,6 +6,7 @@
 //! by blocks of time, and on drives that were held out.
 
 mod alternatives;
+mod as_hard;
 mod average;
 mod baseline;
 mod candidates;
@@ -31,6 +32,7 @@ mod linear;
 mod locate;
 mod manner;
 mod meter;
+mod misfit;
 mod needed;
 mod next_drive;
 mod noise;
@@ -51,6 +53,7 @@ mod refused;
 mod regime;
 mod region;
 pub mod report;
+mod sag;
 mod search;
 mod secant;
 mod second_ground;

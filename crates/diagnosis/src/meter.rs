@@ -17,6 +17,8 @@ pub(crate) enum Meter {
     Ground,
     /// Yaw rate of the gyroscope [rad/s].
     Yaw,
+    /// Voltage of the battery beyond that of the seconds around [V].
+    Sag,
 }
 
 impl Meter {
@@ -24,10 +26,10 @@ impl Meter {
     pub(crate) fn of(form: PowerForm) -> Vec<Meter> {
         match form {
             PowerForm::Sides | PowerForm::MotorCurrents => {
-                vec![Meter::Left, Meter::Right, Meter::Rest, Meter::Ground, Meter::Yaw]
+                vec![Meter::Left, Meter::Right, Meter::Rest, Meter::Ground, Meter::Yaw, Meter::Sag]
             }
             PowerForm::Battery | PowerForm::CurrentAndVoltage => {
-                vec![Meter::Battery, Meter::Ground, Meter::Yaw]
+                vec![Meter::Battery, Meter::Ground, Meter::Yaw, Meter::Sag]
             }
         }
     }
@@ -40,6 +42,7 @@ impl Meter {
             Meter::Rest => 2,
             Meter::Ground => 3,
             Meter::Yaw => 4,
+            Meter::Sag => 5,
         }
     }
 

@@ -9,13 +9,14 @@ use nalgebra::DVector;
 use crate::{
     Error,
     average::{Average, Quantity},
+    misfit::misfit,
     null::Null,
     polish::{Polished, settle},
     search::{AS_GOOD, Found, State, is_told},
     second_ground::take_turns,
     series::{Applied, Series},
     span::Span,
-    weigh::{misfit, system},
+    weigh::system,
 };
 
 /// Share of the squares of what other mechanisms do that one has to exceed where it acts: the form of a strong mechanism is no better

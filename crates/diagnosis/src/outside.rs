@@ -7,11 +7,12 @@ use crate::{
     Error,
     baseline::Baseline,
     evidence::TOGETHER,
+    misfit::least_misfit,
     null::Null,
     search::State,
     series::{Applied, Series},
     term::{self, Term},
-    weigh::{least_misfit, system, system_with},
+    weigh::{system, system_with},
 };
 
 /// By how much a term has to explain more, in squared errors over their variance: of thousands of terms, the best explains some 20

@@ -8,11 +8,12 @@ use crate::{
     baseline::Baseline,
     foremost::Foremost,
     gates::best,
+    misfit::misfit,
     needed::{drop_one, last_undoes, undo},
     null::Null,
     search::{AS_GOOD, Found, State, decide, is_told},
     series::{Applied, Series},
-    weigh::{Weighed, misfit, system},
+    weigh::{Weighed, system},
 };
 
 /// Mechanisms of which pairs are tried, those that explain most by themselves.

@@ -12,6 +12,7 @@ use crate::{
     average::{Average, Input},
     ground,
     meter::Meter,
+    sag::{Sag, Source},
     shapes::Shapes,
 };
 
@@ -35,14 +36,18 @@ pub(crate) struct Part {
     ground_mps: Vec<f64>,
     /// Yaw rate by average; NaN where no gyroscope was recorded [rad/s].
     yaw_rate_radps: Vec<f64>,
+    /// Voltages, where they were recorded.
+    sag: Option<Sag>,
+    /// How voltages follow currents, where drives tell it.
+    source: Option<Source>,
     /// How the ground carries the weight, by row.
     grade: Vec<Grade<f64>>,
     shapes: Shapes,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
-/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s].
-pub(crate) type Seen = [f64; 6];
+/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s]; current by the power that was recorded, as mechanisms have it read [A].
+pub(crate) type Seen = [f64; 7];
 
 impl Part {
     pub(crate) fn new(
@@ -89,11 +94,29 @@ impl Part {
             rest_w,
             ground_mps,
             yaw_rate_radps,
+            sag: Sag::of(recording, &drives),
+            source: None,
             grade,
             shapes,
             drives,
             suspect,
         })
+    }
+
+    /// How voltages follow currents in these drives.
+    pub(crate) fn source(&self) -> Option<Source> {
+        let sag = self.sag.as_ref()?;
+        Source::of(sag, &self.drives.averaged_by(|row| sag.current_a(row, |w| w)))
+    }
+
+    /// By how much the battery's resistance differs between drives, one sigma, as a share.
+    pub(crate) fn source_change(&self) -> Option<f64> {
+        self.source.map(|source| source.change)
+    }
+
+    /// Lets voltages follow currents so.
+    pub(crate) fn set_source(&mut self, source: Option<Source>) {
+        self.source = source;
     }
 
     /// Whether enough of a quantity was recorded to be compared with: half of the drives.
@@ -110,7 +133,22 @@ impl Part {
             Meter::Rest => known(&self.rest_w),
             Meter::Ground => known(&self.ground_mps),
             Meter::Yaw => known(&self.yaw_rate_radps),
+            Meter::Sag => known(self.beyond_v()),
         }
+    }
+
+    /// Voltages, average by average, where there are any that tell something [V].
+    fn beyond_v(&self) -> &[f64] {
+        match (&self.sag, self.source) {
+            (Some(sag), Some(_)) => sag.beyond_v(),
+            _ => &[],
+        }
+    }
+
+    /// Voltages by currents, average by average [V].
+    fn sagging_v(&self, current_a: &[f64]) -> Vec<f64> {
+        let Some((sag, source)) = self.sag.as_ref().zip(self.source) else { return Vec::new() };
+        sag.beyond_a(current_a).iter().map(|a| -source.resistance_ohm * a).collect()
     }
 
     /// Those of one value for each average in which a quantity was recorded.
@@ -122,6 +160,7 @@ impl Part {
             Meter::Rest => of(&self.rest_w),
             Meter::Ground => of(&self.ground_mps),
             Meter::Yaw => of(&self.yaw_rate_radps),
+            Meter::Sag => of(self.beyond_v()),
             Meter::Left | Meter::Right | Meter::Battery => values.to_vec(),
         }
     }
@@ -137,6 +176,7 @@ impl Part {
                 Meter::Rest => of(&|mean| mean[2]),
                 Meter::Ground => of(&|mean| mean[3].hypot(mean[4])),
                 Meter::Yaw => of(&|mean| mean[5]),
+                Meter::Sag => self.sagging_v(&of(&|mean| mean[6])),
             };
             self.told(*meter, &all)
         };

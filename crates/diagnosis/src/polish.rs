@@ -8,12 +8,13 @@ use crate::{
     baseline::Baseline,
     candidates::{self, apart},
     evidence::Evidence,
+    misfit::misfit,
     off_middle,
     regime::Regime,
     search::is_told,
     series::{Applied, Series},
     usual,
-    weigh::{Sizes, Weighed, misfit, system_at},
+    weigh::{Sizes, Weighed, system_at},
 };
 
 /// A fit with mechanisms that act.

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 use recording::Recording;
 
 use crate::{
-    Error,
+    Error, as_hard,
     baseline::Baseline,
     constancy,
     gates::best,
+    misfit::{self, Squares},
     needed::{drop_one, last_undoes},
     null::Null,
     off_middle,
@@ -18,7 +19,7 @@ use crate::{
     refused::{Refused, refuse},
     second_ground,
     series::{Applied, Series},
-    weigh::{Weighed, left, misfit, system},
+    weigh::{Weighed, left, system},
 };
 
 /// Mechanisms that are looked for at most.
@@ -191,14 +192,20 @@ pub(crate) fn decide(
         .into_par_iter()
         .map(|i| polish(series, file, (applied, &by.robot), at_best(i)))
         .collect::<Result<_, _>>()?;
-    let misfits: Vec<f64> = fits.iter().map(|fit| misfit(series, &fit.base, by) / common).collect();
-    let explained = misfit(series, by, by) / common - misfits.iter().copied().fold(f64::INFINITY, f64::min);
-    // What a form leaves open of all that is explained tells no form from another.
-    let unit = (form_sigma(series).powi(2) * explained).max(1.0);
+    let misfits: Vec<Squares> =
+        fits.iter().map(|fit| misfit::by_quantity(series, &fit.base, by).map(|m| m / common)).collect();
+    let before = misfit::by_quantity(series, by, by).map(|m| m / common);
+    // What a form leaves open of all that is explained of a quantity tells no form from another.
+    let unit = |of: usize| {
+        let explained = before[of] - misfits.iter().map(|m| m[of]).fold(f64::INFINITY, f64::min);
+        (form_sigma(series).powi(2) * explained).max(1.0)
+    };
+    let units: Squares = std::array::from_fn(unit);
+    let in_units = |i: usize| misfits[i].iter().zip(units).map(|(misfit, unit)| misfit / unit).sum::<f64>();
     let is_possible = |i: &usize| !off_middle::is_at_its_limit(&fits[*i].applied[applied.len()], file);
     let are_possible = (0..fits.len()).any(|i| is_possible(&i));
     let cost = |i: usize| match !are_possible || is_possible(&i) {
-        true => misfits[i] / unit + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln(),
+        true => in_units(i) + at_best(i).candidate.numbers() as f64 * (blocks as f64).ln(),
         false => f64::INFINITY,
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
@@ -209,7 +216,7 @@ pub(crate) fn decide(
         .collect();
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
-    let Some(fit) = fit else { unreachable!("the winner is one of the fits") };
+    let Some(fit) = fit.map(as_hard::in_both) else { unreachable!("the winner is one of the fits") };
     let found = Found {
         applied: fit.applied[applied.len()].clone(),
         half_widths: fit.half_widths[applied.len()].clone(),

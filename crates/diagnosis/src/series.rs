@@ -85,6 +85,9 @@ impl Series {
         if form == PowerForm::MotorCurrents || parts.iter().any(|part| part.drives.form != Some(form)) {
             return Err(Error::Form);
         }
+        // Healthy drives show how voltages follow currents; whatever a meter reads is the same in all of them.
+        let source = parts.last().and_then(Part::source);
+        parts.iter_mut().for_each(|part| part.set_source(source));
         let is_told = |meter: &Meter| parts.iter().all(|part| part.tells(*meter));
         let meters: Vec<Meter> = Meter::of(form).into_iter().filter(is_told).collect();
         let watch = Watch::clone(watch);
@@ -196,6 +199,11 @@ impl Series {
     /// Whether a gyroscope tells how far the robot turned.
     pub(crate) fn sees_turning(&self) -> bool {
         self.meters.contains(&Meter::Yaw)
+    }
+
+    /// By how much the battery's resistance differs between drives, one sigma, as a share; `None` where voltages tell nothing.
+    pub(crate) fn sag_change(&self) -> Option<f64> {
+        self.meters.contains(&Meter::Sag).then(|| self.parts[0].source_change())?
     }
 
     /// Whether there are healthy drives.

@@ -58,15 +58,9 @@ pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
     system_by(series, (base, Sizes::Free), base, false, &[])
 }
 
-/// How well a fit explains the drives, by the noise of another, so that fits can be compared: squared errors that nothing
-/// takes, what departures from the robot's file cost included.
-pub(crate) fn misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
-    system_by(series, (fit, Sizes::Fixed), by, true, &[]).left().norm_squared()
-}
-
-/// The same with mechanisms' sizes at their best, as far as power follows them in proportion.
-pub(crate) fn least_misfit(series: &Series, fit: &Baseline, by: &Baseline) -> f64 {
-    system_by(series, (fit, Sizes::Free), by, true, &[]).left().norm_squared()
+/// Everything that is fitted whatever the candidate, of a fit by the noise of another, so that fits can be compared.
+pub(crate) fn system_of(series: &Series, fit: &Baseline, sizes: Sizes, by: &Baseline) -> System {
+    system_by(series, (fit, sizes), by, true, &[])
 }
 
 fn system_by(
@@ -85,6 +79,7 @@ fn system_by(
     if delayed {
         columns.push(white.of(&base.delays[0]));
     }
+    columns.extend(base.sags.iter().map(|c| white.of(c)));
     let mut known = vec![1.0; columns.len()];
     // Of sizes and of what stands beside nothing is known before.
     let is_free = |which: usize| match sizes {

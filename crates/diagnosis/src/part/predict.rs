@@ -163,7 +163,11 @@ impl Part {
         } else {
             [0.0; 2]
         };
-        [first_w, second_w, rest_w, along_mps, across_mps, yaw_rate_radps]
+        let current_a = match (&self.sag, meters.contains(&Meter::Sag)) {
+            (Some(sag), true) => sag.current_a(i, read),
+            _ => 0.0,
+        };
+        [first_w, second_w, rest_w, along_mps, across_mps, yaw_rate_radps, current_a]
     }
 }
 

@@ -1,0 +1,56 @@
+//! Ground that rolls and skids harder, or easier, alike: other ground with one number.
+//!
+//! Wet, softer or rougher ground often holds whatever moves on it by the same factor more. Two numbers for that would pay for one that nothing
+//! asks for, and a load or a meter that reads too much, which have one, would be told instead.
+
+use model::{
+    Robot, Sides,
+    mechanism::{self, Adjustment, Kind, Mechanism, Moment, Parameter},
+};
+
+use crate::{polish::Polished, second_ground::GROUND, series::Applied};
+
+/// Other ground with one number; in what is found it stands as [`GROUND`] with both.
+pub(crate) struct AsHard;
+
+impl Mechanism for AsHard {
+    fn name(&self) -> &'static str {
+        GROUND
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Physics
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &[Parameter { name: "change", unit: "1", bounds: [-0.9, 5.0], probe: 0.05 }]
+    }
+
+    fn equation(&self) -> &'static str {
+        "μ_R → μ_R (1 + c), μ_S → μ_S (1 + c)"
+    }
+
+    fn statement(&self, values: &[f64]) -> String {
+        format!("the ground holds {:+.0} % harder", 100.0 * values[0])
+    }
+
+    fn adjust(&self, _: &Robot, values: &[f64], _: &Moment) -> Adjustment {
+        let factor = 1.0 + values[0];
+        Adjustment { mu_roll: Sides::both(factor), mu_skid: factor, ..Adjustment::default() }
+    }
+}
+
+/// What was fitted with one number, in the two of the mechanism that it is.
+pub(crate) fn in_both(mut fitted: Polished) -> Polished {
+    for (one, half_widths) in fitted.applied.iter_mut().zip(&mut fitted.half_widths) {
+        if let (Some(ground), [change], [half]) =
+            (mechanism::by_name(GROUND), &one.values[..], &half_widths[..])
+            && one.mechanism.name() == GROUND
+        {
+            let (change, half) = (*change, *half);
+            *one = Applied { mechanism: ground, values: vec![change; 2], span: one.span };
+            *half_widths = vec![half; 2];
+        }
+    }
+    fitted
+}
