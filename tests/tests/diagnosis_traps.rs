@@ -138,6 +138,40 @@ fn a_clock_that_jumps_on_the_way_is_told_with_its_time() {
 }
 
 #[test]
+fn the_voltage_of_the_battery_tells_a_load_from_a_meter_that_reads_too_much() {
+    let robot = model::builtin::husky_a200();
+    let healthy = record(31, vec![]);
+    let set = |effect: Effect, voltage: bool| -> Vec<String> {
+        let mut suspect = record(33, vec![effect]);
+        if !voltage {
+            suspect.channels.remove(&Channel::Voltage);
+        }
+        let found = said(&robot, &suspect, &healthy);
+        let [one] = &found.findings[..] else { panic!("{}", found.sentence) };
+        [vec![one.mechanism.clone()], one.indistinguishable_from.clone()].concat()
+    };
+    let (load, gain) = (Effect::new(EffectName::Payload, 3.0), Effect::new(EffectName::PowerScale, 0.05));
+    let names = |set: &[String]| ["payload", "power_scale"].map(|name| set.iter().any(|one| one == name));
+    assert_eq!(names(&set(gain.clone(), true)), [false, true]);
+    assert_eq!(names(&set(load.clone(), true)), [true, false]);
+    // Without it the power alone leaves both open.
+    let open = [set(load, false), set(gain, false)];
+    assert!(open.iter().any(|set| names(set) == [true, true]), "{open:?}");
+}
+
+#[test]
+fn a_meter_that_is_off_by_a_constant_comes_neither_late_nor_early() {
+    // Beside something else its beginning is found a second or two off, and it never changes.
+    let robot = model::builtin::husky_a200();
+    let drag = Effect { side: Some(Side::Right), ..Effect::new(EffectName::DrivetrainDrag, 12.0) };
+    let offset = Effect { onset_s: 220.0, ..Effect::new(EffectName::PowerOffset, 10.0) };
+    let found = said(&robot, &record(32, vec![offset, drag]), &record(31, vec![]));
+    let mut names = names(&found);
+    names.sort_unstable();
+    assert_eq!(names, ["drivetrain_drag", "power_offset"], "{}", found.sentence);
+}
+
+#[test]
 fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
     // In the first drive what else would be found beside it hides that it fades, until that is left out.
     let robot = model::builtin::husky_a200();

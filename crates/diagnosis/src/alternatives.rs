@@ -54,7 +54,7 @@ pub(crate) fn alternatives(
 }
 
 /// A mechanism at its best values beside a baseline; `None` where the drives tell nothing of it.
-fn fitted(
+pub(crate) fn fitted(
     series: &Series,
     base: &Baseline,
     others: &[Applied],

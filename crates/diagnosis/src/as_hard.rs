@@ -54,3 +54,27 @@ pub(crate) fn in_both(mut fitted: Polished) -> Polished {
     }
     fitted
 }
+
+#[cfg(test)]
+mod tests {
+    use model::{Acceleration, Attitude, Motion, builtin};
+
+    use super::*;
+
+    #[test]
+    fn one_number_does_what_two_alike_do() {
+        let robot = builtin::husky_a200();
+        let moment = Moment {
+            motion: Motion::of_body(&robot, 0.5, 0.4),
+            acceleration: Acceleration::default(),
+            rim_mps2: Sides::both(0.0),
+            attitude: Attitude::LEVEL,
+            loss_w: Sides::both(0.0),
+        };
+        let ground = mechanism::by_name(GROUND).unwrap();
+        for change in [-0.2, 0.0, 0.3] {
+            let alike = AsHard.adjust(&robot, &[change], &moment);
+            assert_eq!(alike, ground.adjust(&robot, &[change; 2], &moment));
+        }
+    }
+}

@@ -7,8 +7,10 @@ use crate::{
     Error,
     average::Average,
     null::Null,
+    polish::FORM_SIGMA,
     search::State,
     series::Series,
+    span::Span,
     weigh::{Sizes, system_at},
 };
 
@@ -97,18 +99,24 @@ pub(crate) fn doubt(
     });
     // Treads wind up before they hold, so that what a turn loses is lost as it begins.
     let may_be_early = applied[which].mechanism.name() == "wheel_slip";
-    let of_time = judge(&rate_per_s(&series.averages, &effect)).and_then(|(p_value, early_s)| {
+    let rate = rate_per_s(&series.averages, applied[which].span, &effect);
+    let size = |column: &[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
+    // A shift that changes less of it than its form leaves open tells nothing of when it comes.
+    let least_s = LEAST_LAG_S.max(FORM_SIGMA * size(&effect) / size(&rate).max(1e-300));
+    let of_time = judge(&rate).and_then(|(p_value, early_s)| {
         let when = if early_s < 0.0 { "late" } else { "early" };
-        (early_s.abs() > LEAST_LAG_S && !(may_be_early && early_s > 0.0))
+        (early_s.abs() > least_s && !(may_be_early && early_s > 0.0))
             .then(|| (p_value, format!("it comes {:.1} s too {when}", early_s.abs())))
     });
     let clearest = of_sizes.chain(of_time).min_by(|a, b| a.0.total_cmp(&b.0));
     Ok(clearest.map(|(_, why)| why))
 }
 
-/// How fast an effect changes, by the seconds before and after, which are what comes of it before it does.
-fn rate_per_s(averages: &[Average], effect: &[f64]) -> Vec<f64> {
-    let is_beside = |a: &Average, b: &Average| (a.run, a.channel, a.suspect) == (b.run, b.channel, b.suspect);
+/// How fast an effect changes, by the seconds before and after, which are what comes of it before it does. That it sets in or ends is no
+/// change of what it does: a second more or less there is a matter of since when it acts.
+fn rate_per_s(averages: &[Average], acts: Span, effect: &[f64]) -> Vec<f64> {
+    let place = |a: &Average| (a.run, a.channel, a.suspect, a.is_in(acts));
+    let is_beside = |a: &Average, b: &Average| place(a) == place(b);
     let rate = |i: usize| {
         let before = i.checked_sub(1).filter(|j| is_beside(&averages[*j], &averages[i])).unwrap_or(i);
         let after =
@@ -149,8 +157,13 @@ mod tests {
         };
         let averages: Vec<Average> = (0..8).map(average).collect();
         let effect: Vec<f64> = averages.iter().map(|a| [3.0, -5.0][a.run] * a.t_s).collect();
-        for (rate, average) in rate_per_s(&averages, &effect).iter().zip(&averages) {
+        for (rate, average) in rate_per_s(&averages, Span::ALL, &effect).iter().zip(&averages) {
             assert!((rate - [3.0, -5.0][average.run]).abs() < 1e-12, "{rate}");
         }
+        // 12 W from the third second on do not change.
+        let span = Span::EachDrive(2.0);
+        let offset: Vec<f64> = averages.iter().map(|a| if a.is_in(span) { 12.0 } else { 0.0 }).collect();
+        assert_eq!(rate_per_s(&averages, span, &offset), [0.0; 8]);
+        assert_ne!(rate_per_s(&averages, Span::ALL, &offset), [0.0; 8]);
     }
 }

@@ -34,7 +34,7 @@ const SHARES: [f64; 3] = [1.0, 0.3, 0.1];
 const LEAST_GAIN: f64 = 1.0;
 /// One sigma of what the form of a mechanism leaves open of all that it does, as a share, where the model misses something itself: in
 /// concealed cases of worlds with forms of their own, on seeds that none is scored on, sizes that noise tells to 5 % were off by 8 %.
-const FORM_SIGMA: f64 = 0.08;
+pub(crate) const FORM_SIGMA: f64 = 0.08;
 /// 97.5 % quantile of the normal distribution.
 const NORMAL_975: f64 = 1.959_964;
 

@@ -1,8 +1,11 @@
 //! Mechanisms that explain much and are not what is missing.
 
-use model::Robot;
+use model::{Robot, mechanism};
 
-use crate::{Error, search::State, series::Series};
+use crate::{
+    Error, alternatives::fitted, baseline::Baseline, candidates::apart, misfit::misfit, search::State,
+    series::Series,
+};
 
 /// A mechanism that explains much and is not what is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,11 +35,71 @@ pub(crate) fn refuse(
         return Ok(refused);
     }
     while let Some((which, why)) = first_doubted(state, doubts)? {
-        let mechanism = state.found.remove(which).applied.mechanism.name();
+        let mechanism = state.found[which].applied.mechanism.name();
         refused.push(Refused { mechanism, why });
-        state.refit(series, file)?;
+        let is_refused = |name: &str| refused.iter().any(|refused: &Refused| refused.mechanism == name);
+        let others = state.found[which].indistinguishable_from.clone();
+        let mut left = Vec::new();
+        for name in others.iter().filter(|name| !is_refused(name)) {
+            let Some(instead) = instead(series, file, state, (which, name))? else { continue };
+            if doubted(&instead, which, doubts)?.is_none() {
+                left.push(instead);
+            }
+        }
+        let by = state.fit.clone();
+        let misfit = |state: &State| misfit(series, &state.fit, &by);
+        match left.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))) {
+            Some(best) => *state = best,
+            None => {
+                state.found.remove(which);
+                state.refit(series, file)?;
+            }
+        }
+    }
+    for which in 0..state.found.len() {
+        let mut names = state.found[which].indistinguishable_from.clone();
+        let mut is_possible = Vec::new();
+        for name in &names {
+            let instead = instead(series, file, state, (which, name))?;
+            is_possible.push(match instead {
+                Some(instead) => doubted(&instead, which, doubts)?.is_none(),
+                None => true,
+            });
+        }
+        let mut possible = is_possible.into_iter();
+        names.retain(|_| possible.next().unwrap_or(true));
+        state.found[which].indistinguishable_from = names;
     }
     Ok(refused)
+}
+
+/// What was found with another mechanism, which explains as much, instead of one; `None` where drives tell nothing of that.
+fn instead(
+    series: &Series,
+    file: &Robot,
+    state: &State,
+    (which, name): (usize, &str),
+) -> Result<Option<State>, Error> {
+    let Some(mechanism) = mechanism::by_name(name) else { return Ok(None) };
+    let (one, others) = apart(&state.applied(), which);
+    let without = Baseline::fit(series, file, &others)?;
+    let Some(applied) = fitted(series, &without, &others, mechanism, one.span)? else { return Ok(None) };
+    let mut found = state.found.clone();
+    found[which].applied = applied;
+    found[which].indistinguishable_from.retain(|other| other != name);
+    let mut instead = State { found, fit: without };
+    instead.refit(series, file)?;
+    Ok(Some(instead))
+}
+
+/// Why one is doubted.
+fn doubted(state: &State, which: usize, doubts: &[&Doubt<'_>]) -> Result<Option<String>, Error> {
+    for doubt in doubts {
+        if let Some(why) = doubt(state, which)? {
+            return Ok(Some(why));
+        }
+    }
+    Ok(None)
 }
 
 /// What is doubted first, and why.

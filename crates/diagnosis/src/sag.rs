@@ -193,3 +193,69 @@ impl Source {
         is_told.then_some(Source { resistance_ohm: mean_ohm, change })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two drives of 200 s at 1 Hz of a pack whose charge falls, with resistances of their own, and the currents of their seconds.
+    fn drives(resistances_ohm: [f64; 2]) -> (Sag, Vec<f64>) {
+        let current_a: Vec<f64> = (0..400).map(|i| 4.0 + 3.0 * (0.9 * f64::from(i)).sin()).collect();
+        let open_v = |i: usize| 25.0 - 0.001 * i as f64;
+        let volts: Vec<f64> = (0..400).map(|i| open_v(i) - resistances_ohm[i / 200] * current_a[i]).collect();
+        let mut sag = Sag {
+            power_w: volts.iter().zip(&current_a).map(|(v, a)| v * a).collect(),
+            window: (0..400).map(|i| i / 20).collect(),
+            run: (0..400).map(|i| i / 200).collect(),
+            beyond_v: Vec::new(),
+            volts,
+        };
+        sag.beyond_v = sag.beyond(&sag.volts, &sag.volts);
+        (sag, current_a)
+    }
+
+    #[test]
+    fn the_resistance_is_told_whatever_the_charge_does_and_varies_as_it_does_between_drives() {
+        let (sag, current_a) = drives([0.05, 0.05]);
+        let alike = Source::of(&sag, &current_a).unwrap();
+        assert!((alike.resistance_ohm - 0.05).abs() < 1e-9, "{alike:?}");
+        // What is usual, shared by two drives that show nothing of it.
+        assert!((alike.change - USUAL_CHANGE / 2.0_f64.sqrt()).abs() < 1e-6, "{alike:?}");
+        let (sag, current_a) = drives([0.048, 0.052]);
+        let apart = Source::of(&sag, &current_a).unwrap();
+        assert!((apart.change - 0.04).abs() < 0.002, "{apart:?}");
+    }
+
+    #[test]
+    fn currents_are_what_meters_read_without_their_faults() {
+        let (sag, current_a) = drives([0.05, 0.05]);
+        let askew = Sag { power_w: sag.power_w.iter().map(|w| 1.1 * w + 7.0).collect(), ..sag };
+        for (row, current_a) in current_a.iter().enumerate() {
+            let found_a = askew.current_a(row, |w| 1.1 * w + 7.0);
+            assert!((found_a - current_a).abs() < 1e-9, "row {row}: {found_a} A for {current_a} A");
+        }
+    }
+
+    #[test]
+    fn a_source_that_does_not_sag_and_drives_at_one_power_tell_nothing() {
+        let (sag, current_a) = drives([0.0, 0.0]);
+        assert_eq!(Source::of(&sag, &current_a), None);
+        let (sag, _) = drives([0.05, 0.05]);
+        assert_eq!(Source::of(&sag, &[4.0; 400]), None);
+    }
+
+    #[test]
+    fn power_is_brought_to_the_time_of_voltages() {
+        let power_w: Vec<f64> =
+            (0..1000).map(|i| 100.0 + 60.0 * (0.05 * f64::from(i * i % 977)).sin()).collect();
+        let t_s: Vec<f64> = (0..1000).map(|i| 0.1 * f64::from(i)).collect();
+        let volts: Vec<f64> = power_w.iter().map(|w| 25.0 - 0.002 * w).collect();
+        // A meter that is three rows late.
+        let mut late_w: Vec<f64> = (0..1000).map(|i: usize| power_w[i.saturating_sub(3)]).collect();
+        align(&mut late_w, &volts, &t_s);
+        assert_eq!(late_w[..997], power_w[..997]);
+        let mut punctual_w = power_w.clone();
+        align(&mut punctual_w, &volts, &t_s);
+        assert_eq!(punctual_w, power_w);
+    }
+}

@@ -32,6 +32,7 @@ const AS_GOOD_A_NAME: f64 = 3.0;
 const TOLD: f64 = 0.005;
 
 /// A mechanism that was found.
+#[derive(Clone)]
 pub struct Found {
     /// It at its fitted values.
     pub applied: Applied,
