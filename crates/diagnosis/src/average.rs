@@ -6,7 +6,7 @@ use crate::span::Span;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
     /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, 3 for the
-    /// speed over ground, 4 for the yaw rate and 5 for the battery's voltage.
+    /// speed over ground, 4 for the yaw rate 5 for the battery's voltage and 6 for the climb.
     pub channel: usize,
     /// Which drive; drives under suspicion and healthy ones count on.
     pub run: usize,
@@ -29,12 +29,14 @@ pub(crate) enum Quantity {
     YawRate,
     /// Voltage.
     Voltage,
+    /// Climb.
+    Height,
 }
 
 impl Quantity {
     /// All.
-    pub(crate) const ALL: [Quantity; 4] =
-        [Quantity::Power, Quantity::Speed, Quantity::YawRate, Quantity::Voltage];
+    pub(crate) const ALL: [Quantity; 5] =
+        [Quantity::Power, Quantity::Speed, Quantity::YawRate, Quantity::Voltage, Quantity::Height];
 }
 
 impl Average {
@@ -44,6 +46,7 @@ impl Average {
             3 => Quantity::Speed,
             4 => Quantity::YawRate,
             5 => Quantity::Voltage,
+            6 => Quantity::Height,
             _ => Quantity::Power,
         }
     }

@@ -40,6 +40,9 @@ pub(crate) struct Baseline {
     /// Change of predictions with the battery's resistance, per one sigma: in all drives, and in those under suspicion from their beginning and
     /// as time goes on. A meter that reads otherwise does so in one of them, and at once.
     pub(crate) sags: Vec<Vec<f64>>,
+    /// Change of climbs with slopes that were read too steep, per one sigma: in all drives, and in those under suspicion, as an inclinometer is
+    /// from one day to the next. One that is askew by more, or from some time on, is.
+    pub(crate) tilts: Vec<Vec<f64>>,
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
@@ -49,6 +52,8 @@ pub(crate) struct Baseline {
 
 /// Relative width of the battery's resistance, which voltages tell.
 const RESISTANCE_SIGMA: f64 = 0.1;
+/// One sigma by which slopes by heights and as they are read differ in all drives [rad]: as an inclinometer is mounted, a fifth of a degree.
+const SLOPE_SIGMA_RAD: f64 = 4e-3;
 /// Steps of Gauss and Newton at most; two or three do.
 const STEPS: usize = 5;
 /// A fit has settled when no knob moves by more than this, in widths of the file.
@@ -104,6 +109,7 @@ impl Baseline {
         let delays = delays(series, &robot, applied, &predicted_w)?;
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         let sags = sags(series, &predicted_w);
+        let tilts = tilts(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
         Ok(Baseline {
             robot,
@@ -114,6 +120,7 @@ impl Baseline {
             sizes,
             delays,
             sags,
+            tilts,
             noise,
             missed: OnceLock::new(),
         })
@@ -205,6 +212,32 @@ fn sags(series: &Series, predicted: &[f64]) -> Vec<Vec<f64>> {
     // From its middle on either way, one sigma over all of a drive.
     sags.push(column(&|a| in_suspect(change * 12.0_f64.sqrt() * (a.t_s / whole_s - 0.5), a)));
     sags
+}
+
+/// See [`Baseline::tilts`].
+fn tilts(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted: &[f64],
+) -> Result<Vec<Vec<f64>>, Error> {
+    let Some((change_rad, mechanism)) = series.slope_change_rad().zip(mechanism::by_name("pitch_bias"))
+    else {
+        return Ok(Vec::new());
+    };
+    let askew = |by_rad: f64| Applied { mechanism, values: vec![by_rad], span: Span::ALL };
+    let in_climbs = |seen: Vec<f64>| -> Vec<f64> {
+        let of = |((average, seen), predicted): ((&Average, f64), &f64)| match average.quantity() {
+            Quantity::Height => seen - predicted,
+            _ => 0.0,
+        };
+        series.averages.iter().zip(seen).zip(predicted).map(of).collect()
+    };
+    let with = [applied, &[askew(SLOPE_SIGMA_RAD)]].concat();
+    let all = in_climbs(series.predict_with(robot, &with, &[askew(SLOPE_SIGMA_RAD)])?);
+    let with = [applied, &[askew(change_rad)]].concat();
+    let suspect = in_climbs(series.predict(robot, &with)?);
+    Ok(if series.has_healthy() { vec![all, suspect] } else { vec![all] })
 }
 
 fn columns_of(

@@ -39,6 +39,10 @@ pub fn imitate(robot: &Robot, recording: &Recording, applied: &[Applied]) -> Res
         made.channels.insert(Channel::Power, column(&|seen| seen[0]));
     }
     made.channels.insert(Channel::YawRate, column(&|seen| seen[5]));
+    if let Some(height_m) = recording.channel(Channel::Z) {
+        let plain = part.predict(robot, &[], &Meter::of(form))?;
+        made.channels.insert(Channel::Z, heights(&part, recording, (height_m, &plain, &seen)));
+    }
     match made_v {
         Some(made_v) => made.channels.insert(Channel::Voltage, made_v),
         None => made.channels.remove(&Channel::Voltage),
@@ -69,6 +73,24 @@ fn voltages(
     Ok(Some(volts.iter().zip(sagged).map(|(volts, by)| volts + by).collect()))
 }
 
+/// Heights to which slopes lead that are not as they were recorded.
+fn heights(
+    part: &Part,
+    recording: &Recording,
+    (height_m, plain, seen): (&[f64], &[Seen], &[Seen]),
+) -> Vec<f64> {
+    let mut made_m = height_m.to_vec();
+    for run in &recording.runs {
+        let mut higher_m = 0.0;
+        for row in run.rows.clone() {
+            let by_m = (seen[row][7] - plain[row][7]) * part.drives.rows[row].step_s;
+            higher_m += if by_m.is_finite() { by_m } else { 0.0 };
+            made_m[row] += higher_m;
+        }
+    }
+    made_m
+}
+
 /// Where yaw rates and speeds lead from where each run began.
 fn places(part: &Part, recording: &Recording, seen: &[Seen]) -> [Vec<f64>; 2] {
     let (mut x_m, mut y_m) = (vec![f64::NAN; seen.len()], vec![f64::NAN; seen.len()]);
@@ -81,7 +103,7 @@ fn places(part: &Part, recording: &Recording, seen: &[Seen]) -> [Vec<f64>; 2] {
         let mut heading_rad = part.heading_rad[first];
         for row in run.rows.clone() {
             let step_s = part.drives.rows[row].step_s;
-            let [_, _, _, along_mps, across_mps, yaw_rate_radps, _] = seen[row];
+            let [_, _, _, along_mps, across_mps, yaw_rate_radps, ..] = seen[row];
             let (sin, cos) = part.heading_rad[row].sin_cos();
             let speed_mps = along_mps * cos + across_mps * sin;
             if (speed_mps * yaw_rate_radps * step_s).is_finite() {

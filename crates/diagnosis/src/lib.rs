@@ -12,6 +12,7 @@ mod baseline;
 mod candidates;
 mod channel;
 mod chart;
+mod climb;
 mod constancy;
 mod corrected;
 mod diagnose;

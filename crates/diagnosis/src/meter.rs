@@ -19,6 +19,8 @@ pub(crate) enum Meter {
     Yaw,
     /// Voltage of the battery beyond that of the seconds around [V].
     Sag,
+    /// Climb over the seconds before, by heights [m].
+    Climb,
 }
 
 impl Meter {
@@ -26,10 +28,18 @@ impl Meter {
     pub(crate) fn of(form: PowerForm) -> Vec<Meter> {
         match form {
             PowerForm::Sides | PowerForm::MotorCurrents => {
-                vec![Meter::Left, Meter::Right, Meter::Rest, Meter::Ground, Meter::Yaw, Meter::Sag]
+                vec![
+                    Meter::Left,
+                    Meter::Right,
+                    Meter::Rest,
+                    Meter::Ground,
+                    Meter::Yaw,
+                    Meter::Sag,
+                    Meter::Climb,
+                ]
             }
             PowerForm::Battery | PowerForm::CurrentAndVoltage => {
-                vec![Meter::Battery, Meter::Ground, Meter::Yaw, Meter::Sag]
+                vec![Meter::Battery, Meter::Ground, Meter::Yaw, Meter::Sag, Meter::Climb]
             }
         }
     }
@@ -43,6 +53,7 @@ impl Meter {
             Meter::Ground => 3,
             Meter::Yaw => 4,
             Meter::Sag => 5,
+            Meter::Climb => 6,
         }
     }
 

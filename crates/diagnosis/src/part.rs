@@ -10,6 +10,7 @@ use recording::{Channel, PowerForm, Recording, Watch};
 use crate::{
     Error,
     average::{Average, Input},
+    climb::Climb,
     ground,
     meter::Meter,
     sag::{Sag, Source},
@@ -40,14 +41,16 @@ pub(crate) struct Part {
     sag: Option<Sag>,
     /// How voltages follow currents, where drives tell it.
     source: Option<Source>,
+    /// Climbs, where heights were recorded.
+    climb: Option<Climb>,
     /// How the ground carries the weight, by row.
     grade: Vec<Grade<f64>>,
     shapes: Shapes,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
-/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s]; current by the power that was recorded, as mechanisms have it read [A].
-pub(crate) type Seen = [f64; 7];
+/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s]; current by the power that was recorded, as mechanisms have it read [A]; rate of climbing [m/s].
+pub(crate) type Seen = [f64; 8];
 
 impl Part {
     pub(crate) fn new(
@@ -96,6 +99,7 @@ impl Part {
             yaw_rate_radps,
             sag: Sag::of(recording, &drives),
             source: None,
+            climb: Climb::of(recording, &drives),
             grade,
             shapes,
             drives,
@@ -121,7 +125,9 @@ impl Part {
 
     /// Whether enough of a quantity was recorded to be compared with: half of the drives.
     pub(crate) fn tells(&self, meter: Meter) -> bool {
-        2 * self.recorded(meter).len() >= self.drives.averages.len()
+        // Of a climb only its end counts.
+        meter == Meter::Climb && self.climb.is_some()
+            || 2 * self.recorded(meter).len() >= self.drives.averages.len()
     }
 
     /// What was recorded, average by average, where it was.
@@ -134,7 +140,21 @@ impl Part {
             Meter::Ground => known(&self.ground_mps),
             Meter::Yaw => known(&self.yaw_rate_radps),
             Meter::Sag => known(self.beyond_v()),
+            Meter::Climb => known(self.risen_m()),
         }
+    }
+
+    /// Climbs by heights, average by average; NaN where none ends [m].
+    fn risen_m(&self) -> &[f64] {
+        self.climb.as_ref().map_or(&[], Climb::risen_m)
+    }
+
+    /// One sigma by which slopes by heights and as they were read differ between these drives [rad].
+    pub(crate) fn slope_change_rad(&self) -> Option<f64> {
+        let rows = &self.drives.rows;
+        let speed_mps = self.drives.averaged_by(|i| rows[i].speed_mps());
+        let climb_mps = self.drives.averaged_by(|i| rows[i].speed_mps() * rows[i].attitude().weight_along());
+        Some(self.climb.as_ref()?.change_rad(&climb_mps, &speed_mps))
     }
 
     /// Voltages, average by average, where there are any that tell something [V].
@@ -161,6 +181,7 @@ impl Part {
             Meter::Ground => of(&self.ground_mps),
             Meter::Yaw => of(&self.yaw_rate_radps),
             Meter::Sag => of(self.beyond_v()),
+            Meter::Climb => of(self.risen_m()),
             Meter::Left | Meter::Right | Meter::Battery => values.to_vec(),
         }
     }
@@ -177,6 +198,9 @@ impl Part {
                 Meter::Ground => of(&|mean| mean[3].hypot(mean[4])),
                 Meter::Yaw => of(&|mean| mean[5]),
                 Meter::Sag => self.sagging_v(&of(&|mean| mean[6])),
+                Meter::Climb => {
+                    self.climb.as_ref().map_or(Vec::new(), |climb| climb.summed(&of(&|mean| mean[7])))
+                }
             };
             self.told(*meter, &all)
         };

@@ -206,6 +206,11 @@ impl Series {
         self.meters.contains(&Meter::Sag).then(|| self.parts[0].source_change())?
     }
 
+    /// By how much slopes by heights and as they were read differ between drives, one sigma; `None` where heights tell nothing [rad].
+    pub(crate) fn slope_change_rad(&self) -> Option<f64> {
+        self.meters.contains(&Meter::Climb).then(|| self.parts.last()?.slope_change_rad())?
+    }
+
     /// Whether there are healthy drives.
     pub fn has_healthy(&self) -> bool {
         self.parts.len() > 1

@@ -79,7 +79,7 @@ fn system_by(
     if delayed {
         columns.push(white.of(&base.delays[0]));
     }
-    columns.extend(base.sags.iter().map(|c| white.of(c)));
+    columns.extend(base.sags.iter().chain(&base.tilts).map(|c| white.of(c)));
     let mut known = vec![1.0; columns.len()];
     // Of sizes and of what stands beside nothing is known before.
     let is_free = |which: usize| match sizes {

@@ -167,7 +167,16 @@ impl Part {
             (Some(sag), true) => sag.current_a(i, read),
             _ => 0.0,
         };
-        [first_w, second_w, rest_w, along_mps, across_mps, yaw_rate_radps, current_a]
+        [
+            first_w,
+            second_w,
+            rest_w,
+            along_mps,
+            across_mps,
+            yaw_rate_radps,
+            current_a,
+            speed_mps * moment.attitude.weight_along(),
+        ]
     }
 }
 
