@@ -160,6 +160,27 @@ fn the_voltage_of_the_battery_tells_a_load_from_a_meter_that_reads_too_much() {
 }
 
 #[test]
+fn heights_tell_an_inclinometer_that_is_askew_from_what_holds_a_robot_back() {
+    let robot = model::builtin::husky_a200();
+    let askew = Effect { onset_s: 200.0, ..Effect::new(EffectName::PitchBias, 0.008) };
+    let found = said(&robot, &record(33, vec![askew]), &record(31, vec![]));
+    assert_eq!(
+        (found.verdict, names(&found)),
+        (Verdict::Explained, vec!["pitch_bias"]),
+        "{}",
+        found.sentence
+    );
+    let slower = Effect::new(EffectName::SpeedDependentFriction, 0.3);
+    let found = said(&robot, &record(33, vec![slower]), &record(31, vec![]));
+    assert!(!found.findings.is_empty(), "{}", found.sentence);
+    for one in &found.findings {
+        let is_named =
+            one.indistinguishable_from.iter().chain([&one.mechanism]).any(|name| name == "pitch_bias");
+        assert!(!is_named, "{}", found.sentence);
+    }
+}
+
+#[test]
 fn a_meter_that_is_off_by_a_constant_comes_neither_late_nor_early() {
     // Beside something else its beginning is found a second or two off, and it never changes.
     let robot = model::builtin::husky_a200();

@@ -90,3 +90,41 @@ impl Climb {
         ((USUAL_CHANGE_RAD.powi(2) + apart) / count).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two drives of 300 s at 0.5 m/s over hills, with the rates of climbing by slopes that were read too steep by so much.
+    fn drives(too_steep_rad: [f64; 2]) -> (Climb, Vec<f64>, Vec<f64>) {
+        let slope_rad = |i: usize| 0.05 * (0.1 * i as f64).sin();
+        let climb_mps: Vec<f64> = (0..600).map(|i| 0.5 * (slope_rad(i) + too_steep_rad[i / 300])).collect();
+        let true_mps: Vec<f64> = (0..600).map(|i| 0.5 * slope_rad(i)).collect();
+        let mut climb = Climb {
+            began: (0..600).map(|i| (i % 300 >= 20 && i % 20 == 0).then(|| i - 20)).collect(),
+            risen_m: vec![f64::NAN; 600],
+            t_s: (0..600).map(|i| (i % 300) as f64).collect(),
+            run: (0..600).map(|i| i / 300).collect(),
+        };
+        climb.risen_m = climb.summed(&true_mps);
+        (climb, climb_mps, vec![0.5; 600])
+    }
+
+    #[test]
+    fn what_a_rate_sums_to_is_told_where_a_climb_ends() {
+        let (climb, _, speed_mps) = drives([0.0; 2]);
+        let driven_m = climb.summed(&speed_mps);
+        assert!((driven_m[40] - 10.0).abs() < 1e-12, "20 s at 0.5 m/s: {} m", driven_m[40]);
+        assert!(driven_m[41].is_nan() && driven_m[300].is_nan(), "no climb ends there");
+    }
+
+    #[test]
+    fn slopes_differ_from_heights_as_they_do_between_drives_and_no_less_than_usual() {
+        let (climb, climb_mps, speed_mps) = drives([0.003, 0.003]);
+        let usual_rad = climb.change_rad(&climb_mps, &speed_mps);
+        assert!((usual_rad - USUAL_CHANGE_RAD / 2.0_f64.sqrt()).abs() < 1e-9, "{usual_rad}");
+        let (climb, climb_mps, speed_mps) = drives([0.003, 0.007]);
+        let apart_rad = climb.change_rad(&climb_mps, &speed_mps);
+        assert!((apart_rad - 0.002).abs() < 1e-4, "{apart_rad}");
+    }
+}

@@ -133,7 +133,7 @@ const MOST_APART_S: f64 = 1.0;
 fn align(power_w: &mut [f64], volts: &[f64], t_s: &[f64]) {
     let Some((first_s, last_s)) = t_s.first().zip(t_s.last()) else { return };
     let row_s = (last_s - first_s) / (t_s.len() as f64 - 1.0).max(1.0);
-    if !(row_s > 0.0) {
+    if row_s.is_nan() || row_s <= 0.0 {
         return;
     }
     let most = (MOST_APART_S / row_s) as isize;

@@ -165,6 +165,17 @@ pub fn search(
     Ok(Search { found, refused, before, after, left, null })
 }
 
+/// Names but one, each once: a mechanism may be a rival all over the ground and in a part of it.
+fn others<'a>(own: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut others: Vec<String> = Vec::new();
+    for name in names.filter(|name| *name != own) {
+        if !others.iter().any(|other| other == name) {
+            others.push(name.to_owned());
+        }
+    }
+    others
+}
+
 /// What was found itself is no other name of what was found beside it.
 fn tell_apart(found: &mut [Found]) {
     let names: Vec<&str> = found.iter().map(|one| one.applied.mechanism.name()).collect();
@@ -211,10 +222,8 @@ pub(crate) fn decide(
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    let indistinguishable_from = (0..fits.len())
-        .filter(|i| *i != winner && costs[*i] < costs[winner] + AS_GOOD_A_NAME)
-        .map(|i| rivals[i].candidate.applied.mechanism.name().to_owned())
-        .collect();
+    let as_good = (0..fits.len()).filter(|i| costs[*i] < costs[winner] + AS_GOOD_A_NAME);
+    let indistinguishable_from = others(rivals[winner].name(), as_good.map(|i| rivals[i].name()));
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
     let Some(fit) = fit.map(as_hard::in_both) else { unreachable!("the winner is one of the fits") };
@@ -242,6 +251,12 @@ mod tests {
 
     use super::*;
     use crate::span::Span;
+
+    #[test]
+    fn a_rival_is_another_name_once_and_never_its_own() {
+        let names = ["payload", "surface_change", "payload", "power_scale", "surface_change"];
+        assert_eq!(others("surface_change", names.into_iter()), ["payload", "power_scale"]);
+    }
 
     #[test]
     fn what_was_found_is_no_other_name_of_what_was_found_beside_it() {
