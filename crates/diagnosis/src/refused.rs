@@ -20,7 +20,9 @@ pub struct Refused {
 pub(crate) type Doubt<'a> = dyn Fn(&State, usize) -> Result<Option<String>, Error> + 'a;
 
 /// Leaves out what is doubted, one by one, and fits the rest again each time, whose doubts may have been hidden by what was left out.
-/// Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a reason.
+/// What explains as much and is not doubted takes its place, and nothing is missing then; names that are doubted are no other names of what
+/// stays. Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a
+/// reason.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -30,47 +32,56 @@ pub(crate) fn refuse(
     state: &mut State,
     doubts: &[&Doubt<'_>],
 ) -> Result<Vec<Refused>, Error> {
-    let mut refused = Vec::new();
+    let (mut refused, mut tried) = (Vec::new(), Vec::new());
     if !series.has_healthy() {
         return Ok(refused);
     }
     while let Some((which, why)) = first_doubted(state, doubts)? {
         let mechanism = state.found[which].applied.mechanism.name();
-        refused.push(Refused { mechanism, why });
-        let is_refused = |name: &str| refused.iter().any(|refused: &Refused| refused.mechanism == name);
-        let others = state.found[which].indistinguishable_from.clone();
-        let mut left = Vec::new();
-        for name in others.iter().filter(|name| !is_refused(name)) {
-            let Some(instead) = instead(series, file, state, (which, name))? else { continue };
-            if doubted(&instead, which, doubts)?.is_none() {
-                left.push(instead);
-            }
-        }
-        let by = state.fit.clone();
-        let misfit = |state: &State| misfit(series, &state.fit, &by);
-        match left.into_iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b))) {
-            Some(best) => *state = best,
-            None => {
-                state.found.remove(which);
-                state.refit(series, file)?;
-            }
+        tried.push(mechanism);
+        if let Some(next) = stand_in(series, file, (state, which), &tried, doubts)? {
+            *state = next;
+        } else {
+            state.found.remove(which);
+            refused.push(Refused { mechanism, why });
+            state.refit(series, file)?;
         }
     }
     for which in 0..state.found.len() {
-        let mut names = state.found[which].indistinguishable_from.clone();
-        let mut is_possible = Vec::new();
-        for name in &names {
-            let instead = instead(series, file, state, (which, name))?;
-            is_possible.push(match instead {
-                Some(instead) => doubted(&instead, which, doubts)?.is_none(),
-                None => true,
-            });
+        let mut possible = Vec::new();
+        for name in state.found[which].indistinguishable_from.clone() {
+            let is_doubted = match instead(series, file, state, (which, &name))? {
+                Some(instead) => doubted(&instead, which, doubts)?.is_some(),
+                None => false,
+            };
+            possible.extend((!is_doubted).then_some(name));
         }
-        let mut possible = is_possible.into_iter();
-        names.retain(|_| possible.next().unwrap_or(true));
-        state.found[which].indistinguishable_from = names;
+        state.found[which].indistinguishable_from = possible;
     }
     Ok(refused)
+}
+
+/// What was found with what explains most of that which explains as much as one that is doubted, and is not doubted itself, in its place;
+/// but for some that were tried.
+fn stand_in(
+    series: &Series,
+    file: &Robot,
+    (state, which): (&State, usize),
+    tried: &[&str],
+    doubts: &[&Doubt<'_>],
+) -> Result<Option<State>, Error> {
+    let mut best: Option<(f64, State)> = None;
+    for name in &state.found[which].indistinguishable_from {
+        if tried.contains(&name.as_str()) {
+            continue;
+        }
+        let Some(next) = instead(series, file, state, (which, name))? else { continue };
+        let left = misfit(series, &next.fit, &state.fit);
+        if best.as_ref().is_none_or(|(least, _)| left < *least) && doubted(&next, which, doubts)?.is_none() {
+            best = Some((left, next));
+        }
+    }
+    Ok(best.map(|(_, state)| state))
 }
 
 /// What was found with another mechanism, which explains as much, instead of one; `None` where drives tell nothing of that.
