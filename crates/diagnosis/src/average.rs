@@ -6,7 +6,7 @@ use crate::span::Span;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
     /// 0 and 1 for left and right power, or 0 for that of the battery; 2 for what the battery gives beyond both sides, 3 for the
-    /// speed over ground, 4 for the yaw rate 5 for the battery's voltage and 6 for the climb.
+    /// speed over ground, 4 for the yaw rate, 5 for the battery's voltage and 6 for the climb.
     pub channel: usize,
     /// Which drive; drives under suspicion and healthy ones count on.
     pub run: usize,

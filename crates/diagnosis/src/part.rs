@@ -49,7 +49,8 @@ pub(crate) struct Part {
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
-/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s]; current by the power that was recorded, as mechanisms have it read [A]; rate of climbing [m/s].
+/// velocity over ground along the axes that headings count from [m/s]; yaw rate [rad/s]; current by the power that was recorded, as
+/// mechanisms have it read [A]; rate of climbing [m/s].
 pub(crate) type Seen = [f64; 8];
 
 impl Part {
