@@ -26,6 +26,7 @@ mod layout;
 mod map;
 mod mcap;
 mod merge;
+mod pages;
 mod parquet;
 mod reading;
 mod recording;

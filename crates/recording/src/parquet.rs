@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ::parquet::{
     basic::{LogicalType, TimeUnit, Type as Physical},
-    column::reader::{ColumnReader, ColumnReaderImpl},
+    column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader},
     data_type::{ByteArray, DataType},
     file::reader::{ChunkReader, FileReader, SerializedFileReader},
     schema::types::ColumnDescriptor,
@@ -15,6 +15,7 @@ use crate::{
     column::{Column, Kind, Plan},
     error::Position,
     label_column::{LabelColumn, MOST_NAMES},
+    pages::Pages,
     reading::{Part, Reading},
     room::Room,
     table::Table,
@@ -66,8 +67,11 @@ fn read_file(
     let mut before = 0;
     for group in 0..file.num_row_groups() {
         let group = file.get_row_group(group)?;
-        let readers = (0..sources.len()).map(|index| group.get_column_reader(index));
-        let mut readers = readers.collect::<Result<Vec<ColumnReader>, _>>()?;
+        let readers = (0..sources.len()).map(|index| {
+            let pages = Pages { source: group.get_column_page_reader(index)?, name: headers[index].clone() };
+            Ok::<_, Error>(get_column_reader(schema.column(index), Box::new(pages)))
+        });
+        let mut readers = readers.collect::<Result<Vec<ColumnReader>, Error>>()?;
         loop {
             let mut rows = None;
             for ((reader, source), column) in readers.iter_mut().zip(&sources).zip(&mut table.columns) {

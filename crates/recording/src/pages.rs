@@ -1,0 +1,47 @@
+//! Pages of a Parquet column, held against their own bytes.
+
+use parquet::{
+    column::page::{Page, PageMetadata, PageReader},
+    errors::{ParquetError, Result},
+};
+
+/// Refuses a dictionary that claims more values than it has bytes: room for all that it claims would be taken at once, and a
+/// header of twenty bytes can claim four thousand million.
+pub(crate) struct Pages {
+    pub(crate) source: Box<dyn PageReader>,
+    /// Of the column, for messages.
+    pub(crate) name: String,
+}
+
+impl PageReader for Pages {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        let page = self.source.get_next_page()?;
+        match &page {
+            Some(Page::DictionaryPage { buf, num_values, .. }) if *num_values as usize > buf.len() => {
+                let reason = format!(
+                    "the dictionary of column `{}` says to hold {num_values} values in {} bytes",
+                    self.name,
+                    buf.len()
+                );
+                Err(ParquetError::General(reason))
+            }
+            _ => Ok(page),
+        }
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        self.source.peek_next_page()
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        self.source.skip_next_page()
+    }
+}
+
+impl Iterator for Pages {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Result<Page>> {
+        self.get_next_page().transpose()
+    }
+}
