@@ -37,6 +37,27 @@ pub(crate) fn best(
     applied: &[Applied],
     null: &Null,
 ) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
+    best_that_gains(series, base, applied, null, LEAST_GAIN_SIGMAS)
+}
+
+/// The same where something is known to be left, because what was found is doubted for it: held-out blocks are asked less of.
+pub(crate) fn best_beside_doubted(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    null: &Null,
+) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
+    best_that_gains(series, base, applied, null, LEAST_GAIN_SIGMAS_IF_STRONG)
+}
+
+/// The best that gains by so many standard errors, or is strong.
+fn best_that_gains(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    null: &Null,
+    least_gain_sigmas: f64,
+) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
     let Foremost { surest, closest, .. } = Foremost::of(series, base, applied, null)?;
     let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
     let white = base.whitening(series);
@@ -50,7 +71,7 @@ pub(crate) fn best(
         if one.is_in_place() && !is_of_place(series, base, one, null) {
             return None;
         }
-        let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { LEAST_GAIN_SIGMAS };
+        let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { least_gain_sigmas };
         Some((one, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
     let Some((passed, gain)) = passing else { return Ok(None) };

@@ -3,7 +3,15 @@
 use model::{Robot, mechanism};
 
 use crate::{
-    Error, alternatives::fitted, baseline::Baseline, candidates::apart, misfit::misfit, search::State,
+    Error,
+    alternatives::fitted,
+    baseline::Baseline,
+    candidates::apart,
+    gates::best_beside_doubted,
+    misfit::misfit,
+    needed::{drop_one, last_undoes},
+    null::Null,
+    search::{MOST, State, decide},
     series::Series,
 };
 
@@ -20,8 +28,8 @@ pub struct Refused {
 pub(crate) type Doubt<'a> = dyn Fn(&State, usize) -> Result<Option<String>, Error> + 'a;
 
 /// Leaves out what is doubted, one by one, and fits the rest again each time, whose doubts may have been hidden by what was left out.
-/// What explains as much and is not doubted takes its place, and nothing is missing then; names that are doubted are no other names of what
-/// stays. Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a
+/// What explains as much and is not doubted takes its place, or one more is taken up beside which it is not, and nothing is missing then;
+/// names that are doubted are no other names of what stays. Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a
 /// reason.
 ///
 /// # Errors
@@ -31,6 +39,7 @@ pub(crate) fn refuse(
     file: &Robot,
     state: &mut State,
     doubts: &[&Doubt<'_>],
+    null: &Null,
 ) -> Result<Vec<Refused>, Error> {
     let (mut refused, mut tried) = (Vec::new(), Vec::new());
     if !series.has_healthy() {
@@ -40,6 +49,8 @@ pub(crate) fn refuse(
         let mechanism = state.found[which].applied.mechanism.name();
         tried.push(mechanism);
         if let Some(next) = stand_in(series, file, (state, which), &tried, doubts)? {
+            *state = next;
+        } else if let Some(next) = beside(series, file, state, doubts, null)? {
             *state = next;
         } else {
             state.found.remove(which);
@@ -82,6 +93,28 @@ fn stand_in(
         }
     }
     Ok(best.map(|(_, state)| state))
+}
+
+/// What was found with one more beside it, if nothing of all is doubted then: what a second mechanism does is what the first one's size
+/// seemed to go with.
+fn beside(
+    series: &Series,
+    file: &Robot,
+    state: &State,
+    doubts: &[&Doubt<'_>],
+    null: &Null,
+) -> Result<Option<State>, Error> {
+    if state.found.len() >= MOST {
+        return Ok(None);
+    }
+    let applied = state.applied();
+    let Some((rivals, gain)) = best_beside_doubted(series, &state.fit, &applied, null)? else {
+        return Ok(None);
+    };
+    let mut both = state.clone();
+    both.take_up(decide(series, file, (&applied, &state.fit), (&rivals, gain), null)?);
+    let is_one_too_many = last_undoes(series, &both)? || drop_one(series, file, &mut both, null)?;
+    Ok((!is_one_too_many && first_doubted(&both, doubts)?.is_none()).then_some(both))
 }
 
 /// What was found with another mechanism, which explains as much, instead of one; `None` where drives tell nothing of that.

@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Mechanisms that are looked for at most.
-const MOST: usize = 3;
+pub(crate) const MOST: usize = 3;
 /// What is not needed by more than this is not: twice the log of a likelihood ratio of 20.
 pub(crate) const AS_GOOD: f64 = 6.0;
 /// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
@@ -74,6 +74,7 @@ pub struct Search {
 }
 
 /// What is found so far, and the robot with all of it.
+#[derive(Clone)]
 pub(crate) struct State {
     pub(crate) found: Vec<Found>,
     pub(crate) fit: Baseline,
@@ -158,7 +159,7 @@ pub fn search(
     second_ground::part(series, file, &mut state)?;
     let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
     let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);
-    let refused = refuse(series, file, &mut state, &[&of_many_sizes, &told_better])?;
+    let refused = refuse(series, file, &mut state, &[&of_many_sizes, &told_better], &null)?;
     let State { mut found, fit: after } = state;
     tell_apart(&mut found);
     let left = [left_before, left(series, &after)];

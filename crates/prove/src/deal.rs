@@ -6,11 +6,15 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use world::{CaseKind, EffectName, Family};
 
+use crate::Kind;
+
 /// Strengths asked for: root mean square change of power over its mean. An ideal detector sees the
 /// first at about z = 40 on a Husky's quarter of an hour; the last is plain to the eye.
 pub const SHARES: [f64; 4] = [0.012, 0.03, 0.06, 0.12];
 /// Shares of healthy drives, decoys, one effect, two effects and effects without a name among the cases.
 const MIX: [f64; 5] = [0.20, 0.10, 0.45, 0.15, 0.10];
+/// Their kinds.
+const KINDS: [Kind; 5] = [Kind::Healthy, Kind::Decoy, Kind::One, Kind::Two, Kind::Unlisted];
 
 /// A case that is to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +29,13 @@ pub struct Dealt {
     pub seed: u64,
 }
 
-/// Deals the cases of a trial, in random order.
+/// Deals the cases of a trial, in random order: of all kinds, or only of one.
 ///
 /// Every mechanism comes up once before one comes up twice, and with every strength before one strength repeats.
-pub fn deal(cases: usize, seed: u64) -> Vec<Dealt> {
+pub fn deal(cases: usize, seed: u64, only: Option<Kind>) -> Vec<Dealt> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
-    let [healthy, decoys, ones, twos, unlisted] = counts(cases);
+    let [healthy, decoys, ones, twos, unlisted] =
+        only.map_or_else(|| counts(cases), |only| KINDS.map(|kind| if kind == only { cases } else { 0 }));
     let mut listed = names(|family| family != Family::Unlisted);
     let mut others = names(|family| family == Family::Unlisted);
     shuffle(&mut listed, &mut random);
@@ -99,8 +104,8 @@ mod tests {
 
     #[test]
     fn the_same_seed_deals_the_same_and_another_seed_something_else() {
-        assert_eq!(deal(30, 7), deal(30, 7));
-        assert_ne!(deal(30, 7), deal(30, 8));
+        assert_eq!(deal(30, 7, None), deal(30, 7, None));
+        assert_ne!(deal(30, 7, None), deal(30, 8, None));
     }
 
     #[test]
@@ -115,7 +120,7 @@ mod tests {
 
     #[test]
     fn mechanisms_and_strengths_come_round_evenly() {
-        let dealt = deal(400, 1);
+        let dealt = deal(400, 1, None);
         for name in names(|family| family != Family::Unlisted) {
             let mut shares: Vec<f64> =
                 dealt.iter().filter(|d| d.kind == CaseKind::One(name)).map(|d| d.share).collect();
@@ -127,8 +132,17 @@ mod tests {
     }
 
     #[test]
+    fn only_cases_of_one_kind_are_dealt_where_it_is_asked_for() {
+        let dealt = deal(20, 3, Some(Kind::Unlisted));
+        let is_unlisted =
+            |d: &Dealt| matches!(d.kind, CaseKind::One(name) if name.family() == Family::Unlisted);
+        assert!(dealt.len() == 20 && dealt.iter().all(is_unlisted), "{dealt:?}");
+        assert!(deal(7, 3, Some(Kind::Decoy)).iter().all(|d| d.kind == CaseKind::Decoy));
+    }
+
+    #[test]
     fn names_of_cases_tell_nothing() {
-        let [a, b] = [deal(12, 1), deal(12, 2)].map(|dealt| {
+        let [a, b] = [deal(12, 1, None), deal(12, 2, None)].map(|dealt| {
             let names: Vec<String> = dealt.into_iter().map(|d| d.name).collect();
             names
         });

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use world::{Case, RobotFile, World, simulate};
 
 use crate::{
-    CaseScore, Commitments, Dealt, Diagnosis, Error, Misled, Outcome, PeerAnswer, PeerScore, Scoreboard,
-    SealedKey, Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
+    CaseScore, Commitments, Dealt, Diagnosis, Error, Kind, Misled, Outcome, PeerAnswer, PeerScore,
+    Scoreboard, SealedKey, Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
 };
 
 /// What a trial is doing.
@@ -30,6 +30,8 @@ pub struct Trial<'a> {
     pub cases: usize,
     /// Seed that they are dealt from.
     pub seed: u64,
+    /// The only kind of case that is dealt, if not all are.
+    pub only: Option<Kind>,
     /// The robot when it is healthy, as its file says.
     pub robot_json: &'a str,
     /// Where everything is written.
@@ -56,7 +58,7 @@ impl Trial<'_> {
     /// Files that cannot be written; a key or case that changed between commitment and opening.
     pub fn run(&self) -> Result<Scoreboard, Error> {
         let robot = RobotFile::from_json(self.robot_json).map_err(Error::Robot)?;
-        let dealt = deal(self.cases, self.seed);
+        let dealt = deal(self.cases, self.seed, self.only);
         for folder in ["cases", "keys", "twins"] {
             files::folder(&self.out.join(folder))?;
         }

@@ -42,6 +42,7 @@ fn run(
     let trial = Trial {
         cases: 5,
         seed: 11,
+        only: None,
         robot_json: &robot_json,
         out,
         diagnosis: Diagnosis { program: program.to_owned(), threads: 1 },

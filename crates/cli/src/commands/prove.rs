@@ -7,10 +7,10 @@ use std::{
 };
 
 use anyhow::Context;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::{Robot, builtin};
-use prove::{Diagnosis, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
+use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
 use recording::read_paths;
 
 use crate::{failure::BadInput, progress};
@@ -26,9 +26,39 @@ pub(crate) struct Arguments {
     /// Seed of everything that is drawn
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Only cases of one kind, instead of all kinds
+    #[arg(long)]
+    only: Option<Only>,
     /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
     #[arg(long)]
     out: PathBuf,
+}
+
+/// A kind of case.
+#[derive(Clone, Copy, ValueEnum)]
+enum Only {
+    /// Healthy drives
+    Healthy,
+    /// Healthy drives that look as if something were wrong
+    Decoys,
+    /// One effect that has a name
+    One,
+    /// Two effects that have names
+    Two,
+    /// One effect that no mechanism describes
+    Unlisted,
+}
+
+impl From<Only> for Kind {
+    fn from(only: Only) -> Self {
+        match only {
+            Only::Healthy => Kind::Healthy,
+            Only::Decoys => Kind::Decoy,
+            Only::One => Kind::One,
+            Only::Two => Kind::Two,
+            Only::Unlisted => Kind::Unlisted,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -46,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let trial = Trial {
         cases: arguments.cases,
         seed: arguments.seed,
+        only: arguments.only.map(Kind::from),
         robot_json: &robot_json,
         out: &arguments.out,
         // Cases side by side use the cores better than threads within one.
