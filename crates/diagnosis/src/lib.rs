@@ -64,6 +64,7 @@ mod shared;
 mod span;
 mod term;
 mod turning;
+mod undoing;
 mod usual;
 mod visits;
 mod weigh;

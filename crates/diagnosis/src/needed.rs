@@ -4,7 +4,6 @@ use model::{
     Robot,
     mechanism::{self, Kind},
 };
-use nalgebra::DVector;
 
 use crate::{
     Error,
@@ -13,7 +12,6 @@ use crate::{
     null::Null,
     polish::{Polished, settle},
     search::{AS_GOOD, Found, State, is_told},
-    second_ground::take_turns,
     series::{Applied, Series},
     span::Span,
     weigh::system,
@@ -29,8 +27,6 @@ const BEYOND_FORM: f64 = 0.5;
 const LEAST_OF_ALL: f64 = 0.05;
 const LEAST_OF_ALL_WHERE_TOLD: f64 = 0.02;
 const LEAST_IN_PLACE: f64 = 0.1;
-/// Least share of the squares of what two mechanisms do that both together do.
-const LEFT_OF_BOTH: f64 = 0.25;
 
 /// Leaves out what others found later explain as well, and says whether there was any.
 ///
@@ -104,46 +100,4 @@ fn has_one_form(found: &Found) -> bool {
     };
     is_certain(found.applied.mechanism.name())
         && found.indistinguishable_from.iter().all(|name| is_certain(name))
-}
-
-/// Whether what was found last and something found before almost undo each other while both act: what is left of them is a third thing,
-/// a pulse between two times, say, or ground whose place goes with what the robot does there.
-///
-/// # Errors
-/// A surface that the robot does not know.
-pub(crate) fn last_undoes(series: &Series, state: &State) -> Result<bool, Error> {
-    let Some((last, before)) = state.found.split_last() else { return Ok(false) };
-    let none_w = series.predict(&state.fit.robot, &[])?;
-    let alone = |one: &Applied| series.predict(&state.fit.robot, std::slice::from_ref(one));
-    let last_w = alone(&last.applied)?;
-    for one in before.iter().filter(|one| !take_turns(&one.applied, &last.applied)) {
-        let one_w = alone(&one.applied)?;
-        let act = |i: &usize| [one, last].iter().all(|f| series.averages[*i].is_in(f.applied.span));
-        let both: Vec<usize> = (0..none_w.len()).filter(act).collect();
-        let of =
-            |with_w: &[f64]| DVector::from_iterator(both.len(), both.iter().map(|i| with_w[*i] - none_w[*i]));
-        if undo(&of(&last_w), &of(&one_w)) {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// Whether two changes almost undo each other.
-pub(crate) fn undo(a: &DVector<f64>, b: &DVector<f64>) -> bool {
-    (a + b).norm_squared() < LEFT_OF_BOTH * (a.norm_squared() + b.norm_squared())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_that_takes_back_what_another_does_is_no_second_thing_and_one_that_takes_back_its_half_is() {
-        let both_sides = DVector::from_element(10, 1.0);
-        let of_left = DVector::from_fn(10, |i, _| if i % 2 == 0 { -1.0 } else { 0.0 });
-        assert!(undo(&both_sides, &(-0.66 * &both_sides)) && undo(&both_sides, &(-1.0 * &both_sides)));
-        assert!(!undo(&both_sides, &of_left), "one side of what both sides do");
-        assert!(!undo(&both_sides, &(0.5 * &both_sides)) && !undo(&both_sides, &(-0.2 * &both_sides)));
-    }
 }

@@ -9,10 +9,11 @@ use crate::{
     foremost::Foremost,
     gates::best,
     misfit::misfit,
-    needed::{drop_one, last_undoes, undo},
+    needed::drop_one,
     null::Null,
     search::{AS_GOOD, Found, State, decide, is_told},
     series::{Applied, Series},
+    undoing::{last_undoes, undo_in_all},
     weigh::{Weighed, system},
 };
 
@@ -116,7 +117,7 @@ fn pair(
             }
             let Some((score, values)) = score(&[a, b]) else { continue };
             let [own_w, other_w] = parts(&[a, b], &values);
-            if undo(&own_w, &other_w) {
+            if undo_in_all(series, &own_w, &other_w) {
                 continue;
             }
             if score > least && most.as_ref().is_none_or(|(best, _)| score > *best) {

@@ -9,10 +9,11 @@ use crate::{
     candidates::apart,
     gates::best_beside_doubted,
     misfit::misfit,
-    needed::{drop_one, last_undoes},
+    needed::drop_one,
     null::Null,
     search::{MOST, State, decide},
     series::Series,
+    undoing::last_undoes,
 };
 
 /// A mechanism that explains much and is not what is missing.

@@ -10,7 +10,7 @@ use crate::{
     constancy,
     gates::best,
     misfit::{self, Squares},
-    needed::{drop_one, last_undoes},
+    needed::drop_one,
     null::Null,
     off_middle,
     onset::{self, Bounded},
@@ -19,6 +19,7 @@ use crate::{
     refused::{Refused, refuse},
     second_ground,
     series::{Applied, Series},
+    undoing::last_undoes,
     weigh::{Weighed, left, system},
 };
 
