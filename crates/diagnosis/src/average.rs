@@ -51,6 +51,16 @@ impl Average {
         }
     }
 
+    /// The same with time since a span began, where that was in its drive.
+    pub(crate) fn since(&self, span: Span) -> Average {
+        let from_s = match span {
+            Span::EachDrive(from_s) => from_s,
+            Span::From { run, t_s } if run == self.run => t_s,
+            _ => 0.0,
+        };
+        Average { t_s: self.t_s - from_s, ..*self }
+    }
+
     /// Whether what acts in a span acts on it.
     pub(crate) fn is_in(&self, span: Span) -> bool {
         span.acts(self.run, self.t_s, self.input.position_m)

@@ -90,7 +90,11 @@ pub fn diagnose_watched(
     let is_open = judged.verdict(&found) == Verdict::Unexplained && series.has_healthy();
     if is_open || series.turning.is_some() {
         progress("looking outside the list", 0.75);
-        judged.take_up(&series, &found, discover(&series, &found.after, &applied, &found.null)?)?;
+        judged.take_up(
+            &series,
+            &found,
+            discover(&series, &found.after, &applied, &found.refused, &found.null)?,
+        )?;
     }
     progress("locating the difference", 0.8);
     let places = judged.places(&series, &found)?;

@@ -6,9 +6,11 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates::{self, Family},
-    evidence::{Evidence, TOGETHER},
+    evidence::{Evidence, System, TOGETHER},
     gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes},
+    noise::Whitening,
     null::Null,
+    refused::Refused,
     report::{EvidenceFigures, Finding, FindingFit, FoundParameter},
     series::{Applied, Series},
     term::{self, Scale, Term},
@@ -17,7 +19,7 @@ use crate::{
 };
 
 /// Terms that are taken up at most.
-const MOST: usize = 3;
+const MOST: usize = 4;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
@@ -51,16 +53,16 @@ pub(crate) fn discover(
     series: &Series,
     base: &Baseline,
     applied: &[Applied],
+    refused: &[Refused],
     null: &Null,
 ) -> Result<Vec<Discovered>, Error> {
-    let mut terms = term::all(series.channels());
+    let of_mechanisms = applied.iter().map(|one| one.span).chain(refused.iter().map(|one| one.span));
+    let mut terms = term::all(series.channels(), &term::onsets(series, of_mechanisms));
     // Alone, what the model itself misses would pass for a discovery; what repeats with every turn of the wheels does not.
     if !series.has_healthy() {
         terms.retain(Term::is_turn);
     }
-    let columns: Vec<Vec<f64>> =
-        terms.par_iter().map(|term| term.column(&base.robot, &series.averages, &base.predicted_w)).collect();
-    let library = Library { terms, columns };
+    let library = Library::of(series, base, terms);
     let mut found: Vec<Discovered> = Vec::new();
     while found.len() < MOST {
         let taken: Vec<Vec<f64>> = found.iter().map(|one| one.column_w.clone()).collect();
@@ -83,48 +85,101 @@ struct Library {
     columns: Vec<Vec<f64>>,
 }
 
+impl Library {
+    fn of(series: &Series, base: &Baseline, terms: Vec<Term>) -> Self {
+        let column = |term: &Term| term.column(&base.robot, &series.averages, &base.predicted_w);
+        let columns = terms.par_iter().map(column).collect();
+        Library { terms, columns }
+    }
+}
+
+/// A term that was weighed.
+struct Weighed {
+    /// Which of its library.
+    which: usize,
+    evidence: Evidence,
+    /// Discounted evidence less what its choices cost.
+    score: f64,
+    p_value: f64,
+}
+
 /// The best term beside those taken that passes every gate.
 fn strongest(
     series: &Series,
     base: &Baseline,
     null: &Null,
-    Library { terms, columns }: &Library,
+    library: &Library,
     (tried, taken): (&[usize], &[Vec<f64>]),
 ) -> Option<Discovered> {
     let system = system_with(series, base, taken);
     let white = base.whitening(series);
+    let weighed = weigh(&system, &white, null, (library, tried, library.terms.len()));
+    let told = weighed.into_iter().take_while(|one| one.score > 0.0).filter(|one| one.p_value <= LEVEL);
+    let passed = |library: &Library, one: &Weighed| {
+        let columns = [white.of(&library.columns[one.which])];
+        passes(&system, series, &one.evidence, (&columns, LEAST_GAIN_SIGMAS))
+    };
+    let (first, gain) = told.into_iter().find_map(|one| passed(library, &one).map(|gain| (one, gain)))?;
+    // Since when it acts is looked for about the time that was tried.
+    let around = around(series, &library.terms[first.which]);
+    let all: Vec<usize> = (0..around.len()).collect();
+    let around = Library::of(series, base, around);
+    let closer = weigh(&system, &white, null, (&around, &all, library.terms.len()));
+    let closer = closer.into_iter().next().filter(|one| one.score > first.score);
+    let closer = closer.and_then(|one| passed(&around, &one).map(|gain| (&around, one, gain)));
+    let (library, Weighed { which, evidence, score, p_value }, held_out_gain) =
+        closer.unwrap_or((library, first, gain));
+    Some(Discovered {
+        term: library.terms[which].clone(),
+        size: evidence.values[0],
+        half_width: NORMAL_95 * evidence.covariance[(0, 0)].max(0.0).sqrt(),
+        p_value,
+        score,
+        held_out_gain,
+        column_w: library.columns[which].clone(),
+        resembles: None,
+    })
+}
+
+/// Terms of a library, the best first; `choices` is among how many they were chosen.
+fn weigh(
+    system: &System,
+    white: &Whitening,
+    null: &Null,
+    (library, tried, choices): (&Library, &[usize], usize),
+) -> Vec<Weighed> {
     let blocks = system.blocks();
-    let weighed = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
-        let whitened: Vec<Vec<Vec<f64>>> = some.iter().map(|i| vec![white.of(&columns[*i])]).collect();
+    let evidences = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
+        let whitened: Vec<Vec<Vec<f64>>> =
+            some.iter().map(|i| vec![white.of(&library.columns[*i])]).collect();
         system.weigh_all(&whitened).into_iter().zip(some.to_vec())
     });
-    let mut weighed: Vec<(f64, f64, usize, Evidence)> = weighed
-        .filter_map(|(evidence, i)| {
-            let evidence = evidence?;
-            let (wald, chance) = judged(&evidence, UNKNOWN, null, blocks)?;
-            let p_value = (chance * terms.len() as f64).min(1.0);
-            // Each further group is a further choice.
-            let cost = (1 + terms[i].groups.len()) as f64 * (blocks as f64).ln();
-            Some((wald - cost, p_value, i, evidence))
-        })
-        .collect();
-    weighed.sort_by(|a, b| b.0.total_cmp(&a.0));
-    weighed.into_iter().take_while(|(score, ..)| *score > 0.0).find_map(|(score, p_value, i, evidence)| {
-        if p_value > LEVEL {
-            return None;
-        }
-        let gain = passes(&system, series, &evidence, (&[white.of(&columns[i])], LEAST_GAIN_SIGMAS))?;
-        Some(Discovered {
-            term: terms[i].clone(),
-            size: evidence.values[0],
-            half_width: NORMAL_95 * evidence.covariance[(0, 0)].max(0.0).sqrt(),
-            p_value,
-            score,
-            held_out_gain: gain,
-            column_w: columns[i].clone(),
-            resembles: None,
-        })
-    })
+    let weighed = evidences.filter_map(|(evidence, which)| {
+        let evidence = evidence?;
+        let (wald, chance) = judged(&evidence, UNKNOWN, null, blocks)?;
+        let cost = library.terms[which].choices() as f64 * (blocks as f64).ln();
+        let p_value = (chance * choices as f64).min(1.0);
+        Some(Weighed { which, evidence, score: wald - cost, p_value })
+    });
+    let mut weighed: Vec<Weighed> = weighed.collect();
+    weighed.sort_by(|a, b| b.score.total_cmp(&a.score));
+    weighed
+}
+
+/// Times that are looked at on each side of a first guess, and how far apart they lie [s].
+const STEPS: i32 = 9;
+const STEP_S: f64 = 10.0;
+
+/// A term from other times on; none of one that always acts.
+fn around(series: &Series, term: &Term) -> Vec<Term> {
+    let line = series.timeline();
+    if term.span.is_all() {
+        return Vec::new();
+    }
+    let guess_s = line.driven_s(term.span);
+    let times_s = (-STEPS..=STEPS).map(|step| guess_s + STEP_S * f64::from(step));
+    let within = times_s.filter(|driven_s| *driven_s > 0.0 && *driven_s < line.total_s());
+    within.map(|driven_s| Term { span: line.at(driven_s), ..term.clone() }).collect()
 }
 
 /// The name that a discovery goes by.
@@ -157,11 +212,19 @@ impl Discovered {
         // The scale of one watt is the unit of c.
         let unit = if self.term.scale == Scale::Watt { "W" } else { "1" };
         let interval_95 = Some([self.size - self.half_width, self.size + self.half_width]);
+        let mut parameters = vec![FoundParameter { name: "c", value: self.size, unit, interval_95 }];
+        let bounds = series.bounds(self.term.span).into_iter();
+        parameters.extend(bounds.map(|(name, value, unit)| FoundParameter {
+            name,
+            value,
+            unit,
+            interval_95: None,
+        }));
         Finding {
             mechanism: UNKNOWN.to_owned(),
             statement: words::capital(&self.statement(series)),
             equation: self.term.equation(),
-            parameters: vec![FoundParameter { name: "c", value: self.size, unit, interval_95 }],
+            parameters,
             evidence: EvidenceFigures {
                 p_value: self.p_value,
                 delta_bic: self.score,
@@ -184,6 +247,9 @@ impl Discovered {
             mean_w.abs(),
             self.term.words()
         );
+        if !self.term.span.is_all() {
+            text += &format!(", {}", self.term.span.words(&series.names));
+        }
         if let Some(where_w) = self.regime(series) {
             text += &where_w;
         }

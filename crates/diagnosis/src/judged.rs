@@ -9,6 +9,7 @@ use crate::{
     discover::Discovered,
     explainable::explained_share,
     locate,
+    missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
     refitted::{Refitted, bias_w, rmse_w},
     report::{
         BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
@@ -21,14 +22,6 @@ use crate::{
 
 /// Share of held-out errors that may be explainable where nothing is missing.
 const LITTLE: f64 = 0.06;
-/// Share of what was explainable before that may remain so.
-const REMAINS: f64 = 0.35;
-/// Share of power that may be explainable where nothing is missing: of drives of another kind than the healthy ones, what the
-/// model misses of a robot in order reaches 1.1 %.
-const MISFIT: f64 = 0.015;
-/// How many times what models usually miss may be left where all is explained.
-const BEYOND_USUAL: f64 = 2.0;
-
 /// What the fits before, with each finding, and after say.
 pub(crate) struct Judged {
     pub(crate) baseline: BaselineFit,
@@ -119,8 +112,7 @@ impl Judged {
         let is_little = |explainable: f64| {
             explainable <= LITTLE || explainable.sqrt() * self.corrected.rmse_w <= MISFIT * self.mean_w
         };
-        let usual_w = self.usual_w.max(MISFIT * self.mean_w);
-        let is_missed = self.missed_share() > REMAINS && self.missed_w() > BEYOND_USUAL * usual_w;
+        let is_missed = self.missed().is_most();
         if !found.refused.is_empty() {
             return Verdict::Unexplained;
         }
@@ -140,16 +132,14 @@ impl Judged {
         }
     }
 
-    /// What is left of errors held out beyond noise [W].
-    fn missed_w(&self) -> f64 {
-        (self.corrected.held_out_rmse_w.powi(2) - self.baseline.noise_floor_w.powi(2)).max(0.0).sqrt()
-    }
-
-    /// The same as a share of what was there before, both squared: mechanisms that take the place of what is missing follow it
-    /// here and there, but not all through the drives.
-    fn missed_share(&self) -> f64 {
-        let BaselineFit { held_out_rmse_w, noise_floor_w, .. } = self.baseline;
-        self.missed_w().powi(2) / (held_out_rmse_w.powi(2) - noise_floor_w.powi(2)).max(1e-12)
+    /// What is left of the difference.
+    fn missed(&self) -> Missed {
+        Missed {
+            before_w: self.baseline.held_out_rmse_w,
+            after_w: self.corrected.held_out_rmse_w,
+            floor_w: self.baseline.noise_floor_w,
+            usual_w: self.usual_w.max(MISFIT * self.mean_w),
+        }
     }
 
     pub(crate) fn findings(&self, series: &Series, found: &Search) -> Vec<Finding> {
@@ -215,25 +205,6 @@ fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
         [Some(x), Some(y)] if x.is_finite() && y.is_finite() => Some([x, y]),
         _ => None,
     }
-}
-
-/// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].
-fn floor_w(series: &Series, base: &Baseline) -> f64 {
-    let counts = (0..series.averages.len()).filter(|i| series.averages[*i].suspect && series.is_power(*i));
-    let fresh = |i: usize| base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]).powi(2);
-    let squares: Vec<f64> = counts.map(fresh).collect();
-    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
-}
-
-/// What is left of the errors of healthy drives beyond noise [W].
-fn usual_w(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
-    let healthy = |i: &usize| !series.averages[*i].suspect && series.is_power(*i);
-    let beyond = |i: usize| {
-        let fresh_w = base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]);
-        errors_w[i].powi(2) - fresh_w.powi(2)
-    };
-    let beyond: Vec<f64> = (0..series.averages.len()).filter(healthy).map(beyond).collect();
-    (beyond.iter().sum::<f64>() / beyond.len().max(1) as f64).max(0.0).sqrt()
 }
 
 fn finding(series: &Series, found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {

@@ -47,11 +47,11 @@ pub(crate) fn doubt(
     let whole = least_misfit(series, &without, &without) - least_misfit(series, &state.fit, &without);
     let explained = whole / common - found.numbers() as f64 * choice;
     let white = without.whitening(series);
-    let terms = term::all(series.channels());
+    let terms = term::all(series.channels(), &term::onsets(series, std::iter::once(found.applied.span)));
     let weighed = terms.par_chunks(TOGETHER).flat_map_iter(|terms| {
         let column = |term: &Term| term.column(&without.robot, &series.averages, &without.predicted_w);
         let columns: Vec<Vec<Vec<f64>>> = terms.iter().map(|term| vec![white.of(&column(term))]).collect();
-        let cost = |term: &Term| (1 + term.groups.len()) as f64 * choice;
+        let cost = |term: &Term| term.choices() as f64 * choice;
         let explained = system.explained(&columns).into_iter().zip(terms);
         explained.map(move |(explained, term)| (explained / common - cost(term), term)).collect::<Vec<_>>()
     });

@@ -12,17 +12,20 @@ use crate::{
     needed::drop_one,
     null::Null,
     search::{MOST, State, decide},
-    series::Series,
+    series::{Applied, Series},
+    span::Span,
     undoing::last_undoes,
 };
 
 /// A mechanism that explains much and is not what is missing.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
     /// Its name.
     pub mechanism: &'static str,
-    /// Why it is not, to follow on "would explain much of it, but".
+    /// Why it is not, to follow on "would explain part of it, but".
     pub why: String,
+    /// The part of the drives in which it would have acted.
+    pub(crate) span: Span,
 }
 
 /// Why one of what was found, by its number, is not what is missing; `None` if it may be.
@@ -47,7 +50,8 @@ pub(crate) fn refuse(
         return Ok(refused);
     }
     while let Some((which, why)) = first_doubted(state, doubts)? {
-        let mechanism = state.found[which].applied.mechanism.name();
+        let Applied { mechanism, span, .. } = state.found[which].applied;
+        let mechanism = mechanism.name();
         tried.push(mechanism);
         if let Some(next) = stand_in(series, file, (state, which), &tried, doubts)? {
             *state = next;
@@ -55,7 +59,7 @@ pub(crate) fn refuse(
             *state = next;
         } else {
             state.found.remove(which);
-            refused.push(Refused { mechanism, why });
+            refused.push(Refused { mechanism, why, span });
             state.refit(series, file)?;
         }
     }

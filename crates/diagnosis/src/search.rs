@@ -10,13 +10,14 @@ use crate::{
     constancy,
     gates::best,
     misfit::{self, Squares},
+    missed,
     needed::drop_one,
     null::Null,
     off_middle,
     onset::{self, Bounded},
     outside, pairs,
     polish::{Polished, form_sigma, polish, settle},
-    refused::{Refused, refuse},
+    refused::{Doubt, Refused, refuse},
     second_ground,
     series::{Applied, Series},
     undoing::last_undoes,
@@ -160,7 +161,9 @@ pub fn search(
     second_ground::part(series, file, &mut state)?;
     let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
     let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);
-    let refused = refuse(series, file, &mut state, &[&of_many_sizes, &told_better], &null)?;
+    let takes_little = |state: &State, which: usize| missed::doubt(series, file, &before, state, which);
+    let doubts: [&Doubt<'_>; 3] = [&of_many_sizes, &told_better, &takes_little];
+    let refused = refuse(series, file, &mut state, &doubts, &null)?;
     let State { mut found, fit: after } = state;
     tell_apart(&mut found);
     let left = [left_before, left(series, &after)];

@@ -11,8 +11,8 @@ const LITTLE_LEFT: f64 = 6.0;
 /// The verdict in a sentence, and what comes closest without being it.
 pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused]) -> String {
     let mut text = verdict(found, !refused.is_empty());
-    for Refused { mechanism, why } in refused {
-        text += &format!(" {} would explain much of it, but {why}.", capital(plain(mechanism)));
+    for Refused { mechanism, why, .. } in refused {
+        text += &format!(" {} would explain part of it, but {why}.", capital(plain(mechanism)));
     }
     text
 }

@@ -1,0 +1,113 @@
+//! Dimensionless groups of recorded quantities, of which terms outside the list are made.
+
+use model::STANDARD_GRAVITY_MPS2;
+
+use crate::{average::Average, constancy::MOVING_S};
+
+/// A dimensionless group of recorded quantities.
+#[derive(Clone, Copy)]
+pub(crate) struct Group {
+    /// As an equation has it.
+    pub(crate) symbol: &'static str,
+    /// What it grows with, in words.
+    pub(crate) words: &'static str,
+    /// The recorded quantity behind it and its unit.
+    pub(crate) quantity: Quantity,
+    /// Its value, given the highest rim speed \[m/s\]; time is that since what it is a group of set in.
+    pub(crate) value: fn(&Average, f64) -> f64,
+}
+
+impl Group {
+    /// Whether it is the angle that wheels have turned.
+    pub(crate) fn is_turn(&self) -> bool {
+        self.quantity.0 == TURNED.0
+    }
+}
+
+/// A recorded quantity: its name, how it is read and its unit.
+pub(crate) type Quantity = (&'static str, fn(&Average) -> f64, &'static str);
+
+const MOVING: Quantity = ("time since it stood still", |a| a.input.moving_s, "s");
+const TIME: Quantity = ("time since it began", |a| a.t_s, "s");
+const PITCH: Quantity = ("pitch", |a| a.input.pitch_rad, "rad");
+const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
+const SPEED: Quantity = ("speed", |a| a.input.speed_mps, "m/s");
+const TURN: Quantity = ("difference of rim speeds", |a| a.input.difference_mps, "m/s");
+const ACCELERATION: Quantity = ("acceleration", |a| a.input.accel_mps2, "m/s²");
+const HEADING: Quantity = ("heading", |a| a.input.heading_rad, "rad");
+const TURNED: Quantity = ("nearness to where each turn takes most", |a| a.input.nearness, "1");
+const HEIGHT: Quantity = ("height", |a| a.input.height_m, "m");
+
+const fn group(
+    symbol: &'static str,
+    words: &'static str,
+    quantity: Quantity,
+    value: fn(&Average, f64) -> f64,
+) -> Group {
+    Group { symbol, words, quantity, value }
+}
+
+/// All groups. θ pitch, φ roll, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
+/// heading, t time since the drive began or it set in, s since the robot stood still, z height, α the angle that the side's wheels have turned, all as
+/// recorded.
+pub(crate) static GROUPS: [Group; 35] = [
+    group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
+    group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
+    group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
+    group("|tan φ|", "the slope across the way", ROLL, |a, _| a.input.roll_rad.tan().abs()),
+    group("tan φ", "leaning to the right, and less to the left", ROLL, |a, _| a.input.roll_rad.tan()),
+    group("(tan φ)₊", "leaning to the right", ROLL, |a, _| a.input.roll_rad.tan().max(0.0)),
+    group("(−tan φ)₊", "leaning to the left", ROLL, |a, _| (-a.input.roll_rad.tan()).max(0.0)),
+    group("|v|/u_max", "speed", SPEED, |a, fastest| a.input.speed_mps.abs() / fastest),
+    group("(v/u_max)²", "the square of speed", SPEED, |a, fastest| (a.input.speed_mps / fastest).powi(2)),
+    group("e^(−|u|/0.2 u_max)", "creeping", SPEED, |a, fastest| {
+        (-a.input.rim_mps.abs() / (0.2 * fastest)).exp()
+    }),
+    group("|Δ|/u_max", "turning", TURN, |a, fastest| a.input.difference_mps.abs() / fastest),
+    group("(Δ)₊/u_max", "turning left", TURN, |a, fastest| a.input.difference_mps.max(0.0) / fastest),
+    group("(−Δ)₊/u_max", "turning right", TURN, |a, fastest| {
+        (-a.input.difference_mps).max(0.0) / fastest
+    }),
+    group("(a)₊/g", "speeding up", ACCELERATION, |a, _| {
+        a.input.accel_mps2.max(0.0) / STANDARD_GRAVITY_MPS2
+    }),
+    group("(−a)₊/g", "slowing down", ACCELERATION, |a, _| {
+        (-a.input.accel_mps2).max(0.0) / STANDARD_GRAVITY_MPS2
+    }),
+    group("e^(−s/3 s)", "having just stood still", MOVING, |a, _| (-a.input.moving_s / MOVING_S).exp()),
+    group("e^(−t/15 s)", "the first quarter of a minute", TIME, |a, _| (-a.t_s / 15.0).exp()),
+    group("e^(−t/60 s)", "the first minute", TIME, |a, _| (-a.t_s / 60.0).exp()),
+    group("e^(−t/300 s)", "the first minutes", TIME, |a, _| (-a.t_s / 300.0).exp()),
+    group("t/1000 s", "time", TIME, |a, _| a.t_s / 1000.0),
+    group("cos ψ", "heading east, and less heading west", HEADING, |a, _| known(a.input.heading_rad.cos())),
+    group("sin ψ", "heading north, and less heading south", HEADING, |a, _| {
+        known(a.input.heading_rad.sin())
+    }),
+    group("cos 2ψ", "driving east or west, and less driving north or south", HEADING, |a, _| {
+        known((2.0 * a.input.heading_rad).cos())
+    }),
+    group("sin 2ψ", "driving north-east or south-west, and less across", HEADING, |a, _| {
+        known((2.0 * a.input.heading_rad).sin())
+    }),
+    group("e^(−((|v| − 0.2 u_max)/0.1 u_max)²)", "speeds about 0.2 of the highest", SPEED, near::<2>),
+    group("e^(−((|v| − 0.3 u_max)/0.1 u_max)²)", "speeds about 0.3 of the highest", SPEED, near::<3>),
+    group("e^(−((|v| − 0.4 u_max)/0.1 u_max)²)", "speeds about 0.4 of the highest", SPEED, near::<4>),
+    group("e^(−((|v| − 0.5 u_max)/0.1 u_max)²)", "speeds about 0.5 of the highest", SPEED, near::<5>),
+    group("e^(−((|v| − 0.6 u_max)/0.1 u_max)²)", "speeds about 0.6 of the highest", SPEED, near::<6>),
+    group("e^(−((|v| − 0.7 u_max)/0.1 u_max)²)", "speeds about 0.7 of the highest", SPEED, near::<7>),
+    group("e^(−((|v| − 0.8 u_max)/0.1 u_max)²)", "speeds about 0.8 of the highest", SPEED, near::<8>),
+    group("e^(−((|v| − 0.9 u_max)/0.1 u_max)²)", "speeds about 0.9 of the highest", SPEED, near::<9>),
+    group("(1 + cos(α − α₀))/2", "each turn of the wheels", TURNED, |a, _| a.input.nearness),
+    group("(z̄ − z)₊/1 m", "low ground", HEIGHT, |a, _| known(-a.input.height_m).max(0.0)),
+    group("(z − z̄)₊/1 m", "high ground", HEIGHT, |a, _| known(a.input.height_m).max(0.0)),
+];
+
+/// How near a speed is to so many tenths of the highest, 1 at it.
+fn near<const TENTHS: u32>(average: &Average, fastest_mps: f64) -> f64 {
+    (-(10.0 * average.input.speed_mps.abs() / fastest_mps - f64::from(TENTHS)).powi(2)).exp()
+}
+
+/// What was not recorded says nothing.
+fn known(value: f64) -> f64 {
+    if value.is_finite() { value } else { 0.0 }
+}

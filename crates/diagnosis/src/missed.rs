@@ -1,0 +1,103 @@
+//! What is left of the difference between drives and model where neither was fitted.
+
+use model::Robot;
+
+use crate::{
+    Error,
+    baseline::Baseline,
+    polish::settle,
+    refitted::{Refitted, bias_w, rmse_w},
+    search::{Found, State},
+    series::Series,
+};
+
+/// Share of what was explainable before that may remain so.
+pub(crate) const REMAINS: f64 = 0.35;
+/// Share of power that may be explainable where nothing is missing: of drives of another kind than the healthy ones, what the
+/// model misses of a robot in order reaches 1.1 %.
+pub(crate) const MISFIT: f64 = 0.015;
+/// How many times what models usually miss may be left where all is explained.
+const BEYOND_USUAL: f64 = 2.0;
+/// Share of the difference that a mechanism has to explain where most of it is left: what is missing is something else then, which it
+/// follows here and there.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Root mean square errors of the drives under suspicion, held out.
+pub(crate) struct Missed {
+    /// With nothing found [W].
+    pub(crate) before_w: f64,
+    /// With all that was found [W].
+    pub(crate) after_w: f64,
+    /// What neither the inputs nor the second before tell of an error [W].
+    pub(crate) floor_w: f64,
+    /// What is usually left beyond that [W].
+    pub(crate) usual_w: f64,
+}
+
+impl Missed {
+    /// Whether more than usual is left, and much of what was there: mechanisms that take the place of what is missing follow it here and
+    /// there, but not all through the drives.
+    pub(crate) fn is_most(&self) -> bool {
+        let left_w2 = self.beyond_noise_w2(self.after_w);
+        let before_w2 = (self.before_w.powi(2) - self.floor_w.powi(2)).max(1e-12);
+        left_w2 / before_w2 > REMAINS && left_w2.sqrt() > BEYOND_USUAL * self.usual_w
+    }
+
+    fn beyond_noise_w2(&self, rmse_w: f64) -> f64 {
+        (rmse_w.powi(2) - self.floor_w.powi(2)).max(0.0)
+    }
+}
+
+/// That one of several mechanisms explains little of the difference where most of it is left, in words; `before` has none.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn doubt(
+    series: &Series,
+    file: &Robot,
+    before: &Baseline,
+    state: &State,
+    which: usize,
+) -> Result<Option<String>, Error> {
+    let held_out = |base: &Baseline, found: &[&Found]| Refitted::new(series, base, found, &[]);
+    let all: Vec<&Found> = state.found.iter().collect();
+    let after = held_out(&state.fit, &all)?;
+    let sizes: Vec<f64> = series.recorded.iter().map(|w| w.abs()).collect();
+    let missed = Missed {
+        before_w: rmse_w(series, &held_out(before, &[])?.held_out_w),
+        after_w: rmse_w(series, &after.held_out_w),
+        floor_w: floor_w(series, &state.fit).min(rmse_w(series, &after.errors_w)),
+        usual_w: usual_w(series, &state.fit, &after.held_out_w).max(MISFIT * bias_w(series, &sizes)),
+    };
+    if !missed.is_most() {
+        return Ok(None);
+    }
+    let mut others = state.clone();
+    others.found.remove(which);
+    let without = settle(series, file, &others.applied(), &state.fit.robot)?;
+    let others: Vec<&Found> = others.found.iter().collect();
+    let without_w = rmse_w(series, &held_out(&without.base, &others)?.held_out_w);
+    let there_w2 = missed.beyond_noise_w2(missed.before_w);
+    let taken = (without_w.powi(2) - missed.after_w.powi(2)) / there_w2.max(1e-12);
+    let left = 100.0 * (1.0 - taken.clamp(0.0, 1.0));
+    Ok((taken < LEAST_SHARE).then(|| format!("it leaves {left:.0} % of the difference")))
+}
+
+/// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].
+pub(crate) fn floor_w(series: &Series, base: &Baseline) -> f64 {
+    let counts = (0..series.averages.len()).filter(|i| series.averages[*i].suspect && series.is_power(*i));
+    let fresh = |i: usize| base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]).powi(2);
+    let squares: Vec<f64> = counts.map(fresh).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+/// What is left of the errors of healthy drives beyond noise [W].
+pub(crate) fn usual_w(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64 {
+    let healthy = |i: &usize| !series.averages[*i].suspect && series.is_power(*i);
+    let beyond = |i: usize| {
+        let fresh_w = base.noise.fresh_sigma(&series.averages[i], base.predicted_w[i]);
+        errors_w[i].powi(2) - fresh_w.powi(2)
+    };
+    let beyond: Vec<f64> = (0..series.averages.len()).filter(healthy).map(beyond).collect();
+    (beyond.iter().sum::<f64>() / beyond.len().max(1) as f64).max(0.0).sqrt()
+}
