@@ -6,7 +6,7 @@ use recording::{Channel, Recording};
 use crate::{
     Error,
     baseline::{Baseline, differences},
-    discover::Discovered,
+    discovered::Discovered,
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},

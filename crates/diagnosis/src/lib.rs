@@ -17,6 +17,7 @@ mod constancy;
 mod corrected;
 mod diagnose;
 mod discover;
+mod discovered;
 mod discrepancy;
 mod doubts;
 mod edges;

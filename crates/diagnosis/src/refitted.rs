@@ -4,7 +4,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     candidates,
-    discover::Discovered,
+    discovered::Discovered,
     linear::{FOLDS, Folded},
     search::Found,
     series::{Applied, Series},

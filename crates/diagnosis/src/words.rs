@@ -27,7 +27,7 @@ fn verdict(found: &Diagnosis, is_refused: bool) -> String {
             found.corrected.held_out_rmse_w
         ),
         Verdict::Explained | Verdict::Ambiguous => format!("{said}."),
-        Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == crate::discover::UNKNOWN) => {
+        Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == crate::discovered::UNKNOWN) => {
             format!("{said}.")
         }
         Verdict::Unexplained if found.findings.is_empty() && is_refused => {
