@@ -37,6 +37,7 @@ mod manner;
 mod meter;
 mod misfit;
 mod missed;
+mod names;
 mod needed;
 mod next_drive;
 mod noise;
@@ -71,6 +72,7 @@ mod undoing;
 mod usual;
 mod visits;
 mod weigh;
+mod widths;
 mod words;
 
 pub use average::{Average, Input};

@@ -4,7 +4,9 @@ use model::Robot;
 
 use crate::{
     Error,
-    baseline::Baseline,
+    average::Quantity,
+    baseline::{Baseline, differences},
+    needed::shown_in,
     polish::settle,
     refitted::{Refitted, bias_w, rmse_w},
     search::{Found, State},
@@ -48,7 +50,8 @@ impl Missed {
     }
 }
 
-/// That one of several mechanisms explains little of the difference where most of it is left, in words; `before` has none.
+/// That one of several mechanisms explains little of the difference where most of it is left, in words; `before` has none. Power says nothing
+/// of what another meter shows.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -75,6 +78,10 @@ pub(crate) fn doubt(
     let mut others = state.clone();
     others.found.remove(which);
     let without = settle(series, file, &others.applied(), &state.fit.robot)?;
+    let effect = differences(&state.fit.predicted_w, &without.base.predicted_w);
+    if shown_in(series, &state.fit.whitening(series).of(&effect)) != Quantity::Power {
+        return Ok(None);
+    }
     let others: Vec<&Found> = others.found.iter().collect();
     let without_w = rmse_w(series, &held_out(&without.base, &others)?.held_out_w);
     let there_w2 = missed.beyond_noise_w2(missed.before_w);

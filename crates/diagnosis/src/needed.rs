@@ -74,14 +74,9 @@ fn is_beyond_form(series: &Series, state: &State, which: usize, without: &Polish
     let added = difference(&state.fit.predicted_w, &without.base.predicted_w);
     let beside = difference(&without.base.predicted_w, &none_w);
     let quantities = || series.averages.iter().map(Average::quantity);
-    let squares = |effect: &[f64], of: Quantity| {
-        let own = effect.iter().zip(quantities()).filter(|(_, quantity)| *quantity == of);
-        own.map(|(x, _)| x * x).sum::<f64>()
-    };
     // What a form misses of one quantity does not pass for what shows in another.
-    let most = |a: &Quantity, b: &Quantity| squares(&added, *a).total_cmp(&squares(&added, *b));
-    let shown_in = Quantity::ALL.into_iter().max_by(most).unwrap_or(Quantity::Power);
-    let (whole, others) = (squares(&added, shown_in), squares(&beside, shown_in));
+    let shown_in = shown_in(series, &added);
+    let (whole, others) = (squares(series, &added, shown_in), squares(series, &beside, shown_in));
     if is_told(series) {
         return Ok(whole >= LEAST_OF_ALL_WHERE_TOLD * others);
     }
@@ -89,6 +84,19 @@ fn is_beyond_form(series: &Series, state: &State, which: usize, without: &Polish
     let both = added.iter().zip(&beside).zip(quantities()).filter(|(_, quantity)| *quantity == shown_in);
     let beyond: f64 = both.map(|((a, b), _)| (a * a - FORM * b * b).max(0.0)).sum();
     Ok(whole >= least * others && beyond >= BEYOND_FORM * whole)
+}
+
+/// The quantity in which an effect, in sigma, shows most.
+pub(crate) fn shown_in(series: &Series, effect: &[f64]) -> Quantity {
+    let most =
+        |a: &Quantity, b: &Quantity| squares(series, effect, *a).total_cmp(&squares(series, effect, *b));
+    Quantity::ALL.into_iter().max_by(most).unwrap_or(Quantity::Power)
+}
+
+/// Squares of an effect in one quantity.
+fn squares(series: &Series, effect: &[f64], of: Quantity) -> f64 {
+    let quantities = series.averages.iter().map(Average::quantity);
+    effect.iter().zip(quantities).filter(|(_, quantity)| *quantity == of).map(|(x, _)| x * x).sum()
 }
 
 /// Whether there is no doubt of what it does: faults of meters and standing loads do the same whatever robot and ground are like. What may

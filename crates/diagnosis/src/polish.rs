@@ -15,6 +15,7 @@ use crate::{
     series::{Applied, Series},
     usual,
     weigh::{Sizes, Weighed, system_at},
+    widths::half_width,
 };
 
 /// A fit with mechanisms that act.
@@ -35,8 +36,6 @@ const LEAST_GAIN: f64 = 1.0;
 /// One sigma of what the form of a mechanism leaves open of all that it does, as a share, where the model misses something itself: in
 /// concealed cases of worlds with forms of their own, on seeds that none is scored on, sizes that noise tells to 5 % were off by 8 %.
 pub(crate) const FORM_SIGMA: f64 = 0.08;
-/// 97.5 % quantile of the normal distribution.
-const NORMAL_975: f64 = 1.959_964;
 
 /// One sigma of what the form of a mechanism leaves open of all that it does, as a share: nothing where the model is right.
 pub(crate) fn form_sigma(series: &Series) -> f64 {
@@ -217,16 +216,16 @@ impl Together {
 
     /// The fit with the widths of what was fitted.
     fn polished(self, series: &Series) -> Result<Polished, Error> {
-        let form_sigma = form_sigma(series);
+        let is_told = is_told(series);
         let mut half_widths = Vec::new();
         for (which, one) in self.applied.iter().enumerate() {
             // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the
             // Particle Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
             let wider = self.discord(series, which)?.sqrt();
-            let half = |(sigma, value): (&Option<f64>, &f64)| {
-                sigma.map(|sigma| NORMAL_975 * (wider * sigma).hypot(form_sigma * value))
+            let half = |(parameter, sigma): (usize, &Option<f64>)| {
+                sigma.map(|sigma| half_width(one, parameter, wider * sigma, is_told))
             };
-            half_widths.push(self.sigmas(series, which)?.iter().zip(&one.values).map(half).collect());
+            half_widths.push(self.sigmas(series, which)?.iter().enumerate().map(half).collect());
         }
         Ok(Polished { base: self.base, applied: self.applied, half_widths })
     }

@@ -11,6 +11,7 @@ use crate::{
     gates::best,
     misfit::{self, Squares},
     missed,
+    names::{as_good_names, tell_apart},
     needed::drop_one,
     null::Null,
     off_middle,
@@ -26,10 +27,9 @@ use crate::{
 
 /// Mechanisms that are looked for at most.
 pub(crate) const MOST: usize = 3;
-/// What is not needed by more than this is not: twice the log of a likelihood ratio of 20.
+/// What is not needed by more than this is not, and no name stands alone that is not better by more: twice the log of a likelihood ratio
+/// of 20.
 pub(crate) const AS_GOOD: f64 = 6.0;
-/// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
-const AS_GOOD_A_NAME: f64 = 3.0;
 /// What a model may miss of healthy drives where it can be relied on, as a share of power.
 const TOLD: f64 = 0.005;
 
@@ -170,25 +170,6 @@ pub fn search(
     Ok(Search { found, refused, before, after, left, null })
 }
 
-/// Names but one, each once: a mechanism may be a rival all over the ground and in a part of it.
-fn others<'a>(own: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut others: Vec<String> = Vec::new();
-    for name in names.filter(|name| *name != own) {
-        if !others.iter().any(|other| other == name) {
-            others.push(name.to_owned());
-        }
-    }
-    others
-}
-
-/// What was found itself is no other name of what was found beside it.
-fn tell_apart(found: &mut [Found]) {
-    let names: Vec<&str> = found.iter().map(|one| one.applied.mechanism.name()).collect();
-    for one in found {
-        one.indistinguishable_from.retain(|other| !names.contains(&other.as_str()));
-    }
-}
-
 /// Fits every rival in full, beside mechanisms that act, and decides for the one that explains most; those that explain as much stay
 /// beside it.
 pub(crate) fn decide(
@@ -227,8 +208,7 @@ pub(crate) fn decide(
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    let as_good = (0..fits.len()).filter(|i| costs[*i] < costs[winner] + AS_GOOD_A_NAME);
-    let indistinguishable_from = others(rivals[winner].name(), as_good.map(|i| rivals[i].name()));
+    let indistinguishable_from = as_good_names(rivals, &costs, winner);
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
     let Some(fit) = fit.map(as_hard::in_both) else { unreachable!("the winner is one of the fits") };
@@ -248,38 +228,4 @@ pub(crate) fn decide(
 pub(crate) fn is_told(series: &Series) -> bool {
     let missed = series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()));
     series.has_healthy() && missed <= TOLD
-}
-
-#[cfg(test)]
-mod tests {
-    use model::mechanism;
-
-    use super::*;
-    use crate::span::Span;
-
-    #[test]
-    fn a_rival_is_another_name_once_and_never_its_own() {
-        let names = ["payload", "surface_change", "payload", "power_scale", "surface_change"];
-        assert_eq!(others("surface_change", names.into_iter()), ["payload", "power_scale"]);
-    }
-
-    #[test]
-    fn what_was_found_is_no_other_name_of_what_was_found_beside_it() {
-        let one = |name: &str, others: &[&str]| Found {
-            applied: Applied {
-                mechanism: mechanism::by_name(name).unwrap(),
-                values: Vec::new(),
-                span: Span::ALL,
-            },
-            half_widths: Vec::new(),
-            limits_95: Vec::new(),
-            p_value: 0.0,
-            delta_bic: 0.0,
-            held_out_gain: 0.0,
-            indistinguishable_from: others.iter().map(|other| (*other).to_owned()).collect(),
-        };
-        let mut found = [one("surface_change", &["center_of_mass", "soft_soil"]), one("center_of_mass", &[])];
-        tell_apart(&mut found);
-        assert_eq!(found[0].indistinguishable_from, ["soft_soil"]);
-    }
 }

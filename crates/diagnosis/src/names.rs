@@ -1,0 +1,76 @@
+//! Names that explain the same.
+
+use crate::{
+    search::{AS_GOOD, Found},
+    weigh::Weighed,
+};
+
+/// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
+const AS_GOOD_A_NAME: f64 = 3.0;
+
+/// Names beside that of the winner: of all that explain as much, or else of the next, if it falls short by too little to leave the winner
+/// alone.
+pub(crate) fn as_good_names(rivals: &[Weighed], costs: &[f64], winner: usize) -> Vec<String> {
+    let within = |least: f64| (0..costs.len()).filter(move |i| costs[*i] < costs[winner] + least);
+    let own = rivals[winner].name();
+    let names = others(own, within(AS_GOOD_A_NAME).map(|i| rivals[i].name()));
+    if !names.is_empty() {
+        return names;
+    }
+    let others = within(AS_GOOD).filter(|i| rivals[*i].name() != own);
+    let next = others.min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+    next.map(|i| rivals[i].name().to_owned()).into_iter().collect()
+}
+
+/// Names but one, each once: a mechanism may be a rival all over the ground and in a part of it.
+fn others<'a>(own: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut others: Vec<String> = Vec::new();
+    for name in names.filter(|name| *name != own) {
+        if !others.iter().any(|other| other == name) {
+            others.push(name.to_owned());
+        }
+    }
+    others
+}
+
+/// What was found itself is no other name of what was found beside it.
+pub(crate) fn tell_apart(found: &mut [Found]) {
+    let names: Vec<&str> = found.iter().map(|one| one.applied.mechanism.name()).collect();
+    for one in found {
+        one.indistinguishable_from.retain(|other| !names.contains(&other.as_str()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use model::mechanism;
+
+    use super::*;
+    use crate::{series::Applied, span::Span};
+
+    #[test]
+    fn a_rival_is_another_name_once_and_never_its_own() {
+        let names = ["payload", "surface_change", "payload", "power_scale", "surface_change"];
+        assert_eq!(others("surface_change", names.into_iter()), ["payload", "power_scale"]);
+    }
+
+    #[test]
+    fn what_was_found_is_no_other_name_of_what_was_found_beside_it() {
+        let one = |name: &str, others: &[&str]| Found {
+            applied: Applied {
+                mechanism: mechanism::by_name(name).unwrap(),
+                values: Vec::new(),
+                span: Span::ALL,
+            },
+            half_widths: Vec::new(),
+            limits_95: Vec::new(),
+            p_value: 0.0,
+            delta_bic: 0.0,
+            held_out_gain: 0.0,
+            indistinguishable_from: others.iter().map(|other| (*other).to_owned()).collect(),
+        };
+        let mut found = [one("surface_change", &["center_of_mass", "soft_soil"]), one("center_of_mass", &[])];
+        tell_apart(&mut found);
+        assert_eq!(found[0].indistinguishable_from, ["soft_soil"]);
+    }
+}
