@@ -1,25 +1,22 @@
 //! Names that explain the same.
 
-use crate::{
-    search::{AS_GOOD, Found},
-    weigh::Weighed,
-};
+use crate::search::{AS_GOOD, Found};
 
 /// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
 const AS_GOOD_A_NAME: f64 = 3.0;
 
 /// Names beside that of the winner: of all that explain as much, or else of the next, if it falls short by too little to leave the winner
 /// alone.
-pub(crate) fn as_good_names(rivals: &[Weighed], costs: &[f64], winner: usize) -> Vec<String> {
+pub(crate) fn as_good_names(rivals: &[&str], costs: &[f64], winner: usize) -> Vec<String> {
     let within = |least: f64| (0..costs.len()).filter(move |i| costs[*i] < costs[winner] + least);
-    let own = rivals[winner].name();
-    let names = others(own, within(AS_GOOD_A_NAME).map(|i| rivals[i].name()));
+    let own = rivals[winner];
+    let names = others(own, within(AS_GOOD_A_NAME).map(|i| rivals[i]));
     if !names.is_empty() {
         return names;
     }
-    let others = within(AS_GOOD).filter(|i| rivals[*i].name() != own);
+    let others = within(AS_GOOD).filter(|i| rivals[*i] != own);
     let next = others.min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
-    next.map(|i| rivals[i].name().to_owned()).into_iter().collect()
+    next.map(|i| rivals[i].to_owned()).into_iter().collect()
 }
 
 /// Names but one, each once: a mechanism may be a rival all over the ground and in a part of it.
@@ -52,6 +49,16 @@ mod tests {
     fn a_rival_is_another_name_once_and_never_its_own() {
         let names = ["payload", "surface_change", "payload", "power_scale", "surface_change"];
         assert_eq!(others("surface_change", names.into_iter()), ["payload", "power_scale"]);
+    }
+
+    #[test]
+    fn the_next_name_stands_beside_one_that_is_alone_if_it_is_near_and_others_do_only_if_they_explain_as_much()
+     {
+        let rivals = ["payload", "towed_load", "soft_soil", "payload"];
+        let beside = |costs: [f64; 4]| as_good_names(&rivals, &costs, 0);
+        assert_eq!(beside([10.0, 15.0, 14.0, 11.0]), ["soft_soil"]);
+        assert_eq!(beside([10.0, 12.0, 14.0, 10.5]), ["towed_load"]);
+        assert!(beside([10.0, 16.5, 17.0, 10.5]).is_empty());
     }
 
     #[test]

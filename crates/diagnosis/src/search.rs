@@ -208,7 +208,8 @@ pub(crate) fn decide(
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
     let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-    let indistinguishable_from = as_good_names(rivals, &costs, winner);
+    let names: Vec<&str> = rivals.iter().map(Weighed::name).collect();
+    let indistinguishable_from = as_good_names(&names, &costs, winner);
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
     let Some(fit) = fit.map(as_hard::in_both) else { unreachable!("the winner is one of the fits") };
