@@ -207,6 +207,38 @@ fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
 }
 
 #[test]
+fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
+    // From when it sets in it takes hundreds of watts, and a minute later hardly any: drag follows the little that stays.
+    let robot = model::builtin::husky_a200();
+    let brake =
+        Effect { side: Some(Side::Left), onset_s: 187.0, ..Effect::new(EffectName::BindingBrake, 80.0) };
+    let found = said(&robot, &record(32, vec![brake]), &record(31, vec![]));
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
+}
+
+#[test]
+fn a_pitch_that_reads_too_much_and_friction_of_slopes_are_both_found_though_each_takes_back_what_the_other_does()
+ {
+    let robot = model::builtin::husky_a200();
+    let askew = Effect::new(EffectName::PitchBias, 0.011);
+    let slopes = Effect::new(EffectName::GradeDependentFriction, 2.5);
+    let found = said(&robot, &record(33, vec![askew, slopes]), &record(31, vec![]));
+    let mut names = names(&found);
+    names.sort_unstable();
+    assert_eq!(names, ["grade_dependent_friction", "pitch_bias"], "{}", found.sentence);
+}
+
+#[test]
+fn water_in_hollows_is_described_though_it_is_less_than_what_models_often_miss() {
+    let robot = model::builtin::husky_a200();
+    let puddles = Effect::new(EffectName::Puddles, 60.0);
+    let found = said(&robot, &record(32, vec![puddles]), &record(31, vec![]));
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert!(found.sentence.contains("low ground"), "{}", found.sentence);
+}
+
+#[test]
 fn what_the_form_of_a_strong_effect_misses_is_no_second_effect() {
     // Beside soft soil, ground that skids more and rolls less explains a little more than ground that does both more.
     let robot = model::builtin::husky_a200();

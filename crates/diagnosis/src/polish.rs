@@ -11,7 +11,7 @@ use crate::{
     misfit::misfit,
     off_middle,
     regime::Regime,
-    search::is_told,
+    search::{is_told, openness},
     series::{Applied, Series},
     usual,
     weigh::{Sizes, Weighed, system_at},
@@ -216,14 +216,14 @@ impl Together {
 
     /// The fit with the widths of what was fitted.
     fn polished(self, series: &Series) -> Result<Polished, Error> {
-        let is_told = is_told(series);
+        let openness = openness(series);
         let mut half_widths = Vec::new();
         for (which, one) in self.applied.iter().enumerate() {
             // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the
             // Particle Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
             let wider = self.discord(series, which)?.sqrt();
             let half = |(parameter, sigma): (usize, &Option<f64>)| {
-                sigma.map(|sigma| half_width(one, parameter, wider * sigma, is_told))
+                sigma.map(|sigma| half_width(one, parameter, wider * sigma, openness))
             };
             half_widths.push(self.sigmas(series, which)?.iter().enumerate().map(half).collect());
         }

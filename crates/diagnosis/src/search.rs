@@ -227,6 +227,11 @@ pub(crate) fn decide(
 
 /// Whether healthy drives show that the model misses hardly anything.
 pub(crate) fn is_told(series: &Series) -> bool {
+    openness(series) <= 1.0
+}
+
+/// What the model misses of healthy drives over what it may miss where it can be relied on; without healthy drives it may miss anything.
+pub(crate) fn openness(series: &Series) -> f64 {
     let missed = series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()));
-    series.has_healthy() && missed <= TOLD
+    if series.has_healthy() { missed / TOLD } else { f64::INFINITY }
 }

@@ -106,13 +106,18 @@ impl fmt::Display for Board {
         for (what, Rate { hits, of }) in rates {
             writeln!(f, "{what}: {hits} of {of}")?;
         }
-        writeln!(f, "error of numbers, median: {:.1} %", 100.0 * median(&self.errors))?;
-        write!(f, "held-out error after over the noise floor, median: {:.3}", median(&self.ratios))
+        if let Some(error) = median(&self.errors) {
+            writeln!(f, "error of numbers, median: {:.1} %", 100.0 * error)?;
+        }
+        if let Some(ratio) = median(&self.ratios) {
+            writeln!(f, "held-out error after over the noise floor, median: {ratio:.3}")?;
+        }
+        Ok(())
     }
 }
 
-fn median(values: &[f64]) -> f64 {
+fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    values.get(values.len() / 2).copied()
 }
