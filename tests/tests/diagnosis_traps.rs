@@ -212,7 +212,7 @@ fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
     let robot = model::builtin::husky_a200();
     let brake =
         Effect { side: Some(Side::Left), onset_s: 187.0, ..Effect::new(EffectName::BindingBrake, 80.0) };
-    let found = said(&robot, &record(32, vec![brake]), &record(31, vec![]));
+    let found = said(&robot, &drive(34, 900.0, vec![brake]), &record(31, vec![]));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
 }
@@ -232,7 +232,7 @@ fn a_pitch_that_reads_too_much_and_friction_of_slopes_are_both_found_though_each
 #[test]
 fn water_in_hollows_is_described_though_it_is_less_than_what_models_often_miss() {
     let robot = model::builtin::husky_a200();
-    let puddles = Effect::new(EffectName::Puddles, 60.0);
+    let puddles = Effect::new(EffectName::Puddles, 120.0);
     let found = said(&robot, &record(32, vec![puddles]), &record(31, vec![]));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(found.sentence.contains("low ground"), "{}", found.sentence);
