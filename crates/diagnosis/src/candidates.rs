@@ -235,7 +235,7 @@ fn spans(series: &Series, name: &str) -> Vec<Span> {
 }
 
 /// Beginnings of drives, and shares of all the time driven.
-fn moments(line: &Timeline) -> Vec<Span> {
+pub(crate) fn moments(line: &Timeline) -> Vec<Span> {
     let borders_s = Some(line.borders_s()).filter(|borders_s| borders_s.len() <= MOST_BORDERS).unwrap_or(&[]);
     let shares_s = ONSETS.map(|share| share * line.total_s());
     borders_s.iter().chain(&shares_s).map(|driven_s| line.at(*driven_s)).collect()

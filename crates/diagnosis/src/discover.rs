@@ -15,15 +15,13 @@ use crate::{
     series::{Applied, Series},
     term::{self, Term},
     weigh::{judged, system_with},
+    widths::NORMAL_975,
 };
 
 /// Terms that are taken up at most.
 const MOST: usize = 4;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
-
-/// Half width of a 95 % interval in standard errors.
-const NORMAL_95: f64 = 1.96;
 
 /// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
 /// something, and a hundred times surer where they leave nothing that is more than usual. What the model misses of a robot in order came
@@ -125,7 +123,7 @@ impl<'a> Beside<'a> {
         (best.p_value <= self.level).then(|| Discovered {
             term: best.term.clone(),
             size: best.evidence.values[0],
-            half_width: NORMAL_95 * best.evidence.covariance[(0, 0)].max(0.0).sqrt(),
+            half_width: NORMAL_975 * best.evidence.covariance[(0, 0)].max(0.0).sqrt(),
             p_value: best.p_value,
             score: best.score,
             held_out_gain,
@@ -134,7 +132,8 @@ impl<'a> Beside<'a> {
         })
     }
 
-    /// Terms that would be sure enough where mechanisms leave something, the best first. Columns are made for some at a time: all at once would take gigabytes of long drives.
+    /// Terms that would be sure enough where mechanisms leave something, the best first. Columns are made for some at a time: all at once
+    /// would take gigabytes of long drives.
     fn told<'b>(&self, tried: &[&'b Term]) -> Vec<Told<'b>> {
         let evidences = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
             let columns: Vec<Vec<Vec<f64>>> =

@@ -86,7 +86,8 @@ impl Discovered {
     fn regime(&self, series: &Series) -> Option<String> {
         let (name, of, unit) = self.term.groups.iter().find(|group| !group.is_turn())?.quantity;
         let parts = self.column_w.iter().zip(&series.averages).filter(|(w, a)| **w != 0.0 && a.suspect);
-        let mut parts: Vec<(f64, f64)> = parts.map(|(w, a)| (of(a), (self.size * w).powi(2))).collect();
+        let mut parts: Vec<(f64, f64)> =
+            parts.map(|(w, a)| (of(&a.since(self.term.span)), (self.size * w).powi(2))).collect();
         parts.retain(|(value, _)| value.is_finite());
         parts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let whole: f64 = parts.iter().map(|(_, size)| size).sum();

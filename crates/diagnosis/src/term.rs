@@ -4,6 +4,7 @@ use model::{Robot, STANDARD_GRAVITY_MPS2};
 
 use crate::{
     average::{Average, Input},
+    candidates::moments,
     group::{GROUPS, Group},
     series::Series,
     span::Span,
@@ -68,13 +69,9 @@ pub(crate) fn all(channels: usize, from: &[Span]) -> Vec<Term> {
     terms
 }
 
-/// Shares of the time driven after which a term may set in.
-const ONSETS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-
-/// Times from which terms may act: shares of the drives, and those from which mechanisms do.
+/// Times from which terms may act: those that are tried of mechanisms, and those from which some do.
 pub(crate) fn onsets(series: &Series, of_mechanisms: impl Iterator<Item = Span>) -> Vec<Span> {
-    let line = series.timeline();
-    let mut spans: Vec<Span> = ONSETS.iter().map(|share| line.at(share * line.total_s())).collect();
+    let mut spans = moments(&series.timeline());
     spans.extend(of_mechanisms.filter(|span| matches!(span, Span::From { .. })));
     spans
 }

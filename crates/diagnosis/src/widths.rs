@@ -3,7 +3,7 @@
 use crate::series::Applied;
 
 /// 97.5 % quantile of the normal distribution.
-const NORMAL_975: f64 = 1.959_964;
+pub(crate) const NORMAL_975: f64 = 1.959_964;
 /// One sigma of what the form of a mechanism leaves open of its size, as a share, where the model misses something itself: in concealed
 /// cases of worlds with forms of their own, on seeds that none is scored on, what resists rolling and is told to 5 % by noise was off by
 /// 0.11, root mean square, and all else by less.
