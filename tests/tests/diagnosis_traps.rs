@@ -193,31 +193,6 @@ fn a_meter_that_is_off_by_a_constant_comes_neither_late_nor_early() {
 }
 
 #[test]
-fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
-    // In the first drive what else would be found beside it hides that it fades, until that is left out.
-    let robot = model::builtin::husky_a200();
-    let healthy = record(31, vec![]);
-    let brake = || Effect { side: Some(Side::Right), ..Effect::new(EffectName::BindingBrake, 5.0) };
-    for seed in [32, 34] {
-        let found = said(&robot, &record(seed, vec![brake()]), &healthy);
-        assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
-        assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
-        assert!(found.sentence.contains("the first minutes"), "{}", found.sentence);
-    }
-}
-
-#[test]
-fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
-    // From when it sets in it takes hundreds of watts, and a minute later hardly any: drag follows the little that stays.
-    let robot = model::builtin::husky_a200();
-    let brake =
-        Effect { side: Some(Side::Left), onset_s: 187.0, ..Effect::new(EffectName::BindingBrake, 80.0) };
-    let found = said(&robot, &drive(34, 900.0, vec![brake]), &record(31, vec![]));
-    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
-    assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
-}
-
-#[test]
 fn a_pitch_that_reads_too_much_and_friction_of_slopes_are_both_found_though_each_takes_back_what_the_other_does()
  {
     let robot = model::builtin::husky_a200();
@@ -227,15 +202,6 @@ fn a_pitch_that_reads_too_much_and_friction_of_slopes_are_both_found_though_each
     let mut names = names(&found);
     names.sort_unstable();
     assert_eq!(names, ["grade_dependent_friction", "pitch_bias"], "{}", found.sentence);
-}
-
-#[test]
-fn water_in_hollows_is_described_though_it_is_less_than_what_models_often_miss() {
-    let robot = model::builtin::husky_a200();
-    let puddles = Effect::new(EffectName::Puddles, 120.0);
-    let found = said(&robot, &record(32, vec![puddles]), &record(31, vec![]));
-    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
-    assert!(found.sentence.contains("low ground"), "{}", found.sentence);
 }
 
 #[test]

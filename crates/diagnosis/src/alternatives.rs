@@ -6,12 +6,13 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates,
-    evidence::System,
+    evidence::{Evidence, System},
+    null::Null,
     report::Detectable,
     search::Found,
     series::{Applied, Series},
     span::Span,
-    weigh::system,
+    weigh::{judged, system},
 };
 
 /// An explanation with the robot fitted beside it.
@@ -84,7 +85,8 @@ fn whitened(series: &Series, base: &Baseline, columns: &[Vec<f64>]) -> Vec<Vec<f
 /// it to happen in most drives.
 const NOTICED_SIGMAS: f64 = 5.0;
 
-/// For each mechanism the least size, from the beginning on, that would have been noticed, or its name where no size would.
+/// For each mechanism the least size, from the beginning on, that would have been noticed, or its name where no size would. What models
+/// miss of healthy drives is held against it as against what was found.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -92,11 +94,12 @@ pub(crate) fn detectable(
     series: &Series,
     base: &Baseline,
     applied: &[Applied],
+    null: &Null,
 ) -> Result<(Vec<Detectable>, Vec<&'static str>), Error> {
     let system = system(series, base);
     let (mut sizes, mut none) = (Vec::new(), Vec::new());
     for mechanism in series.others(applied) {
-        let least = least_size(series, base, applied, &system, mechanism)?;
+        let least = least_size(series, base, applied, (&system, null), mechanism)?;
         match least {
             Some(size) => sizes.push(size),
             None => none.push(mechanism.name()),
@@ -110,7 +113,7 @@ fn least_size(
     series: &Series,
     base: &Baseline,
     applied: &[Applied],
-    system: &System,
+    (system, null): (&System, &Null),
     mechanism: &'static dyn mechanism::Mechanism,
 ) -> Result<Option<Detectable>, Error> {
     let parameter = &mechanism.parameters()[0];
@@ -118,8 +121,17 @@ fn least_size(
     for (values, _) in candidates::grids(mechanism) {
         let probe = Applied { mechanism, values, span: Span::ALL };
         let at = candidates::of(series, &base.robot, applied, &base.predicted_w, probe, vec![0])?;
-        if let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) {
-            least = least.min(NOTICED_SIGMAS * evidence.covariance[(0, 0)].max(0.0).sqrt());
+        let of_one = system.weigh(&whitened(series, base, &at.columns)).and_then(|evidence| {
+            let one = Evidence {
+                values: vec![1.0],
+                wald: 1.0 / evidence.covariance[(0, 0)],
+                discord: 1.0,
+                ..evidence
+            };
+            judged(&one, mechanism.name(), null, system.blocks())
+        });
+        if let Some((wald, _)) = of_one {
+            least = least.min(NOTICED_SIGMAS / wald.sqrt());
         }
     }
     let size = || Detectable {

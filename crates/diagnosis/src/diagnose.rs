@@ -104,7 +104,7 @@ pub fn diagnose_watched(
     let (corrected_robot, mut notes) =
         corrected(&found.after.robot, &applied, &series.surfaces(), &series.names);
     progress("weighing what could have been seen", 0.95);
-    let (detectable, not_judged) = detectable(&series, &found.after, &applied)?;
+    let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
     let mut doubts = doubts(robot, suspect, &series, &found.after)?;
     doubts.append(&mut notes);
     if healthy.is_none() {

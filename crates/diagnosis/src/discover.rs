@@ -11,6 +11,7 @@ use crate::{
     gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes},
     noise::Whitening,
     null::Null,
+    ranked::ranked,
     refused::Refused,
     series::{Applied, Series},
     term::{self, Term},
@@ -20,6 +21,8 @@ use crate::{
 
 /// Terms that are taken up at most.
 const MOST: usize = 4;
+/// Terms that are judged, of those that explain most.
+const MOST_JUDGED: usize = 500;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
@@ -95,6 +98,8 @@ struct Told<'a> {
     evidence: Evidence,
     /// Discounted evidence less what its choices cost.
     score: f64,
+    /// Squared errors that it takes, with one discount for all, less what its choices cost: by this terms are held against each other.
+    rank: f64,
     p_value: f64,
 }
 
@@ -110,17 +115,25 @@ impl<'a> Beside<'a> {
         Beside { series, base, null, system, white, choices, level }
     }
 
-    /// The best term that passes every gate.
+    /// What passes every gate and explains most, if what passes is sure enough.
+    ///
+    /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
-        let (first, gain) =
-            self.told(tried).into_iter().find_map(|one| self.gain(&one).map(|gain| (one, gain)))?;
-        // Since when it acts is looked for about the time that was tried.
-        let around = around(self.series, first.term);
-        let closer = self.told(&around.iter().collect::<Vec<_>>()).into_iter().next();
-        let closer = closer.filter(|one| one.score > first.score);
-        let closer = closer.and_then(|one| self.gain(&one).map(|gain| (one, gain)));
-        let (best, held_out_gain) = closer.unwrap_or((first, gain));
-        (best.p_value <= self.level).then(|| Discovered {
+        let told = self.told(tried);
+        let surest = told.iter().find(|one| self.gain(one).is_some())?;
+        if surest.p_value > self.level {
+            return None;
+        }
+        let (mut best, mut held_out_gain) = self.closest(told)?;
+        // Since when it acts, and what else it goes with, is looked for about what was tried.
+        let near = [around(self.series, best.term), best.term.with_one_more()];
+        for near in &near {
+            let closer = self.closest(self.told(&near.iter().collect::<Vec<_>>()));
+            if let Some((closer, gain)) = closer.filter(|(closer, _)| closer.rank > best.rank) {
+                (best, held_out_gain) = (closer, gain);
+            }
+        }
+        Some(Discovered {
             term: best.term.clone(),
             size: best.evidence.values[0],
             half_width: NORMAL_975 * best.evidence.covariance[(0, 0)].max(0.0).sqrt(),
@@ -132,26 +145,34 @@ impl<'a> Beside<'a> {
         })
     }
 
-    /// Terms that would be sure enough where mechanisms leave something, the best first. Columns are made for some at a time: all at once
-    /// would take gigabytes of long drives.
+    /// Of some terms, what passes every gate and explains most, with its gain on held-out blocks.
+    fn closest<'b>(&self, mut told: Vec<Told<'b>>) -> Option<(Told<'b>, f64)> {
+        told.sort_by(|a, b| b.rank.total_cmp(&a.rank));
+        told.into_iter().find_map(|one| self.gain(&one).map(|gain| (one, gain)))
+    }
+
+    /// Of the terms that explain most, those that would be sure enough where mechanisms leave something; the surest first.
     fn told<'b>(&self, tried: &[&'b Term]) -> Vec<Told<'b>> {
-        let evidences = tried.par_chunks(TOGETHER).flat_map_iter(|some| {
+        let ranked = ranked(self.series, self.base, (&self.system, self.null), tried);
+        let most: Vec<(f64, &Term)> =
+            ranked.into_iter().take_while(|(rank, _)| *rank > 0.0).take(MOST_JUDGED).collect();
+        let judged = most.par_chunks(TOGETHER).flat_map_iter(|some| {
             let columns: Vec<Vec<Vec<f64>>> =
-                some.iter().map(|term| vec![self.white.of(&self.column_w(term))]).collect();
+                some.iter().map(|(_, term)| vec![self.white.of(&self.column_w(term))]).collect();
             let evidences = self.system.weigh_all(&columns).into_iter().zip(some);
-            evidences.filter_map(|(evidence, term)| self.judged(evidence?, term)).collect::<Vec<_>>()
+            evidences.filter_map(|(evidence, of)| self.judged(evidence?, *of)).collect::<Vec<_>>()
         });
-        let mut told: Vec<Told<'b>> = evidences.collect();
+        let mut told: Vec<Told<'b>> = judged.collect();
         told.sort_by(|a, b| b.score.total_cmp(&a.score));
         told
     }
 
-    fn judged<'b>(&self, evidence: Evidence, term: &'b Term) -> Option<Told<'b>> {
+    fn judged<'b>(&self, evidence: Evidence, (rank, term): (f64, &'b Term)) -> Option<Told<'b>> {
         let blocks = self.system.blocks();
         let (wald, chance) = judged(&evidence, UNKNOWN, self.null, blocks)?;
         let score = wald - term.choices() as f64 * (blocks as f64).ln();
         let p_value = (chance * self.choices as f64).min(1.0);
-        (score > 0.0 && p_value <= LEVEL).then_some(Told { term, evidence, score, p_value })
+        (score > 0.0 && p_value <= LEVEL).then_some(Told { term, evidence, score, rank, p_value })
     }
 
     fn column_w(&self, term: &Term) -> Vec<f64> {

@@ -61,15 +61,9 @@ impl Discovered {
     /// The sentence a person reads: what it goes with, how much it is, and where most of it lies.
     fn statement(&self, series: &Series) -> String {
         let counts = |i: &usize| series.averages[*i].suspect && series.is_power(*i);
-        let sizes: Vec<f64> =
-            (0..self.column_w.len()).filter(counts).map(|i| self.size * self.column_w[i]).collect();
-        let mean_w = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64 * series.channels() as f64;
-        let more = if mean_w >= 0.0 { "more" } else { "less" };
-        let mut text = format!(
-            "something outside the list takes {:.1} W {more} on average: {}",
-            mean_w.abs(),
-            self.term.words()
-        );
+        let sizes = || (0..self.column_w.len()).filter(counts).map(|i| self.size * self.column_w[i]);
+        let mut text =
+            format!("something outside the list {}: {}", amount(sizes, series.channels()), self.term.words());
         if !self.term.span.is_all() {
             text += &format!(", {}", self.term.span.words(&series.names));
         }
@@ -101,5 +95,35 @@ impl Discovered {
         };
         let (low, high) = (at(0.05)?.0, at(0.95)?.0);
         Some(format!(", nine tenths of it where {name} is {low:.2} to {high:.2} {unit}"))
+    }
+}
+
+/// How much power changes, of each meter's averages one after the other: in the mean if that is most of it.
+fn amount<I: Iterator<Item = f64>>(changes_w: impl Fn() -> I, meters: usize) -> String {
+    let count = changes_w().count().max(1) as f64;
+    let mean_w = changes_w().sum::<f64>() / count;
+    let rms_w = (changes_w().map(|w| w * w).sum::<f64>() / count).sqrt();
+    if mean_w.abs() < 0.5 * rms_w {
+        let whose = if meters == 2 { "the power of a side" } else { "power" };
+        return format!("changes {whose} by {rms_w:.1} W root mean square, up and down");
+    }
+    let more = if mean_w >= 0.0 { "more" } else { "less" };
+    format!("takes {:.1} W {more} on average", mean_w.abs() * meters as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_goes_up_and_down_is_told_by_its_size_and_not_by_a_mean_of_nothing() {
+        let of = |changes_w: &'static [f64], meters| amount(|| changes_w.iter().copied(), meters);
+        assert_eq!(of(&[2.0, 3.0, 2.0, 3.0], 2), "takes 5.0 W more on average");
+        assert_eq!(of(&[-2.0, -3.0], 1), "takes 2.5 W less on average");
+        assert_eq!(
+            of(&[2.0, -2.0, 3.0, -3.0], 2),
+            "changes the power of a side by 2.5 W root mean square, up and down"
+        );
+        assert_eq!(of(&[0.0, 0.0], 1), "takes 0.0 W more on average");
     }
 }

@@ -31,6 +31,8 @@ const MOVING: Quantity = ("time since it stood still", |a| a.input.moving_s, "s"
 const TIME: Quantity = ("time since it began", |a| a.t_s, "s");
 const PITCH: Quantity = ("pitch", |a| a.input.pitch_rad, "rad");
 const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
+const STEEPNESS: Quantity =
+    ("steepness", |a| a.input.pitch_rad.sin().hypot(a.input.roll_rad.sin()).asin(), "rad");
 const SPEED: Quantity = ("speed", |a| a.input.speed_mps, "m/s");
 const TURN: Quantity = ("difference of rim speeds", |a| a.input.difference_mps, "m/s");
 const ACCELERATION: Quantity = ("acceleration", |a| a.input.accel_mps2, "m/s²");
@@ -47,13 +49,16 @@ const fn group(
     Group { symbol, words, quantity, value }
 }
 
-/// All groups. θ pitch, φ roll, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
+/// All groups. θ pitch, φ roll, γ how steep the ground under the robot is, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
 /// heading, t time since the drive began or it set in, s since the robot stood still, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 35] = [
+pub(crate) static GROUPS: [Group; 36] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
+    group("sin γ", "how steep the ground is", STEEPNESS, |a, _| {
+        a.input.pitch_rad.sin().hypot(a.input.roll_rad.sin())
+    }),
     group("|tan φ|", "the slope across the way", ROLL, |a, _| a.input.roll_rad.tan().abs()),
     group("tan φ", "leaning to the right, and less to the left", ROLL, |a, _| a.input.roll_rad.tan()),
     group("(tan φ)₊", "leaning to the right", ROLL, |a, _| a.input.roll_rad.tan().max(0.0)),

@@ -17,6 +17,9 @@ pub(crate) enum Scale {
     Force,
     /// P: what the model predicts.
     Power,
+    /// m g |Δ| tanh(|Δ|/0.05 u_max): a moment against turning, in weights of the robot times its track, which turns round with the turn;
+    /// of each side its own rim's part.
+    Moment,
     /// One watt.
     Watt,
 }
@@ -53,7 +56,9 @@ pub(crate) fn all(channels: usize, from: &[Span]) -> Vec<Term> {
         products.extend(others.map(|other| vec![one, other]));
     }
     let mut terms = Vec::new();
-    for scale in [Scale::Force, Scale::Power, Scale::Watt] {
+    for scale in [Scale::Force, Scale::Moment, Scale::Power, Scale::Watt] {
+        // A moment acts on both sides, on each its own way.
+        let sides = if scale == Scale::Moment { &sides[..1] } else { sides };
         for groups in &products {
             let from = if groups.len() > 1 { &[] } else { from };
             for span in [Span::ALL].iter().chain(from) {
@@ -76,6 +81,22 @@ pub(crate) fn onsets(series: &Series, of_mechanisms: impl Iterator<Item = Span>)
     spans
 }
 
+/// Difference of rim speeds over which a moment against turning turns round with the turn, as a share of the highest speed: wheels that
+/// hardly turn against each other slide hardly.
+const TURNS_ROUND: f64 = 0.05;
+
+/// Rim speed of a side towards the turn that the robot makes, by how much it turns at all; of both sides together the difference of rim
+/// speeds.
+fn towards_turn_mps(average: &Average, fastest_mps: f64, is_both: bool) -> f64 {
+    let Input { difference_mps, rim_mps, .. } = average.input;
+    let turn = (difference_mps / (TURNS_ROUND * fastest_mps)).tanh();
+    match average.channel {
+        _ if is_both => difference_mps * turn,
+        0 => -rim_mps * turn,
+        _ => rim_mps * turn,
+    }
+}
+
 impl Term {
     /// Its value in every average of power under suspicion, 0 in the others; `predicted_w` is what the model says \[W\].
     pub(crate) fn column(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
@@ -86,8 +107,10 @@ impl Term {
             (On::Apart, 1) => -1.0,
             _ => 0.0,
         };
-        let scale_w = |input: &Input, predicted_w: f64| match self.scale {
-            Scale::Force => weight_n * input.rim_mps.abs(),
+        let is_both = averages.iter().all(|a| a.channel != 1);
+        let scale_w = |a: &Average, predicted_w: f64| match self.scale {
+            Scale::Force => weight_n * a.input.rim_mps.abs(),
+            Scale::Moment => weight_n * towards_turn_mps(a, fastest_mps, is_both),
             Scale::Power => predicted_w,
             Scale::Watt => 1.0,
         };
@@ -97,14 +120,22 @@ impl Term {
             }
             let since = a.since(self.span);
             let groups = self.groups.iter().map(|group| (group.value)(&since, fastest_mps));
-            side(a) * scale_w(&a.input, *predicted_w) * groups.product::<f64>()
+            side(a) * scale_w(a, *predicted_w) * groups.product::<f64>()
         };
         averages.iter().zip(predicted_w).map(value).collect()
     }
 
-    /// What is chosen to have it: its size, each group, and since when it acts.
+    /// It times one more group each, of another quantity; none of what has two.
+    pub(crate) fn with_one_more(&self) -> Vec<Term> {
+        let is_other =
+            |more: &&'static Group| self.groups.iter().all(|one| one.quantity.0 != more.quantity.0);
+        let more = GROUPS.iter().filter(is_other).filter(|_| self.groups.len() < 2);
+        more.map(|more| Term { groups: [&self.groups[..], &[more]].concat(), ..self.clone() }).collect()
+    }
+
+    /// What is chosen to have it: its size, each group, the side, and since when it acts, which counts twice, as one of many times.
     pub(crate) fn choices(&self) -> usize {
-        1 + self.groups.len() + self.span.bounds()
+        1 + self.groups.len() + usize::from(self.on != On::Both) + 2 * self.span.bounds()
     }
 
     /// Whether it goes with nothing but the angle that wheels have turned.
@@ -120,6 +151,7 @@ impl Term {
     pub(crate) fn equation(&self) -> String {
         let scale = match self.scale {
             Scale::Force => "m g |u|",
+            Scale::Moment => "m g |Δ| tanh(|Δ|/0.05 u_max)",
             Scale::Power => "P",
             Scale::Watt => "1 W",
         };
@@ -140,6 +172,7 @@ impl Term {
     pub(crate) fn words(&self) -> String {
         let scale = match self.scale {
             Scale::Force => "a force in the drive",
+            Scale::Moment => "a moment against turning",
             Scale::Power => "a share of the power",
             Scale::Watt => "a power",
         };
@@ -177,6 +210,34 @@ mod tests {
         );
         assert_eq!(term.equation(), "c · m g |u| · |tan φ| on the left side");
         assert!(term.words().contains("slope across the way"));
+    }
+
+    #[test]
+    fn a_moment_takes_of_the_outer_side_what_it_gives_the_inner_one_and_the_difference_of_their_speeds_in_all()
+     {
+        let term = Term { scale: Scale::Moment, groups: Vec::new(), on: On::Both, span: Span::ALL };
+        let side = |channel: usize, rim_mps: f64, difference_mps: f64| {
+            let input = Input { rim_mps, difference_mps, ..Input::default() };
+            Average { input, ..average(channel, 0.0) }
+        };
+        let robot = model::builtin::husky_a200();
+        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
+        for turn_mps in [0.4, -0.4] {
+            let column = term.column(
+                &robot,
+                &[side(0, 0.5 - 0.5 * turn_mps, turn_mps), side(1, 0.5 + 0.5 * turn_mps, turn_mps)],
+                &[0.0; 2],
+            );
+            assert!((column[0] + column[1] - weight_n * 0.4).abs() < 1e-3 * weight_n, "{column:?}");
+            assert!(column[0] * column[1] < 0.0, "the inner side is pushed on: {column:?}");
+            let by_one_meter = term.column(&robot, &[side(0, 0.5, turn_mps)], &[0.0]);
+            assert!((by_one_meter[0] - column[0] - column[1]).abs() < 1e-9 * weight_n);
+        }
+        assert_eq!(
+            term.column(&robot, &[side(0, 0.5, 0.0), side(1, 0.5, 0.0)], &[0.0; 2]),
+            [0.0, 0.0],
+            "straight on"
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Sentences that a person reads.
 
 use crate::{
+    discovered::UNKNOWN,
     refused::Refused,
     report::{Diagnosis, Finding, Verdict},
 };
@@ -27,8 +28,8 @@ fn verdict(found: &Diagnosis, is_refused: bool) -> String {
             found.corrected.held_out_rmse_w
         ),
         Verdict::Explained | Verdict::Ambiguous => format!("{said}."),
-        Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == crate::discovered::UNKNOWN) => {
-            format!("{said}.")
+        Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == UNKNOWN) => {
+            format!("{said}{}.", described(found))
         }
         Verdict::Unexplained if found.findings.is_empty() && is_refused => {
             "Something is missing that no known mechanism describes.".into()
@@ -49,10 +50,26 @@ fn verdict(found: &Diagnosis, is_refused: bool) -> String {
     }
 }
 
-/// All findings, each with what it cannot be told from.
+/// How many terms more a description has than the first, and how much all that was found takes.
+fn described(found: &Diagnosis) -> String {
+    let more = found.findings.iter().filter(|f| f.mechanism == UNKNOWN).count() - 1;
+    let and_more = match more {
+        0 => return String::new(),
+        1 => "one more term describes".to_owned(),
+        more => format!("{more} more terms describe"),
+    };
+    let squared_w2 = |rmse_w: f64| rmse_w.powi(2) - found.baseline.noise_floor_w.powi(2);
+    let [before, after] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w].map(squared_w2);
+    let taken = 100.0 * (1.0 - after / before.max(1e-12)).clamp(0.0, 1.0);
+    format!("; {and_more} the rest, and all together take {taken:.0} % of what is not noise")
+}
+
+/// All findings, each with what it cannot be told from; of those outside the list the first one.
 fn said(findings: &[Finding]) -> String {
     let mut text = String::new();
-    for finding in findings {
+    let first = findings.iter().position(|finding| finding.mechanism == UNKNOWN);
+    let is_told = |(i, finding): &(usize, &Finding)| finding.mechanism != UNKNOWN || Some(*i) == first;
+    for (_, finding) in findings.iter().enumerate().filter(is_told) {
         if text.is_empty() {
             text += &finding.statement;
         } else {

@@ -32,6 +32,8 @@ pub struct Scoreboard {
     pub named_first: Rate,
     /// The same that were in a set of two at most.
     pub in_two: Rate,
+    /// The same that were not, and are less than the report says would have been noticed.
+    pub missed_too_small: Rate,
     /// Cases with effects in which the diagnosis said `consistent`; they count against everything above.
     pub abstained: Rate,
     /// Names that were right, of all that were given; effects that have none included.
@@ -86,6 +88,9 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         detected: Rate::of(listed(&scores).map(|truth| truth.detected)),
         named_first: Rate::of(listed(&scores).map(|truth| truth.named_first)),
         in_two: Rate::of(listed(&scores).map(|truth| truth.in_two)),
+        missed_too_small: Rate::of(
+            listed(&scores).filter(|truth| !truth.in_two).map(|truth| truth.too_small == Some(true)),
+        ),
         abstained: Rate::of(concealing().map(|case| case.verdict == Some(Verdict::Consistent))),
         naming_precision: Rate::new(right, right + wrong),
         mean_set_size: mean(&sizes),

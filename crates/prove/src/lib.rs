@@ -35,7 +35,7 @@ pub use page::page;
 pub use peer::{PeerAnswer, PeerScore};
 pub use process::{Diagnosis, Outcome};
 pub use rate::Rate;
-pub use report::{Estimate, Finding, Report, Verdict};
+pub use report::{Estimate, Finding, Least, Report, Verdict};
 pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};
 pub use strength::{Misled, z};
 pub use trial::{Stage, Trial};

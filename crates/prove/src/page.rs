@@ -79,6 +79,12 @@ fn goals(board: &Scoreboard) -> String {
             [0.75, 1.0],
         ),
         rate("Named, truth in a set of two at most, all strengths", board.in_two, "", [0.0, 1.0]),
+        rate(
+            "Of those not named, less than the report says would be noticed",
+            board.missed_too_small,
+            "",
+            [0.0, 1.0],
+        ),
         rate("Names given that were right", board.naming_precision, "≥ 95 %", [0.95, 1.0]),
         rate("Both of two effects named", board.both_of_two, "≥ 60 %", [0.6, 1.0]),
         rate("Sensor fault called physics", board.sensor_called_physics, "≤ 3 %", [0.0, 0.03]),

@@ -14,6 +14,20 @@ pub struct Report {
     /// How well the robot fits with all of that.
     #[serde(default)]
     pub corrected: Fit,
+    /// What it says would have been noticed.
+    #[serde(default)]
+    pub detectable: Vec<Least>,
+}
+
+/// The least size of a mechanism that would have been noticed.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Least {
+    /// The mechanism.
+    pub mechanism: String,
+    /// Which of its numbers.
+    pub parameter: String,
+    /// How much of it.
+    pub value: f64,
 }
 
 /// The one word.

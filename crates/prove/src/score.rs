@@ -4,7 +4,7 @@ use serde::Serialize;
 use world::{EffectName, Family};
 
 use crate::{
-    Estimate, Finding, Kind, Outcome, Parameter, PeerScore, Report, SealedKey, Truth, Verdict,
+    Estimate, Finding, Kind, Least, Outcome, Parameter, PeerScore, Report, SealedKey, Truth, Verdict,
     matching::{self, Answer},
     report::UNKNOWN,
 };
@@ -72,6 +72,8 @@ pub struct TruthScore {
     pub in_two: bool,
     /// Names in the set that holds it.
     pub set_size: Option<usize>,
+    /// Whether it is less than the report says would have been noticed, if it says so of this effect.
+    pub too_small: Option<bool>,
     /// Its numbers.
     pub parameters: Vec<ParameterScore>,
 }
@@ -136,7 +138,9 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
     let alarmed = report.is_some_and(Report::alarms);
     let truth = |(i, truth): (usize, &Truth)| {
         let z = strengths_z.get(i).copied().unwrap_or(f64::NAN);
-        truth_score(truth, z, alarmed, matched[i].map(|j| &findings[j]))
+        let least = report.map_or(&[][..], |report| &report.detectable);
+        let too_small = is_too_small(truth, least);
+        TruthScore { too_small, ..truth_score(truth, z, alarmed, matched[i].map(|j| &findings[j])) }
     };
     let wrong = |(j, finding): (usize, &Finding)| finding.is_named() && !matched.contains(&Some(j));
     let twin_w = twin.as_ref().and_then(|twin| twin.held_out_rmse_w);
@@ -171,8 +175,16 @@ fn truth_score(truth: &Truth, z: f64, detected: bool, finding: Option<&Finding>)
         named_first: named.is_some(),
         in_two: answer >= Answer::OneOfTwo,
         set_size: finding.map(|finding| finding.set().len()),
+        too_small: None,
         parameters: named.map_or_else(Vec::new, |finding| parameters(truth, finding)),
     }
+}
+
+/// Whether an effect's number is less than that from which it would have been noticed, if that is told.
+fn is_too_small(truth: &Truth, least: &[Least]) -> Option<bool> {
+    let least = least.iter().find(|one| one.mechanism == truth.effect.name())?;
+    let own = truth.parameters.iter().find(|own| own.name == least.parameter)?;
+    Some(own.value.abs() < least.value)
 }
 
 /// The numbers that key and finding have by the same name in the same unit.

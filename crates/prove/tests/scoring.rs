@@ -191,3 +191,30 @@ fn what_a_failing_program_says_cannot_break_the_page() {
     let html = page(&board(vec![one(EffectName::Payload, &nasty)]));
     assert!(html.contains("&lt;script&gt;") && !html.contains("<script>"));
 }
+
+#[test]
+fn a_miss_is_too_small_only_by_what_the_report_says_of_that_effects_own_number() {
+    let quiet = |detectable: &str| {
+        let text = format!(
+            r#"{{"verdict": "consistent", "baseline": {{"held_out_rmse_w": 2.0}}, "findings": [], "detectable": [{detectable}]}}"#
+        );
+        one(EffectName::Payload, &Outcome::Report(serde_json::from_str::<Report>(&text).unwrap()))
+    };
+    let least = |mechanism: &str, parameter: &str, value: f64| {
+        format!(
+            r#"{{"mechanism": "{mechanism}", "parameter": "{parameter}", "value": {value}, "unit": "kg"}}"#
+        )
+    };
+    // The truth is 10 kg.
+    let scores = vec![
+        quiet(&least("payload", "mass_kg", 12.0)),
+        quiet(&least("payload", "mass_kg", 8.0)),
+        quiet(&least("towed_load", "mass_kg", 12.0)),
+        quiet(&least("payload", "other", 12.0)),
+        one(EffectName::Payload, &says("explained", &finding("payload", ""))),
+    ];
+    let board = board(scores);
+    let told: Vec<Option<bool>> = board.scores.iter().map(|case| case.truths[0].too_small).collect();
+    assert_eq!(told, [Some(true), Some(false), None, None, None]);
+    assert_eq!((board.missed_too_small.hits, board.missed_too_small.of), (1, 4), "what was named is no miss");
+}
