@@ -8,7 +8,7 @@ use crate::{
     Error, as_hard,
     baseline::Baseline,
     constancy,
-    gates::{LEVEL, best},
+    gates::best,
     misfit::{self, Squares},
     missed,
     names::{as_good_names, tell_apart},
@@ -170,8 +170,8 @@ pub fn search(
     Ok(Search { found, refused, before, after, left, null })
 }
 
-/// Fits every rival in full, beside mechanisms that act, and decides for the one that explains most of those that are sure; those that
-/// explain as much stay beside it.
+/// Fits every rival in full, beside mechanisms that act, and decides for the one that explains most; those that explain as much stay
+/// beside it.
 pub(crate) fn decide(
     series: &Series,
     file: &Robot,
@@ -207,9 +207,7 @@ pub(crate) fn decide(
         false => f64::INFINITY,
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
-    // What explains as much but is not sure by itself stands beside what is.
-    let are_sure = (0..fits.len()).filter(|i| rivals[*i].p_value <= LEVEL);
-    let winner = are_sure.min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+    let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
     let names: Vec<&str> = rivals.iter().map(Weighed::name).collect();
     let indistinguishable_from = as_good_names(&names, &costs, winner);
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
