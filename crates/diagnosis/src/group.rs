@@ -33,7 +33,7 @@ const PITCH: Quantity = ("pitch", |a| a.input.pitch_rad, "rad");
 const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
 const STEEPNESS: Quantity =
     ("steepness", |a| a.input.pitch_rad.sin().hypot(a.input.roll_rad.sin()).asin(), "rad");
-const SPEED: Quantity = ("speed", |a| a.input.speed_mps, "m/s");
+const SPEED: Quantity = ("speed", |a| a.input.speed_mps.abs(), "m/s");
 const TURN: Quantity = ("difference of rim speeds", |a| a.input.difference_mps, "m/s");
 const ACCELERATION: Quantity = ("acceleration", |a| a.input.accel_mps2, "m/s²");
 const HEADING: Quantity = ("heading", |a| a.input.heading_rad, "rad");

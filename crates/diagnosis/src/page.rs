@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::{
     chart::{self, escaped},
+    discovered::UNKNOWN,
     report::{Diagnosis, Finding, Verdict},
     words::{listed, plain},
 };
@@ -107,7 +108,10 @@ fn finding(found: &Finding) -> String {
             write!(rows, "<tr><td>{name}<td class=number>{}{unit}<td>{interval}", number(parameter.value));
     }
     let others: Vec<String> = found.indistinguishable_from.iter().map(|n| plain(n).to_owned()).collect();
-    let or = if others.is_empty() {
+    let is_described = found.mechanism == UNKNOWN;
+    let or = if is_described {
+        String::new()
+    } else if others.is_empty() {
         "<p>Nothing else that is known explains it as well.</p>".to_owned()
     } else {
         format!("<p>These drives cannot tell it from {}.</p>", escaped(&listed(&others)))
@@ -115,7 +119,7 @@ fn finding(found: &Finding) -> String {
     format!(
         "<article><h3>{}</h3><p>{}.</p><table>{rows}</table><p class=equation>{}</p><p>Where it was not fitted, the error falls from \
          {:.1} W to {:.1} W. Chance would do as much in {} drives.</p>{or}</article>",
-        plain(&found.mechanism),
+        if is_described { "outside the list" } else { plain(&found.mechanism) },
         escaped(&found.statement),
         escaped(&found.equation),
         found.fit.held_out_rmse_before_w,
@@ -183,11 +187,35 @@ svg{display:block;width:100%;height:auto}svg text{fill:var(--quiet);font-size:12
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::{EvidenceFigures, FindingFit};
 
     #[test]
     fn units_stand_beside_values_and_nothing_is_nothing() {
         let names = ["drag_area_m2", "east_mps", "from_s", "roll_change"].map(without_unit);
         assert_eq!(names, ["drag area", "east", "acts from", "roll change"]);
         assert_eq!([0.0, 0.1224, -3.937].map(number), ["0", "0.122", "-3.94"]);
+    }
+    #[test]
+    fn what_is_outside_the_list_is_headed_so_and_is_not_held_against_what_is_known() {
+        let of = |mechanism: &str| {
+            finding(&Finding {
+                mechanism: mechanism.to_owned(),
+                statement: "It takes 2 W more".into(),
+                equation: "c · 1 W".into(),
+                parameters: Vec::new(),
+                evidence: EvidenceFigures { p_value: 1e-4, delta_bic: 20.0, held_out_gain: 0.1 },
+                indistinguishable_from: Vec::new(),
+                fit: FindingFit { held_out_rmse_before_w: 3.0, held_out_rmse_after_w: 2.0 },
+            })
+        };
+        let (outside, payload) = (of(UNKNOWN), of("payload"));
+        assert!(
+            outside.contains("<h3>outside the list</h3>") && !outside.contains("Nothing else"),
+            "{outside}"
+        );
+        assert!(
+            payload.contains("<h3>a load on board</h3>") && payload.contains("Nothing else"),
+            "{payload}"
+        );
     }
 }
