@@ -71,7 +71,10 @@ const LEAST_LAG_S: f64 = 0.3;
 /// Standard deviations beyond which a quantity counts as so many: rare extremes would rule.
 const MOST_SIGMAS: f64 = 3.0;
 
-/// What the size of one of several mechanisms goes with most clearly.
+/// Share of such a change that is too much already of what takes the place of something that was doubted: what is missing may be neither.
+const OF_A_STAND_IN: f64 = 0.6;
+
+/// What the size of one of several mechanisms goes with most clearly; of what takes the place of another, less is enough.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -79,7 +82,7 @@ pub(crate) fn doubt(
     series: &Series,
     state: &State,
     which: usize,
-    null: &Null,
+    (null, stands_in): (&Null, bool),
 ) -> Result<Option<String>, Error> {
     let (fit, applied) = (&state.fit, state.applied());
     // Heat comes and goes, and a delay does all that it does where power changes.
@@ -105,6 +108,7 @@ pub(crate) fn doubt(
     let since: Vec<Average> = series.averages.iter().map(|a| a.since(applied[which].span)).collect();
     let is_resistance = RESISTANCES.contains(&applied[which].mechanism.name());
     let least_change = if is_resistance { LEAST_CHANGE_OF_RESISTANCE } else { LEAST_CHANGE };
+    let least_change = if stands_in { OF_A_STAND_IN * least_change } else { least_change };
     let of_sizes = WITH.iter().filter(|(with, _)| is_asked(with)).filter_map(|(with, of)| {
         let (p_value, change) = judge(&changing(&since, &effect, *of)?)?;
         (change.abs() > least_change).then(|| (p_value, format!("its size goes with {with}")))

@@ -8,13 +8,13 @@ use crate::{
     candidates::{self, Family},
     discovered::{Discovered, UNKNOWN},
     evidence::{Evidence, System, TOGETHER},
-    gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes},
+    gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes, spread},
     noise::Whitening,
     null::Null,
     ranked::ranked,
     refused::Refused,
     series::{Applied, Series},
-    term::{self, Term},
+    term::{self, Scale, Term},
     weigh::{judged, system_with},
     widths::NORMAL_975,
 };
@@ -23,6 +23,8 @@ use crate::{
 const MOST: usize = 4;
 /// Terms that are judged, of those that explain most.
 const MOST_JUDGED: usize = 500;
+/// Blocks over which a term is spread at least: one that fades over a minute is over three.
+const LEAST_SPREAD: f64 = 2.5;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
@@ -117,10 +119,12 @@ impl<'a> Beside<'a> {
 
     /// What passes every gate and explains most, if what passes is sure enough.
     ///
-    /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most.
+    /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most. A
+    /// moment is no evidence that something acts: drives turn for seconds only, in which it goes with all that the model misses of turns.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
         let told = self.told(tried);
-        let surest = told.iter().find(|one| self.gain(one).is_some())?;
+        let surest =
+            told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
         if surest.p_value > self.level {
             return None;
         }
@@ -179,8 +183,11 @@ impl<'a> Beside<'a> {
         term.column(&self.base.robot, &self.series.averages, &self.base.predicted_w)
     }
 
-    /// The gain on held-out blocks, if it passes.
+    /// The gain on held-out blocks, if it passes and is spread over some: of what one block holds there is nothing to compare it with.
     fn gain(&self, one: &Told<'_>) -> Option<f64> {
+        if spread(&self.system, self.series, &one.evidence) < LEAST_SPREAD {
+            return None;
+        }
         let columns = [self.white.of(&self.column_w(one.term))];
         passes(&self.system, self.series, &one.evidence, (&columns, LEAST_GAIN_SIGMAS))
     }

@@ -151,11 +151,24 @@ pub(crate) fn cosine(a: &Evidence, b: &Evidence, rows: usize) -> f64 {
 /// Blocks in which a candidate acts: where it changes more than a tenth of what it does in a mean block. What acts all the time in
 /// suspect drives changes what is expected of healthy ones as well, which speak against it as much.
 fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
+    let size = sizes(system, series, one);
+    let mean = size.iter().sum::<f64>() / size.len().max(1) as f64;
+    size.iter().map(|size| *size > 0.1 * mean).collect()
+}
+
+/// Among how many blocks what a candidate does is spread: as many as there are if it does as much in each, one if one holds nearly all.
+pub(crate) fn spread(system: &System, series: &Series, one: &Evidence) -> f64 {
+    let size = sizes(system, series, one);
+    let squares: f64 = size.iter().map(|size| size * size).sum();
+    size.iter().sum::<f64>().powi(2) / squares.max(1e-300)
+}
+
+/// Squares of what a candidate does, block by block.
+fn sizes(system: &System, series: &Series, one: &Evidence) -> Vec<f64> {
     let along = &one.own * DVector::from_column_slice(&one.values);
     let mut size = vec![0.0; system.blocks()];
     blocks(series).iter().enumerate().for_each(|(i, b)| size[*b] += along[i] * along[i]);
-    let mean = size.iter().sum::<f64>() / size.len().max(1) as f64;
-    size.iter().map(|size| *size > 0.1 * mean).collect()
+    size
 }
 
 /// Blocks of the suspect drives.

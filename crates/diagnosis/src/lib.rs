@@ -31,6 +31,7 @@ mod group;
 mod imitate;
 mod judged;
 mod knobs;
+mod limit;
 mod linear;
 mod locate;
 mod manner;

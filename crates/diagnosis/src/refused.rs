@@ -28,8 +28,9 @@ pub struct Refused {
     pub(crate) span: Span,
 }
 
-/// Why one of what was found, by its number, is not what is missing; `None` if it may be.
-pub(crate) type Doubt<'a> = dyn Fn(&State, usize) -> Result<Option<String>, Error> + 'a;
+/// Why one of what was found, by its number, is not what is missing, and of what was put in the place of something doubted; `None` if it
+/// may be.
+pub(crate) type Doubt<'a> = dyn Fn(&State, usize, bool) -> Result<Option<String>, Error> + 'a;
 
 /// Leaves out what is doubted, one by one, and fits the rest again each time, whose doubts may have been hidden by what was left out.
 /// What explains as much and is not doubted takes its place, or one more is taken up beside which it is not, and nothing is missing then;
@@ -67,7 +68,7 @@ pub(crate) fn refuse(
         let mut possible = Vec::new();
         for name in state.found[which].indistinguishable_from.clone() {
             let is_doubted = match instead(series, file, state, (which, &name))? {
-                Some(instead) => doubted(&instead, which, doubts)?.is_some(),
+                Some(instead) => doubted(&instead, which, doubts, false)?.is_some(),
                 None => false,
             };
             possible.extend((!is_doubted).then_some(name));
@@ -93,7 +94,9 @@ fn stand_in(
         }
         let Some(next) = instead(series, file, state, (which, name))? else { continue };
         let left = misfit(series, &next.fit, &state.fit);
-        if best.as_ref().is_none_or(|(least, _)| left < *least) && doubted(&next, which, doubts)?.is_none() {
+        if best.as_ref().is_none_or(|(least, _)| left < *least)
+            && doubted(&next, which, doubts, true)?.is_none()
+        {
             best = Some((left, next));
         }
     }
@@ -141,10 +144,15 @@ fn instead(
     Ok(Some(instead))
 }
 
-/// Why one is doubted.
-fn doubted(state: &State, which: usize, doubts: &[&Doubt<'_>]) -> Result<Option<String>, Error> {
+/// Why one is doubted, which may stand in for another.
+fn doubted(
+    state: &State,
+    which: usize,
+    doubts: &[&Doubt<'_>],
+    stands_in: bool,
+) -> Result<Option<String>, Error> {
     for doubt in doubts {
-        if let Some(why) = doubt(state, which)? {
+        if let Some(why) = doubt(state, which, stands_in)? {
             return Ok(Some(why));
         }
     }
@@ -155,7 +163,7 @@ fn doubted(state: &State, which: usize, doubts: &[&Doubt<'_>]) -> Result<Option<
 fn first_doubted(state: &State, doubts: &[&Doubt<'_>]) -> Result<Option<(usize, String)>, Error> {
     for doubt in doubts {
         for which in 0..state.found.len() {
-            if let Some(why) = doubt(state, which)? {
+            if let Some(why) = doubt(state, which, false)? {
                 return Ok(Some((which, why)));
             }
         }

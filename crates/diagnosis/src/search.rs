@@ -9,6 +9,7 @@ use crate::{
     baseline::Baseline,
     constancy,
     gates::best,
+    limit,
     misfit::{self, Squares},
     missed,
     names::{as_good_names, tell_apart},
@@ -159,10 +160,15 @@ pub fn search(
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
     second_ground::part(series, file, &mut state)?;
-    let of_many_sizes = |state: &State, which: usize| constancy::doubt(series, state, which, &null);
-    let told_better = |state: &State, which: usize| outside::doubt(series, file, state, which, &null);
-    let takes_little = |state: &State, which: usize| missed::doubt(series, file, &before, state, which);
-    let doubts: [&Doubt<'_>; 3] = [&of_many_sizes, &told_better, &takes_little];
+    let too_much = |state: &State, which: usize, _: bool| Ok(limit::doubt(file, state, which));
+    let of_many_sizes = |state: &State, which: usize, stands_in: bool| {
+        constancy::doubt(series, state, which, (&null, stands_in))
+    };
+    let told_better =
+        |state: &State, which: usize, _: bool| outside::doubt(series, file, state, which, &null);
+    let takes_little =
+        |state: &State, which: usize, _: bool| missed::doubt(series, file, &before, state, which);
+    let doubts: [&Doubt<'_>; 4] = [&too_much, &of_many_sizes, &told_better, &takes_little];
     let refused = refuse(series, file, &mut state, &doubts, &null)?;
     let State { mut found, fit: after } = state;
     tell_apart(&mut found);
