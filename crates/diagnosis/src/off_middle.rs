@@ -2,7 +2,7 @@
 
 use model::Robot;
 
-use crate::series::Applied;
+use crate::{limit, series::Applied};
 
 /// Where a search for one behind the middle begins \[m\]: on level ground it shows as one ahead of it does, on slopes and in bends not quite.
 pub(crate) const BEHIND_M: f64 = -1e-6;
@@ -30,12 +30,9 @@ pub(crate) fn mirrored(applied: &Applied, robot: &Robot) -> Option<Applied> {
     })
 }
 
-/// Whether it lies as far off as one can: what asks for more of it is something else.
+/// Whether it lies as far off as one can.
 pub(crate) fn is_at_its_limit(applied: &Applied, robot: &Robot) -> bool {
-    let limit = |(parameter, value): (usize, &f64)| {
-        *value != 0.0 && applied.mechanism.bounds(robot, parameter).contains(value)
-    };
-    is_center_of_mass(applied) && applied.values.iter().enumerate().any(limit)
+    is_center_of_mass(applied) && limit::is_reached(applied, robot)
 }
 
 fn is_center_of_mass(applied: &Applied) -> bool {
