@@ -221,7 +221,8 @@ fn family_of(name: &str) -> Option<Family> {
     EffectName::all().find(|effect| effect.name() == name).map(EffectName::family)
 }
 
-/// Share of the held-out mismatch that `unknown` findings take, the noise of the twin drive set aside.
+/// Share of the held-out mismatch that `unknown` findings take, the noise of the twin drive set aside; all of it where they take as much
+/// or more, as where the effect is hardly more than noise.
 fn discovered(findings: &[Finding], twin_w: Option<f64>) -> Option<f64> {
     // Each is fitted beside those before it: from the first one's error to the last one's.
     let mut unknown =
@@ -230,7 +231,7 @@ fn discovered(findings: &[Finding], twin_w: Option<f64>) -> Option<f64> {
     let last = unknown.next_back().unwrap_or(first);
     let (before_w, after_w) = (first.held_out_rmse_before_w?, last.held_out_rmse_after_w?);
     let floor_w2 = twin_w?.min(before_w).powi(2);
-    ratio(before_w.powi(2) - after_w.powi(2), before_w.powi(2) - floor_w2)
+    ratio(before_w.powi(2) - after_w.powi(2), before_w.powi(2) - floor_w2).map(|share| share.min(1.0))
 }
 
 fn ratio(a: f64, b: f64) -> Option<f64> {

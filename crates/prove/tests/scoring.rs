@@ -126,6 +126,9 @@ fn terms_that_are_discovered_count_together() {
     let terms = [fitting("unknown", "", [4.0, 3.5]), fitting("unknown", "", [3.5, 2.5])].join(", ");
     let found = one(EffectName::Puddles, &says("unexplained", &terms));
     assert_eq!(found.discovered, Some((16.0 - 6.25) / (16.0 - 4.0)));
+    // The twin's drive ends at 2 W: more than all of the mismatch there is not.
+    let below = one(EffectName::Puddles, &says("unexplained", &fitting("unknown", "", [2.1, 1.5])));
+    assert_eq!(below.discovered, Some(1.0));
 }
 
 #[test]
