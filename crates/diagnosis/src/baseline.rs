@@ -11,6 +11,7 @@ use crate::{
     average::{Average, Quantity},
     candidates, channel,
     discrepancy::{Discrepancy, Whitened},
+    everywhere,
     knobs::Knob,
     noise::{Noise, Whitening},
     nuisance,
@@ -111,6 +112,12 @@ impl Baseline {
         let sags = sags(series, &predicted_w);
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
+        if series.everywhere.get().is_none() {
+            let none_w =
+                if applied.is_empty() { predicted_w.clone() } else { series.predict(&robot, &[])? };
+            let columns = everywhere::columns(series, &robot, &none_w)?;
+            series.everywhere.get_or_init(|| columns);
+        }
         Ok(Baseline {
             robot,
             knobs,

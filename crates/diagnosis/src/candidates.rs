@@ -80,6 +80,11 @@ impl Family {
         self.spans.len()
     }
 
+    /// How many of them always act: one or none.
+    pub(crate) fn always_count(&self) -> usize {
+        self.spans.iter().filter(|span| span.is_all()).count()
+    }
+
     /// Its candidates, one by one.
     ///
     /// What remembers has no onset but the beginning; all else does from some time on what it would always do.

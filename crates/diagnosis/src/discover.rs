@@ -8,7 +8,7 @@ use crate::{
     candidates::{self, Family},
     discovered::{Discovered, UNKNOWN},
     evidence::{Evidence, System, TOGETHER},
-    gates::{LEAST_GAIN_SIGMAS, LEVEL, cosine, passes, spread},
+    gates::{LEVEL, cosine, passes, spread},
     noise::Whitening,
     null::Null,
     ranked::ranked,
@@ -23,6 +23,9 @@ use crate::{
 const MOST: usize = 4;
 /// Terms that are judged, of those that explain most.
 const MOST_JUDGED: usize = 500;
+/// Standard errors by which a term's fit of blocks that were held out has to gain: thousands of terms are tried, and none is known to act
+/// anywhere.
+const LEAST_GAIN_OF_A_TERM_SIGMAS: f64 = 2.5;
 /// Blocks over which a term is spread at least: one that fades over a minute is over three.
 const LEAST_SPREAD: f64 = 2.5;
 /// Cosine from which a term resembles a mechanism.
@@ -189,7 +192,7 @@ impl<'a> Beside<'a> {
             return None;
         }
         let columns = [self.white.of(&self.column_w(one.term))];
-        passes(&self.system, self.series, &one.evidence, (&columns, LEAST_GAIN_SIGMAS))
+        passes(&self.system, self.series, &one.evidence, (&columns, LEAST_GAIN_OF_A_TERM_SIGMAS))
     }
 }
 

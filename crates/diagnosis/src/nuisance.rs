@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Share of mean power that a function may take [-]: about what the force balance misses of a healthy Husky.
-const SHARE: f64 = 0.03;
+pub(crate) const SHARE: f64 = 0.03;
 
 /// Functions of the inputs, scaled to one sigma of what they may take, over the averages of a channel of such a mean size [W].
 ///
@@ -41,13 +41,21 @@ pub(crate) fn means(averages: &[Average], predicted: &[f64]) -> Vec<f64> {
     (0..channel::count(averages)).map(mean).collect()
 }
 
-const SHARED: [fn(&Input) -> f64; 14] = [
+/// Functions of speed times turn tell what a curve that is driven faster than healthy drives did takes on top: with turn alone, half
+/// circles of a robot in order passed for 0.7 % of its power, with them for 0.4 %.
+const SHARED: [fn(&Input) -> f64; 20] = [
     |x| x.rim_mps.abs(),
     |x| x.rim_mps * x.rim_mps,
     |x| x.difference_mps,
     |x| x.difference_mps.abs(),
     |x| x.difference_mps * x.difference_mps,
     |x| tightness(x) * x.difference_mps.abs(),
+    |x| sideways(x),
+    |x| sideways(x) * sideways(x),
+    |x| sideways(x) * x.difference_mps.abs(),
+    |x| x.rim_mps * x.difference_mps,
+    |x| (x.rim_mps * x.difference_mps).abs(),
+    |x| x.rim_mps * x.difference_mps * x.difference_mps.abs(),
     |x| x.rim_mps * x.pitch_rad,
     |x| x.rim_mps.abs() * x.pitch_rad * x.pitch_rad,
     |x| x.pitch_rad * x.pitch_rad,
@@ -57,6 +65,11 @@ const SHARED: [fn(&Input) -> f64; 14] = [
     |x| x.rim_mps * x.accel_mps2,
     |x| x.accel_mps2.abs(),
 ];
+
+/// Acceleration towards the inside of a curve, times the track [m²/s²].
+fn sideways(x: &Input) -> f64 {
+    (x.speed_mps * x.difference_mps).abs()
+}
 
 /// 0 straight on, 1 on the spot.
 fn tightness(x: &Input) -> f64 {

@@ -54,6 +54,8 @@ pub struct Series {
     library: Vec<&'static dyn Mechanism>,
     /// What the model misses of these drives; learnt when first needed.
     pub(crate) discrepancy: OnceLock<Discrepancy>,
+    /// What mechanisms do where they act in all drives; worked out when first needed.
+    pub(crate) everywhere: OnceLock<Vec<Vec<f64>>>,
     /// What repeats with every turn of the wheels, if anything does.
     pub(crate) turning: Option<Line>,
 }
@@ -100,6 +102,7 @@ impl Series {
             watch,
             library: mechanism::ALL.to_vec(),
             discrepancy: OnceLock::new(),
+            everywhere: OnceLock::new(),
             turning: None,
         };
         let mut runs = 0;

@@ -79,7 +79,8 @@ fn system_by(
     if delayed {
         columns.push(white.of(&base.delays[0]));
     }
-    columns.extend(base.sags.iter().chain(&base.tilts).map(|c| white.of(c)));
+    let everywhere = series.everywhere.get().into_iter().flatten();
+    columns.extend(base.sags.iter().chain(&base.tilts).chain(everywhere).map(|c| white.of(c)));
     let mut known = vec![1.0; columns.len()];
     // Of sizes and of what stands beside nothing is known before.
     let is_free = |which: usize| match sizes {
@@ -173,15 +174,42 @@ pub(crate) struct Scales<'a> {
     white: Whitening,
     all_fitted: System,
     delay_apart: System,
-    /// How many were tried, of each mechanism and in all.
-    tried: BTreeMap<&'static str, u32>,
-    all: f64,
+    /// How many were tried of each mechanism.
+    tried: BTreeMap<&'static str, Tried>,
+}
+
+/// How many candidates of a mechanism were tried: that always act, and that do in a part of the drives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Tried {
+    always: u32,
+    in_part: u32,
+}
+
+impl Tried {
+    fn all(self) -> u32 {
+        self.always + self.in_part
+    }
+
+    /// By what the chance of one candidate is multiplied, of so many mechanisms: each mechanism has the same share of the chance that
+    /// one of all is taken up where nothing acts, and what acts all the time has half of it (a weighted Bonferroni correction: Genovese,
+    /// Roeder and Wasserman, Biometrika 93, 2006).
+    fn correction(self, is_always: bool, mechanisms: usize) -> f64 {
+        let (alike, others) =
+            if is_always { (self.always, self.in_part) } else { (self.in_part, self.always) };
+        let halves = if others == 0 { 1.0 } else { 2.0 };
+        mechanisms as f64 * halves * f64::from(alike)
+    }
 }
 
 impl<'a> Scales<'a> {
     pub(crate) fn new(series: &'a Series, base: &'a Baseline, null: &'a Null, families: &[Family]) -> Self {
-        let mut tried = BTreeMap::new();
-        families.iter().for_each(|family| *tried.entry(family.name()).or_default() += family.count() as u32);
+        let mut tried: BTreeMap<&'static str, Tried> = BTreeMap::new();
+        for family in families {
+            let of = tried.entry(family.name()).or_default();
+            let always = family.always_count() as u32;
+            of.always += always;
+            of.in_part += family.count() as u32 - always;
+        }
         Scales {
             series,
             base,
@@ -190,7 +218,6 @@ impl<'a> Scales<'a> {
             all_fitted: system(series, base),
             delay_apart: undelayed(series, base),
             tried,
-            all: families.iter().map(Family::count).sum::<usize>() as f64,
         }
     }
 
@@ -232,14 +259,15 @@ impl<'a> Scales<'a> {
         let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
         let cost = candidate.numbers() as f64 * (blocks as f64).ln();
         let rank = evidence.explained / self.null.common_discount(blocks) - cost;
-        let tried = self.tried.get(name(&candidate)).copied().unwrap_or(1);
+        let tried = self.tried.get(name(&candidate)).copied().unwrap_or_default();
+        let correction = tried.correction(candidate.applied.span.is_all(), self.tried.len());
         Some(Weighed {
             candidate,
             evidence,
-            tried,
+            tried: tried.all(),
             score: wald - cost,
             rank,
-            p_value: (chance * self.all).min(1.0),
+            p_value: (chance * correction).min(1.0),
             is_strong,
         })
     }
@@ -291,4 +319,30 @@ fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bo
         let value = candidate.applied.values[parameter] + value;
         value + 2.0 * sigma >= low && value - 2.0 * sigma <= high
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chances_of_all_that_is_tried_add_up_to_one_and_what_always_acts_has_half_of_each_mechanisms() {
+        let tried = [
+            Tried { always: 1, in_part: 9 },
+            Tried { always: 25, in_part: 225 },
+            Tried { always: 6, in_part: 0 },
+            Tried { always: 0, in_part: 9 },
+        ];
+        let shares = tried.map(|one| {
+            let of = |count: u32, is_always| match count {
+                0 => 0.0,
+                _ => f64::from(count) / one.correction(is_always, tried.len()),
+            };
+            [of(one.always, true), of(one.in_part, false)]
+        });
+        assert!((shares.as_flattened().iter().sum::<f64>() - 1.0).abs() < 1e-12, "{shares:?}");
+        assert_eq!(shares[0], shares[1]);
+        assert_eq!(shares[0], [0.125, 0.125]);
+        assert_eq!(shares[2], [0.25, 0.0]);
+    }
 }
