@@ -74,6 +74,21 @@ fn what_is_ruled_out_is_missed_and_not_given_another_name() {
 }
 
 #[test]
+fn what_acts_in_healthy_drives_as_well_is_not_missing() {
+    let robot = model::builtin::husky_a200();
+    for (effect, strength) in
+        [(EffectName::Inertia, 30.0), (EffectName::LoadTransfer, 0.3), (EffectName::Regeneration, 0.7)]
+    {
+        let [healthy, suspect] = [31, 32].map(|seed| record(seed, vec![Effect::new(effect, strength)]));
+        let found = said(&robot, &suspect, &healthy);
+        assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+        // It shows where healthy drives do not have it.
+        let found = said(&robot, &suspect, &record(31, vec![]));
+        assert_ne!(found.verdict, Verdict::Consistent, "{effect:?}");
+    }
+}
+
+#[test]
 fn a_mass_that_stands_high_is_told_from_one_that_slides() {
     let robot = model::builtin::husky_a200();
     let healthy = record(31, vec![]);

@@ -32,7 +32,7 @@ pub(crate) fn columns(series: &Series, robot: &Robot, predicted: &[f64]) -> Resu
         values[parameter] = mechanism.parameters()[parameter].probe;
         let everywhere = [Applied { mechanism, values, span: Span::ALL }];
         let seen = series.predict_with(robot, &everywhere, &everywhere)?;
-        Ok(scaled(series, &means, differences(&seen, predicted)))
+        Ok(scaled(series, &means, &differences(&seen, predicted)))
     };
     let numbers: Vec<(&'static dyn Mechanism, usize)> = series.others(&[]).flat_map(numbers).collect();
     let columns: Vec<Option<Vec<f64>>> = numbers.into_par_iter().map(column).collect::<Result<_, Error>>()?;
@@ -51,7 +51,7 @@ fn numbers(mechanism: &'static dyn Mechanism) -> Vec<(&'static dyn Mechanism, us
 }
 
 /// A change scaled to the share of power that models may miss; `None` if it changes no power. What other meters show of it goes along.
-fn scaled(series: &Series, means: &[f64], change: Vec<f64>) -> Option<Vec<f64>> {
+fn scaled(series: &Series, means: &[f64], change: &[f64]) -> Option<Vec<f64>> {
     let power = || change.iter().zip(&series.averages).filter(|(_, a)| a.quantity() == Quantity::Power);
     let squares = power().map(|(x, a)| (x / means[a.channel].max(1e-9)).powi(2)).sum::<f64>();
     let share = (squares / power().count().max(1) as f64).sqrt();
