@@ -12,7 +12,7 @@ use crate::{
     average::Quantity,
     baseline::differences,
     candidates::grids,
-    nuisance::{SHARE, means},
+    nuisance::{SHARE_OF_WHAT_IS_LIKE_EFFECTS, means},
     series::{Applied, Series},
     span::Span,
 };
@@ -55,5 +55,5 @@ fn scaled(series: &Series, means: &[f64], change: &[f64]) -> Option<Vec<f64>> {
     let power = || change.iter().zip(&series.averages).filter(|(_, a)| a.quantity() == Quantity::Power);
     let squares = power().map(|(x, a)| (x / means[a.channel].max(1e-9)).powi(2)).sum::<f64>();
     let share = (squares / power().count().max(1) as f64).sqrt();
-    (share > 0.0).then(|| change.iter().map(|x| x * SHARE / share).collect())
+    (share > 0.0).then(|| change.iter().map(|x| x * SHARE_OF_WHAT_IS_LIKE_EFFECTS / share).collect())
 }

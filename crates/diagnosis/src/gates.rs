@@ -19,6 +19,8 @@ pub(crate) const LEVEL: f64 = 0.01;
 /// Standard errors by which the fit of blocks that were held out has to gain: what its evidence shows to be there gains something where
 /// it was not fitted as well, to one side's 5 %. What is `w` standard errors from nothing gains by half as many, so that 2.5 asked for 5.
 const LEAST_GAIN_SIGMAS: f64 = 1.64;
+/// The same beside what was found already, whose form may miss as much.
+const LEAST_GAIN_SIGMAS_BESIDE_OTHERS: f64 = 2.5;
 /// The same for changes of power that are more than what models miss: few blocks may hold all of it, as those in which a robot spins
 /// hold what ice does, and the mean over the others says little.
 const LEAST_GAIN_SIGMAS_IF_STRONG: f64 = 1.0;
@@ -38,7 +40,9 @@ pub(crate) fn best(
     applied: &[Applied],
     null: &Null,
 ) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
-    best_that_gains(series, base, applied, null, LEAST_GAIN_SIGMAS)
+    let is_first = applied.is_empty();
+    let least_sigmas = if is_first { LEAST_GAIN_SIGMAS } else { LEAST_GAIN_SIGMAS_BESIDE_OTHERS };
+    best_that_gains(series, base, applied, null, least_sigmas)
 }
 
 /// The same where something is known to be left, because what was found is doubted for it: held-out blocks are asked less of.
