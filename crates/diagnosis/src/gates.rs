@@ -16,14 +16,11 @@ use crate::{
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
 pub(crate) const LEVEL: f64 = 0.01;
-/// Standard errors by which the fit of blocks that were held out has to gain: what its evidence shows to be there gains something where
-/// it was not fitted as well, to one side's 5 %. What is `w` standard errors from nothing gains by half as many, so that 2.5 asked for 5.
-const LEAST_GAIN_SIGMAS: f64 = 1.64;
-/// The same beside what was found already, whose form may miss as much.
+/// Standard errors by which the fit of blocks that were held out has to gain. What is `w` standard errors from nothing gains by half as
+/// many: its evidence tells that it is there, and few blocks may hold all of it, as those in which a robot spins hold what ice does.
+const LEAST_GAIN_SIGMAS: f64 = 1.0;
+/// The same beside what was found already, whose form may miss as much, of changes of power that are no more than what models miss.
 const LEAST_GAIN_SIGMAS_BESIDE_OTHERS: f64 = 2.5;
-/// The same for changes of power that are more than what models miss: few blocks may hold all of it, as those in which a robot spins
-/// hold what ice does, and the mean over the others says little.
-const LEAST_GAIN_SIGMAS_IF_STRONG: f64 = 1.0;
 /// Tenths of the drives that are held out in turn.
 const FOLDS: usize = 10;
 /// Rivals that are looked at closely.
@@ -52,7 +49,7 @@ pub(crate) fn best_beside_doubted(
     applied: &[Applied],
     null: &Null,
 ) -> Result<Option<(Vec<Weighed>, f64)>, Error> {
-    best_that_gains(series, base, applied, null, LEAST_GAIN_SIGMAS_IF_STRONG)
+    best_that_gains(series, base, applied, null, LEAST_GAIN_SIGMAS)
 }
 
 /// The best that gains by so many standard errors, or is strong.
@@ -76,7 +73,7 @@ fn best_that_gains(
         if one.is_in_place() && !is_of_place(series, base, one, null) {
             return None;
         }
-        let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS_IF_STRONG } else { least_gain_sigmas };
+        let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS } else { least_gain_sigmas };
         Some((one, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
     let Some((passed, gain)) = passing else { return Ok(None) };
