@@ -63,7 +63,7 @@ const SHARED: [fn(&Input) -> f64; 14] = [
 ];
 
 /// Functions of speed times turn tell what a curve that is driven faster than healthy drives did takes on top: with turn alone, half
-/// circles of a robot in order passed for 0.7 % of its power, with them for 0.4 %.
+/// circles of a robot in order passed for a gain of its meters.
 const OF_CURVES: [fn(&Input) -> f64; 6] = [
     |x| sideways(x),
     |x| sideways(x) * sideways(x),
