@@ -72,6 +72,7 @@ mod span;
 mod term;
 mod turning;
 mod undoing;
+mod unshown;
 mod usual;
 mod visits;
 mod weigh;

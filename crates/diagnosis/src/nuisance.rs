@@ -3,6 +3,7 @@
 use crate::{
     average::{Average, Input},
     channel,
+    constancy::MOVING_S,
 };
 
 /// Share of mean power that a function may take [-]: about what the force balance misses of a healthy Husky.
@@ -64,13 +65,15 @@ const SHARED: [fn(&Input) -> f64; 14] = [
 
 /// Functions of speed times turn tell what a curve that is driven faster than healthy drives did takes on top: with turn alone, half
 /// circles of a robot in order passed for a gain of its meters.
-const OF_CURVES: [fn(&Input) -> f64; 6] = [
+const OF_CURVES: [fn(&Input) -> f64; 8] = [
     |x| sideways(x),
     |x| sideways(x) * sideways(x),
     |x| sideways(x) * x.difference_mps.abs(),
     |x| x.rim_mps * x.difference_mps,
     |x| (x.rim_mps * x.difference_mps).abs(),
     |x| x.rim_mps * x.difference_mps * x.difference_mps.abs(),
+    |x| x.difference_mps.abs() * x.roll_rad,
+    |x| x.rim_mps.abs() * (-x.moving_s / MOVING_S).exp(),
 ];
 
 /// Acceleration towards the inside of a curve, times the track [m²/s²].

@@ -15,6 +15,7 @@ use crate::{
     series::{Applied, Series},
     span::Span,
     undoing::last_undoes,
+    unshown,
 };
 
 /// A mechanism that explains much and is not what is missing.
@@ -54,7 +55,10 @@ pub(crate) fn refuse(
         let Applied { mechanism, span, .. } = state.found[which].applied;
         let mechanism = mechanism.name();
         tried.push(mechanism);
-        if let Some(next) = stand_in(series, file, (state, which), &tried, doubts)? {
+        let is_shown = unshown::doubt(series, state, which).is_none();
+        let stand_in =
+            if is_shown { stand_in(series, file, (state, which), &tried, doubts)? } else { None };
+        if let Some(next) = stand_in {
             *state = next;
         } else if let Some(next) = beside(series, file, state, doubts, null)? {
             *state = next;

@@ -23,6 +23,7 @@ use crate::{
     second_ground,
     series::{Applied, Series},
     undoing::last_undoes,
+    unshown,
     weigh::{Weighed, left, system},
 };
 
@@ -168,7 +169,8 @@ pub fn search(
         |state: &State, which: usize, _: bool| outside::doubt(series, file, state, which, &null);
     let takes_little =
         |state: &State, which: usize, _: bool| missed::doubt(series, file, &before, state, which);
-    let doubts: [&Doubt<'_>; 4] = [&too_much, &of_many_sizes, &told_better, &takes_little];
+    let unshown = |state: &State, which: usize, _: bool| Ok(unshown::doubt(series, state, which));
+    let doubts: [&Doubt<'_>; 5] = [&too_much, &unshown, &of_many_sizes, &told_better, &takes_little];
     let refused = refuse(series, file, &mut state, &doubts, &null)?;
     let State { mut found, fit: after } = state;
     tell_apart(&mut found);
@@ -213,7 +215,10 @@ pub(crate) fn decide(
         false => f64::INFINITY,
     };
     let costs: Vec<f64> = (0..fits.len()).map(cost).collect();
-    let winner = (0..fits.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+    let least = |a: &usize, b: &usize| costs[*a].total_cmp(&costs[*b]);
+    // Squares alone make nobody the winner: few blocks may hold all that a rival takes of them.
+    let sure = (0..fits.len()).filter(|i| at_best(*i).score > 0.0).min_by(least);
+    let winner = sure.or_else(|| (0..fits.len()).min_by(least)).unwrap_or(0);
     let names: Vec<&str> = rivals.iter().map(Weighed::name).collect();
     let indistinguishable_from = as_good_names(&names, &costs, winner);
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
