@@ -61,7 +61,7 @@ pub(crate) fn discover(
     (null, first): (&Null, Sure),
 ) -> Result<Vec<Discovered>, Error> {
     let of_mechanisms = applied.iter().map(|one| one.span).chain(refused.iter().map(|one| one.span));
-    let mut terms = term::all(series.channels(), &term::onsets(series, of_mechanisms));
+    let mut terms = term::of_drives(series, &base.robot, of_mechanisms);
     // Alone, what the model itself misses would pass for a discovery; what repeats with every turn of the wheels does not.
     if !series.has_healthy() {
         terms.retain(Term::is_turn);
@@ -133,7 +133,8 @@ impl<'a> Beside<'a> {
         }
         let (mut best, mut held_out_gain) = self.closest(told)?;
         // Since when it acts, and what else it goes with, is looked for about what was tried.
-        let near = [around(self.series, best.term), best.term.with_one_more()];
+        let mut near = [around(self.series, best.term), best.term.with_one_more()];
+        near[1].retain(|term| term.is_reached(self.series, &self.base.robot));
         for near in &near {
             let closer = self.closest(self.told(&near.iter().collect::<Vec<_>>()));
             if let Some((closer, gain)) = closer.filter(|(closer, _)| closer.rank > best.rank) {

@@ -287,10 +287,14 @@ fn inverse(square: DMatrix<f64>) -> DMatrix<f64> {
     root(square).map_or_else(|| DMatrix::zeros(count, count), |root| root.inverse())
 }
 
-/// Root of a matrix of products; columns that nothing excites take no share.
+/// Root of a matrix of products, whatever the units of its columns; those that nothing excites take no share.
 fn root(mut square: DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
     for j in 0..square.nrows() {
-        square[(j, j)] += 1e-9 * (1.0 + square[(j, j)]);
+        let own = square[(j, j)];
+        square[(j, j)] = if own > 0.0 { own * (1.0 + ROUNDING) } else { 1.0 };
     }
     square.cholesky()
 }
+
+/// Share of a column's square by which columns that hang together in all but rounding are kept apart.
+const ROUNDING: f64 = 1e-9;

@@ -15,9 +15,19 @@ pub(crate) struct Group {
     pub(crate) quantity: Quantity,
     /// Its value, given the highest rim speed \[m/s\]; time is that since what it is a group of set in.
     pub(crate) value: fn(&Average, f64) -> f64,
+    /// Whether it is 1 about some value of the quantity and next to nothing elsewhere.
+    is_peak: bool,
 }
 
+/// What a group that is about some value has to reach for drives to tell anything of it.
+const REACHED: f64 = 0.5;
+
 impl Group {
+    /// Whether drives under suspicion tell anything of it: speeds that they never had tell nothing.
+    pub(crate) fn is_reached(&self, averages: &[Average], fastest_mps: f64) -> bool {
+        !self.is_peak || averages.iter().any(|a| a.suspect && (self.value)(a, fastest_mps) > REACHED)
+    }
+
     /// Whether it is the angle that wheels have turned.
     pub(crate) fn is_turn(&self) -> bool {
         self.quantity.0 == TURNED.0
@@ -46,7 +56,12 @@ const fn group(
     quantity: Quantity,
     value: fn(&Average, f64) -> f64,
 ) -> Group {
-    Group { symbol, words, quantity, value }
+    Group { symbol, words, quantity, value, is_peak: false }
+}
+
+/// A group about a speed.
+const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f64) -> f64) -> Group {
+    Group { is_peak: true, ..group(symbol, words, SPEED, value) }
 }
 
 /// All groups. θ pitch, φ roll, γ how steep the ground under the robot is, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
@@ -94,14 +109,14 @@ pub(crate) static GROUPS: [Group; 36] = [
     group("sin 2ψ", "driving north-east or south-west, and less across", HEADING, |a, _| {
         known((2.0 * a.input.heading_rad).sin())
     }),
-    group("e^(−((|v| − 0.2 u_max)/0.1 u_max)²)", "speeds about 0.2 of the highest", SPEED, near::<2>),
-    group("e^(−((|v| − 0.3 u_max)/0.1 u_max)²)", "speeds about 0.3 of the highest", SPEED, near::<3>),
-    group("e^(−((|v| − 0.4 u_max)/0.1 u_max)²)", "speeds about 0.4 of the highest", SPEED, near::<4>),
-    group("e^(−((|v| − 0.5 u_max)/0.1 u_max)²)", "speeds about 0.5 of the highest", SPEED, near::<5>),
-    group("e^(−((|v| − 0.6 u_max)/0.1 u_max)²)", "speeds about 0.6 of the highest", SPEED, near::<6>),
-    group("e^(−((|v| − 0.7 u_max)/0.1 u_max)²)", "speeds about 0.7 of the highest", SPEED, near::<7>),
-    group("e^(−((|v| − 0.8 u_max)/0.1 u_max)²)", "speeds about 0.8 of the highest", SPEED, near::<8>),
-    group("e^(−((|v| − 0.9 u_max)/0.1 u_max)²)", "speeds about 0.9 of the highest", SPEED, near::<9>),
+    about("e^(−((|v| − 0.2 u_max)/0.1 u_max)²)", "speeds about 0.2 of the highest", near::<2>),
+    about("e^(−((|v| − 0.3 u_max)/0.1 u_max)²)", "speeds about 0.3 of the highest", near::<3>),
+    about("e^(−((|v| − 0.4 u_max)/0.1 u_max)²)", "speeds about 0.4 of the highest", near::<4>),
+    about("e^(−((|v| − 0.5 u_max)/0.1 u_max)²)", "speeds about 0.5 of the highest", near::<5>),
+    about("e^(−((|v| − 0.6 u_max)/0.1 u_max)²)", "speeds about 0.6 of the highest", near::<6>),
+    about("e^(−((|v| − 0.7 u_max)/0.1 u_max)²)", "speeds about 0.7 of the highest", near::<7>),
+    about("e^(−((|v| − 0.8 u_max)/0.1 u_max)²)", "speeds about 0.8 of the highest", near::<8>),
+    about("e^(−((|v| − 0.9 u_max)/0.1 u_max)²)", "speeds about 0.9 of the highest", near::<9>),
     group("(1 + cos(α − α₀))/2", "each turn of the wheels", TURNED, |a, _| a.input.nearness),
     group("(z̄ − z)₊/1 m", "low ground", HEIGHT, |a, _| known(-a.input.height_m).max(0.0)),
     group("(z − z̄)₊/1 m", "high ground", HEIGHT, |a, _| known(a.input.height_m).max(0.0)),

@@ -61,6 +61,31 @@ pub(crate) fn drop_one(series: &Series, file: &Robot, state: &mut State, null: &
     Ok(false)
 }
 
+/// Leaves out what explains hardly anything once something that it stood beside was refused.
+///
+/// # Errors
+/// A surface that the robot does not know.
+pub(crate) fn drop_idle(series: &Series, file: &Robot, state: &mut State, null: &Null) -> Result<(), Error> {
+    let blocks = system(series, &state.fit).blocks();
+    let mut which = 0;
+    while which < state.found.len() {
+        let name = state.found[which].applied.mechanism.name();
+        let mut others = state.applied();
+        others.remove(which);
+        let without = settle(series, file, &others, &state.fit.robot)?;
+        let lost = misfit(series, &without.base, &state.fit) - misfit(series, &state.fit, &state.fit);
+        let cost = state.found[which].numbers() as f64 * (blocks as f64).ln();
+        // Delays up to half a row are fitted anyway, so that its loss does not show.
+        if name != "clock_offset" && lost / null.discount(name, blocks) < cost {
+            state.found.remove(which);
+            state.take(without);
+        } else {
+            which += 1;
+        }
+    }
+    Ok(())
+}
+
 /// Whether what a mechanism adds to the others, fitted without it, is more, where it acts, than their forms may miss.
 fn is_beyond_form(series: &Series, state: &State, which: usize, without: &Polished) -> Result<bool, Error> {
     let white = state.fit.whitening(series);

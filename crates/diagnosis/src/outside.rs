@@ -46,7 +46,7 @@ pub(crate) fn doubt(
     let whole = least_misfit(series, &without, &without) - least_misfit(series, &state.fit, &without);
     let choices = found.numbers() as f64 * (system.blocks() as f64).ln();
     let explained = whole / null.common_discount(system.blocks()) - choices;
-    let terms = term::all(series.channels(), &term::onsets(series, std::iter::once(found.applied.span)));
+    let terms = term::of_drives(series, file, std::iter::once(found.applied.span));
     let terms: Vec<&Term> = terms.iter().collect();
     let best = ranked(series, &without, (&system, null), &terms).into_iter().next();
     let least = explained + f64::max(BETTER, BETTER_SHARE * openness(series) * explained);

@@ -9,7 +9,7 @@ use crate::{
     candidates::apart,
     gates::best_beside_doubted,
     misfit::misfit,
-    needed::drop_one,
+    needed::{drop_idle, drop_one},
     null::Null,
     search::{MOST, State, decide},
     series::{Applied, Series},
@@ -68,12 +68,18 @@ pub(crate) fn refuse(
             state.refit(series, file)?;
         }
     }
+    if !refused.is_empty() {
+        drop_idle(series, file, state, null)?;
+    }
     for which in 0..state.found.len() {
         let mut possible = Vec::new();
         for name in state.found[which].indistinguishable_from.clone() {
+            // What drives do not show they do not rule out.
             let is_doubted = match instead(series, file, state, (which, &name))? {
-                Some(instead) => doubted(&instead, which, doubts, false)?.is_some(),
-                None => false,
+                Some(instead) if unshown::doubt(series, &instead, which).is_none() => {
+                    doubted(&instead, which, doubts, false)?.is_some()
+                }
+                _ => false,
             };
             possible.extend((!is_doubted).then_some(name));
         }

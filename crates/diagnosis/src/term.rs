@@ -46,7 +46,7 @@ pub(crate) struct Term {
 
 /// Every term of at most two groups that acts all the time, and of at most one that does so from one of some times on, on the sides that
 /// were recorded apart.
-pub(crate) fn all(channels: usize, from: &[Span]) -> Vec<Term> {
+fn all(channels: usize, from: &[Span]) -> Vec<Term> {
     let sides: &[On] = if channels == 2 { &[On::Both, On::Left, On::Right, On::Apart] } else { &[On::Both] };
     let mut products: Vec<Vec<&'static Group>> = vec![Vec::new()];
     for (i, one) in GROUPS.iter().enumerate() {
@@ -74,11 +74,17 @@ pub(crate) fn all(channels: usize, from: &[Span]) -> Vec<Term> {
     terms
 }
 
-/// Times from which terms may act: those that are tried of mechanisms, and those from which some do.
-pub(crate) fn onsets(series: &Series, of_mechanisms: impl Iterator<Item = Span>) -> Vec<Span> {
-    let mut spans = moments(&series.timeline());
-    spans.extend(of_mechanisms.filter(|span| matches!(span, Span::From { .. })));
-    spans
+/// All of which drives tell anything, from the times that are tried of mechanisms on, and those from which some act.
+pub(crate) fn of_drives(
+    series: &Series,
+    robot: &Robot,
+    of_mechanisms: impl Iterator<Item = Span>,
+) -> Vec<Term> {
+    let mut from = moments(&series.timeline());
+    from.extend(of_mechanisms.filter(|span| matches!(span, Span::From { .. })));
+    let mut terms = all(series.channels(), &from);
+    terms.retain(|term| term.is_reached(series, robot));
+    terms
 }
 
 /// Difference of rim speeds over which a moment against turning turns round with the turn, as a share of the highest speed: wheels that
@@ -123,6 +129,11 @@ impl Term {
             side(a) * scale_w(a, *predicted_w) * groups.product::<f64>()
         };
         averages.iter().zip(predicted_w).map(value).collect()
+    }
+
+    /// Whether drives under suspicion tell anything of it.
+    pub(crate) fn is_reached(&self, series: &Series, robot: &Robot) -> bool {
+        self.groups.iter().all(|group| group.is_reached(&series.averages, robot.max_wheel_speed_mps))
     }
 
     /// It times one more group each, of another quantity; none of what has two.
