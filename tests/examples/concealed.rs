@@ -14,7 +14,7 @@ use model::{
     mechanism::{self, Mechanism},
 };
 use recording::{Recording, read_paths};
-use world::{Case, CaseKind, Drive, EffectName, Family, RobotFile, World, simulate};
+use world::{Case, CaseKind, EffectName, Family, Log, RobotFile, simulate};
 
 /// Cases of one family: all, not `consistent`, and with the truth alone or beside one other.
 #[derive(Default)]
@@ -45,8 +45,8 @@ fn main() {
                     continue;
                 }
             };
-            let suspect = record(folder.path(), &case.world, &file, &case.drive);
-            let healthy = record(folder.path(), &case.reference_world, &file, &case.reference_drive);
+            let suspect = read(folder.path(), &simulate(&case.world, &file, &case.drive).unwrap());
+            let healthy = read(folder.path(), &case.reference(&file).unwrap());
             let began = Instant::now();
             let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
             say(kind, seed, &case, &found, began);
@@ -69,9 +69,9 @@ fn main() {
     }
 }
 
-fn record(folder: &Path, world: &World, file: &RobotFile, drive: &Drive) -> Recording {
+fn read(folder: &Path, log: &Log) -> Recording {
     let path = folder.join("drive.csv");
-    simulate(world, file, drive).unwrap().write_csv(std::fs::File::create(&path).unwrap()).unwrap();
+    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
     read_paths(&[path], None).unwrap().0
 }
 

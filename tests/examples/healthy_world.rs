@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use calibration::{Options, PredictedDrives, RunPrediction, calibrate, predict};
 use model::Robot;
 use recording::{Recording, read_path};
-use world::{Case, CaseKind, Drive, DriveKind, RobotFile, World, simulate};
+use world::{Case, CaseKind, Drive, DriveKind, Log, RobotFile, World, simulate};
 
 fn main() {
     let robot = model::builtin::husky_a200();
@@ -36,7 +36,7 @@ fn main() {
     let file = file(&robot);
     for seed in 0..8 {
         let case = Case::draw(seed, CaseKind::Healthy, 0.0, &file).unwrap();
-        let reference = record(&case.reference_world, &case.reference_drive);
+        let reference = read(&case.reference(&file).unwrap());
         let recording = record(&case.world, &case.drive);
         let found = calibrate(&robot, &reference, &Options::default()).unwrap();
         println!("healthy case {seed}: {:?} on {:?}", case.drive.kind, case.world.terrain);
@@ -50,7 +50,10 @@ fn file(robot: &Robot) -> RobotFile {
 }
 
 fn record(world: &World, drive: &Drive) -> Recording {
-    let log = simulate(world, &file(&model::builtin::husky_a200()), drive).unwrap();
+    read(&simulate(world, &file(&model::builtin::husky_a200()), drive).unwrap())
+}
+
+fn read(log: &Log) -> Recording {
     let path = std::env::temp_dir().join(format!("joulepath-healthy-{}.csv", std::process::id()));
     log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
     let recording = read_path(&path, None).unwrap().recording;

@@ -2,8 +2,10 @@
 
 use crate::search::{AS_GOOD, Found};
 
-/// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of 4.5.
-const AS_GOOD_A_NAME: f64 = 3.0;
+/// Mechanisms whose fits fall short of the best by less are as good: twice the log of a likelihood ratio of e. Of 93 weak effects that were
+/// noticed in worlds that none is scored on, the truth stood in a set of two at most 82 times and 6 sets of two were without it; with 3 it
+/// was 78 and 5, as more sets were larger.
+const AS_GOOD_A_NAME: f64 = 2.0;
 
 /// Names beside that of the winner: of all that explain as much, or else of the next, if it falls short by too little to leave the winner
 /// alone.
@@ -57,7 +59,7 @@ mod tests {
         let rivals = ["payload", "towed_load", "soft_soil", "payload"];
         let beside = |costs: [f64; 4]| as_good_names(&rivals, &costs, 0);
         assert_eq!(beside([10.0, 15.0, 14.0, 11.0]), ["soft_soil"]);
-        assert_eq!(beside([10.0, 12.0, 14.0, 10.5]), ["towed_load"]);
+        assert_eq!(beside([10.0, 11.5, 14.0, 10.5]), ["towed_load"]);
         assert!(beside([10.0, 16.5, 17.0, 10.5]).is_empty());
     }
 

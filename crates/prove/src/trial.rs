@@ -120,7 +120,7 @@ impl Trial<'_> {
         files::write(&folder.join(files::ROBOT), self.robot_json)?;
         let suspect = simulate(&case.world, robot, &case.drive).map_err(world_error)?;
         files::write_log(&suspect, &folder.join(files::RECORDING))?;
-        let healthy = simulate(&case.reference_world, robot, &case.reference_drive).map_err(world_error)?;
+        let healthy = case.reference(robot).map_err(world_error)?;
         files::write_log(&healthy, &folder.join(files::REFERENCE))?;
         SealedKey::seal(dealt, &case, robot, &folder)?.bytes(&self.key(dealt))
     }

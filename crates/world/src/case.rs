@@ -2,7 +2,7 @@
 
 use crate::{
     Drive, DriveKind, Effect, EffectName, Error, Family, Key, Log, RobotFile, Row, Sensors, Side, World,
-    plant::GRAVITY_MPS2, random::Random, simulate, world::Relief,
+    plant::GRAVITY_MPS2, random::Random, simulate, simulate_all, world::Relief,
 };
 
 /// What kind of case is drawn.
@@ -27,8 +27,8 @@ pub struct Case {
     pub drive: Drive,
     /// The same robot and sensors while nothing was concealed, on ground and with noise of their own.
     pub reference_world: World,
-    /// Drives through it, as a reference.
-    pub reference_drive: Drive,
+    /// Drives through it, as a reference: one of many speeds and turns, and one of the kind of the other drive.
+    pub reference_drives: [Drive; 2],
 }
 
 impl Case {
@@ -45,8 +45,7 @@ impl Case {
             CaseKind::Two(first, second) => vec![first, second],
         };
         let drive = drive(&mut random, &names);
-        let half_s = drive.duration_s / 2.0;
-        let reference_drive = Drive { runs: 2, ..Drive::new(DriveKind::Rich, half_s, random.seed()) };
+        let varied = Drive::new(DriveKind::Rich, HEALTHY_S, random.seed());
         let mut world = world(&mut random, &names);
         if kind == CaseKind::Decoy {
             disguise(&mut world, &mut random);
@@ -62,7 +61,8 @@ impl Case {
             }
             world.effects.push(effect);
         }
-        Ok(Case { world, drive, reference_world, reference_drive })
+        let alike = Drive { duration_s: HEALTHY_S, seed: random.seed(), ..drive.clone() };
+        Ok(Case { world, drive, reference_world, reference_drives: [varied, alike] })
     }
 
     /// Any kind: 20 % healthy, 10 % decoys, 45 % one effect, 15 % two, 10 % one that has no name.
@@ -84,6 +84,14 @@ impl Case {
         }
     }
 
+    /// What the reference drives recorded.
+    ///
+    /// # Errors
+    /// Those of [`simulate`].
+    pub fn reference(&self, robot: &RobotFile) -> Result<Log, Error> {
+        simulate_all(&self.reference_world, robot, &self.reference_drives)
+    }
+
     /// The same drive, robot and noise with nothing concealed.
     #[must_use]
     pub fn twin(&self) -> Self {
@@ -99,6 +107,10 @@ impl Case {
     }
 }
 
+/// How long drives are, and healthy ones of a reference each [s].
+const DRIVE_S: f64 = 900.0;
+const HEALTHY_S: f64 = 450.0;
+
 /// A drive on which the effects can show at all.
 fn drive(random: &mut Random, names: &[EffectName]) -> Drive {
     use EffectName as E;
@@ -110,7 +122,7 @@ fn drive(random: &mut Random, names: &[EffectName]) -> Drive {
     };
     Drive {
         speed_mps: Some(random.between(0.7, 0.9)),
-        ..Drive::new(random.pick(kinds), 900.0, random.seed())
+        ..Drive::new(random.pick(kinds), DRIVE_S, random.seed())
     }
 }
 

@@ -46,6 +46,6 @@ pub use ledger::Ledger;
 pub use log::{Log, Row};
 pub use robot::{RobotFile, example_robot};
 pub use sensors::{PowerChannels, Sensors};
-pub use simulate::{Simulation, simulate, simulate_closely};
+pub use simulate::{Simulation, simulate, simulate_all, simulate_closely};
 pub use trace::Instant;
 pub use world::{Patch, Relief, Wind, World};

@@ -81,6 +81,13 @@ impl Log {
         columns
     }
 
+    /// Adds what the same sensors recorded later on the same ground, as further runs.
+    pub(crate) fn go_on(&mut self, next: Log) {
+        let (runs, until_s) = self.rows.last().map_or((0, 0.0), |last| (last.run, last.t_s));
+        let later = |row: Row| Row { run: row.run + runs, t_s: row.t_s + until_s, ..row };
+        self.rows.extend(next.rows.into_iter().map(later));
+    }
+
     /// Writes it as comma-separated text; gaps are empty cells.
     ///
     /// # Errors

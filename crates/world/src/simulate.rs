@@ -36,7 +36,26 @@ pub fn simulate(world: &World, robot: &RobotFile, drive: &Drive) -> Result<Log, 
     simulate_closely(world, robot, drive).map(|simulation| simulation.log)
 }
 
-/// The same with the truth behind it.
+/// Drives a robot through a world several times and returns all of it as one recording, drive after drive, each with noise of its own.
+///
+/// # Errors
+/// Those of [`simulate`].
+pub fn simulate_all(world: &World, robot: &RobotFile, drives: &[Drive]) -> Result<Log, Error> {
+    let mut random = Random::new(world.seed, "drives");
+    let mut all: Option<Log> = None;
+    for drive in drives {
+        let world = World { seed: random.seed(), robot_seed: Some(world.robot_seed()), ..world.clone() };
+        let next = simulate(&world, robot, drive)?;
+        match &mut all {
+            Some(all) => all.go_on(next),
+            None => all = Some(next),
+        }
+    }
+    let nothing = || Log { sensors: world.sensors.clone(), surfaces: Vec::new(), rows: Vec::new() };
+    Ok(all.unwrap_or_else(nothing))
+}
+
+/// The same as [`simulate`] with the truth behind it.
 ///
 /// # Errors
 /// Those of [`simulate`].

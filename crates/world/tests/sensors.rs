@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use world::{Drive, DriveKind, Log, PowerChannels, Sensors, World, example_robot, simulate};
+use world::{Drive, DriveKind, Log, PowerChannels, Sensors, World, example_robot, simulate, simulate_all};
 
 fn record(sensors: Sensors, seed: u64) -> Log {
     let world = World::from_json(r#"{"terrain": {"rolling": {"grade": 0.05}}}"#).unwrap();
@@ -17,6 +17,26 @@ fn the_same_seed_records_the_same_and_another_seed_other_noise_on_the_same_drive
     assert!(bits(1) != bits(2));
     let silent = |seed| format!("{:?}", record(Sensors::perfect(), seed).rows);
     assert!(silent(1) == silent(2));
+}
+
+#[test]
+fn drives_of_one_recording_follow_one_another_and_each_has_noise_of_its_own() {
+    let drive = Drive::new(DriveKind::Rich, 60.0, 4);
+    let recorded = |sensors: Sensors, drives: &[Drive]| {
+        let world = World { sensors, ..World::from_json(r#"{"terrain": {"rolling": {}}}"#).unwrap() };
+        simulate_all(&world, &example_robot(), drives).unwrap()
+    };
+    let both = recorded(Sensors::default(), &[drive.clone(), drive.clone()]);
+    assert!(both.rows.windows(2).all(|w| w[1].t_s > w[0].t_s && w[1].run >= w[0].run));
+    let (first, second) = both.rows.split_at(both.rows.len() / 2);
+    assert!(first.iter().all(|row| row.run == 1) && second.iter().all(|row| row.run == 2));
+    let power = |rows: &[world::Row]| rows.iter().map(|row| row.battery_w.to_bits()).collect::<Vec<_>>();
+    assert_ne!(power(first), power(second));
+    // Without noise the same drive is the same again, by the same robot.
+    let both = recorded(Sensors::perfect(), &[drive.clone(), drive.clone()]);
+    let (first, second) = both.rows.split_at(both.rows.len() / 2);
+    assert_eq!(power(first), power(second));
+    assert!(recorded(Sensors::default(), &[]).rows.is_empty());
 }
 
 #[test]

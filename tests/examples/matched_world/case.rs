@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use recording::{Channel, Recording, read_paths};
-use world::{CaseKind, EffectName, RobotFile, Sensors, World, simulate};
+use world::{CaseKind, EffectName, Log, RobotFile, Sensors, simulate};
 
 /// What a case is to conceal.
 pub(crate) enum Kind {
@@ -48,8 +48,8 @@ pub(crate) fn draw(seed: u64, kind: &Kind, z: f64) -> Case {
     let scatter = SCATTER[usize::from(is_decoy && random.random_bool(0.5))];
     let robot = scattered(&file, scatter, &mut random);
     let noise = if is_decoy { random.random_range(1.0..4.0) } else { 1.0 };
-    let suspect = recorded(&case.world.without_effects(), &case.drive, &world_file);
-    let healthy = recorded(&case.reference_world, &case.reference_drive, &world_file);
+    let suspect = read(&simulate(&case.world.without_effects(), &world_file, &case.drive).unwrap());
+    let healthy = read(&case.reference(&world_file).unwrap());
     let plain = imitate(&robot, &suspect, &[]).unwrap();
     let truths: Vec<Applied> =
         names.iter().map(|one| of_strength(*one, &robot, &suspect, &plain, z, &mut random)).collect();
@@ -62,10 +62,10 @@ pub(crate) fn draw(seed: u64, kind: &Kind, z: f64) -> Case {
     }
 }
 
-fn recorded(world: &World, drive: &world::Drive, file: &RobotFile) -> Recording {
+fn read(log: &Log) -> Recording {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("drive.csv");
-    simulate(world, file, drive).unwrap().write_csv(std::fs::File::create(&path).unwrap()).unwrap();
+    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
     read_paths(&[path], None).unwrap().0
 }
 
