@@ -56,8 +56,7 @@ pub(crate) fn refuse(
         let mechanism = mechanism.name();
         tried.push(mechanism);
         let is_shown = unshown::doubt(series, state, which).is_none();
-        let stand_in =
-            if is_shown { stand_in(series, file, (state, which), &tried, doubts)? } else { None };
+        let stand_in = if is_shown { stand_in(series, file, (state, which), &tried, doubts)? } else { None };
         if let Some(next) = stand_in {
             *state = next;
         } else if let Some(next) = beside(series, file, state, doubts, null)? {
