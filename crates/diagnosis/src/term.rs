@@ -149,6 +149,11 @@ impl Term {
         1 + self.groups.len() + usize::from(self.on != On::Both) + 2 * self.span.bounds()
     }
 
+    /// Whether it goes with one quantity at most and acts all the time.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.groups.len() <= 1 && self.span.is_all()
+    }
+
     /// Whether it goes with nothing but the angle that wheels have turned.
     pub(crate) fn is_turn(&self) -> bool {
         self.scale == Scale::Force
