@@ -1,5 +1,7 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
+mod held_out;
+
 use std::sync::Arc;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -207,72 +209,6 @@ impl System {
             square.cholesky().map_or(0.0, |root| right.dot(&root.solve(&right)))
         };
         candidates.iter().map(of).collect()
-    }
-
-    /// All columns over the recorded rows, those of a candidate last, and the weight of what is known before of each.
-    fn dense(&self, columns: &[Vec<f64>]) -> (DMatrix<f64>, DVector<f64>) {
-        let always = self.columns.ncols();
-        let shared = shared::count(&self.shared);
-        let count = always + shared + columns.len();
-        let mut with = DMatrix::zeros(self.rows, count);
-        let mut known = DVector::zeros(count);
-        with.view_mut((0, 0), (self.rows, always)).copy_from(&self.columns.rows(0, self.rows));
-        for j in 0..always {
-            known[j] = self.columns[(self.rows + j, j)].powi(2);
-        }
-        let mut at = always;
-        for one in self.shared.iter() {
-            for j in 0..one.columns.ncols() {
-                one.places
-                    .iter()
-                    .enumerate()
-                    .for_each(|(i, place)| with[(*place, at + j)] = one.columns[(i, j)]);
-                known[at + j] = 1.0;
-            }
-            at += one.columns.ncols();
-        }
-        for (j, column) in columns.iter().enumerate() {
-            with.view_mut((0, at + j), (self.rows, 1)).copy_from_slice(column);
-        }
-        (with, known)
-    }
-
-    /// What is known before of all columns, as a right-hand side.
-    fn known_before(&self, known: &DVector<f64>) -> DVector<f64> {
-        let always = self.columns.ncols();
-        DVector::from_fn(known.len(), |j, _| {
-            if j < always { known[j].sqrt() * self.errors[self.rows + j] } else { 0.0 }
-        })
-    }
-
-    /// Drop of squared errors block by block when each tenth of the blocks is judged by a fit of the others.
-    pub(crate) fn held_out(&self, columns: &[Vec<f64>], folds: usize) -> Vec<f64> {
-        let (with, known) = self.dense(columns);
-        let count = with.ncols() - columns.len();
-        let all = (
-            with.transpose() * &with + DMatrix::from_diagonal(&known),
-            with.tr_mul(&self.errors.rows(0, self.rows)) + self.known_before(&known),
-        );
-        let mut gains = vec![0.0; self.blocks];
-        // Whole stretches of neighbouring blocks are left out together.
-        let fold = |block: usize| block * folds / self.blocks.max(1);
-        for out in 0..folds {
-            let rows: Vec<usize> = (0..self.rows).filter(|i| fold(self.block[*i]) == out).collect();
-            let part = DMatrix::from_fn(rows.len(), with.ncols(), |i, j| with[(rows[i], j)]);
-            let errors = DVector::from_fn(rows.len(), |i, _| self.errors[rows[i]]);
-            let square = &all.0 - part.transpose() * &part;
-            let right = &all.1 - part.tr_mul(&errors);
-            let solve = |n: usize| {
-                let square = square.view((0, 0), (n, n)).into_owned();
-                root(square).map(|root| root.solve(&right.rows(0, n)))
-            };
-            let (Some(before), Some(after)) = (solve(count), solve(with.ncols())) else { continue };
-            let left = [&errors - part.columns(0, count) * before, &errors - &part * after];
-            for (k, i) in rows.iter().enumerate() {
-                gains[self.block[*i]] += left[0][k].powi(2) - left[1][k].powi(2);
-            }
-        }
-        gains
     }
 }
 

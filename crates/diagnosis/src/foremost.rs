@@ -48,12 +48,18 @@ impl Foremost {
         let families = candidates::all(series, &base.robot, applied, &base.predicted_w)?;
         let scales = Scales::new(series, base, null, &families);
         let best_of = |family: &Family| {
-            let candidates: Vec<Candidate> = family.candidates(series).collect();
+            let mut candidates = family.candidates(series);
             let mut best = [Vec::new(), Vec::new()];
-            for one in candidates.chunks(TOGETHER).flat_map(|some| scales.weigh_all(some)).flatten() {
-                best.iter_mut().zip(MEASURES).for_each(|(best, measure)| take(best, &one, measure));
+            // All at once would take gigabytes of long drives.
+            loop {
+                let some: Vec<Candidate> = candidates.by_ref().take(TOGETHER).collect();
+                if some.is_empty() {
+                    break best;
+                }
+                for one in scales.weigh_all(&some).iter().flatten() {
+                    best.iter_mut().zip(MEASURES).for_each(|(best, measure)| take(best, one, measure));
+                }
             }
-            best
         };
         let of_families: Vec<[Vec<Weighed>; 2]> = families.par_iter().map(best_of).collect();
         let best_by = |which: usize, measure: Measure| -> Result<Vec<Weighed>, Error> {
