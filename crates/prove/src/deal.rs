@@ -29,10 +29,11 @@ pub struct Dealt {
     pub seed: u64,
 }
 
-/// Deals the cases of a trial, in random order: of all kinds, or only of one.
+/// Deals the cases of a trial, in random order: of all kinds, or only of one, and of all strengths or of one share of power.
 ///
-/// Every mechanism comes up once before one comes up twice, and with every strength before one strength repeats.
-pub fn deal(cases: usize, seed: u64, only: Option<Kind>) -> Vec<Dealt> {
+/// Every mechanism comes up once before one comes up twice, and with every strength before one strength repeats, as each time round
+/// every one has another.
+pub fn deal(cases: usize, seed: u64, only: Option<Kind>, share: Option<f64>) -> Vec<Dealt> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let [healthy, decoys, ones, twos, unlisted] =
         only.map_or_else(|| counts(cases), |only| KINDS.map(|kind| if kind == only { cases } else { 0 }));
@@ -42,9 +43,10 @@ pub fn deal(cases: usize, seed: u64, only: Option<Kind>) -> Vec<Dealt> {
     shuffle(&mut others, &mut random);
     let mut kinds = vec![(CaseKind::Healthy, 0.0); healthy];
     kinds.extend(vec![(CaseKind::Decoy, 0.0); decoys]);
-    kinds.extend((0..ones).map(|i| (CaseKind::One(listed[i % listed.len()]), share(i, listed.len()))));
-    kinds.extend((0..twos).map(|i| (two(&listed, &mut random), share(i, listed.len()))));
-    kinds.extend((0..unlisted).map(|i| (CaseKind::One(others[i % others.len()]), share(i, others.len()))));
+    let strength = |i: usize, deck: usize| share.unwrap_or(SHARES[(i + i / deck) % SHARES.len()]);
+    kinds.extend((0..ones).map(|i| (CaseKind::One(listed[i % listed.len()]), strength(i, listed.len()))));
+    kinds.extend((0..twos).map(|i| (two(&listed, &mut random), strength(i, listed.len()))));
+    kinds.extend((0..unlisted).map(|i| (CaseKind::One(others[i % others.len()]), strength(i, others.len()))));
     shuffle(&mut kinds, &mut random);
     let numbered = kinds.into_iter().enumerate();
     numbered
@@ -56,11 +58,6 @@ pub fn deal(cases: usize, seed: u64, only: Option<Kind>) -> Vec<Dealt> {
             seed: random.random::<u64>() >> 12,
         })
         .collect()
-}
-
-/// The strength of the i-th draw from a deck; each time round the deck every card has another.
-fn share(i: usize, deck: usize) -> f64 {
-    SHARES[(i + i / deck) % SHARES.len()]
 }
 
 fn names(wanted: impl Fn(Family) -> bool) -> Vec<EffectName> {
@@ -104,8 +101,8 @@ mod tests {
 
     #[test]
     fn the_same_seed_deals_the_same_and_another_seed_something_else() {
-        assert_eq!(deal(30, 7, None), deal(30, 7, None));
-        assert_ne!(deal(30, 7, None), deal(30, 8, None));
+        assert_eq!(deal(30, 7, None, None), deal(30, 7, None, None));
+        assert_ne!(deal(30, 7, None, None), deal(30, 8, None, None));
     }
 
     #[test]
@@ -120,7 +117,7 @@ mod tests {
 
     #[test]
     fn mechanisms_and_strengths_come_round_evenly() {
-        let dealt = deal(400, 1, None);
+        let dealt = deal(400, 1, None, None);
         for name in names(|family| family != Family::Unlisted) {
             let mut shares: Vec<f64> =
                 dealt.iter().filter(|d| d.kind == CaseKind::One(name)).map(|d| d.share).collect();
@@ -133,16 +130,17 @@ mod tests {
 
     #[test]
     fn only_cases_of_one_kind_are_dealt_where_it_is_asked_for() {
-        let dealt = deal(20, 3, Some(Kind::Unlisted));
+        let dealt = deal(20, 3, Some(Kind::Unlisted), None);
         let is_unlisted =
             |d: &Dealt| matches!(d.kind, CaseKind::One(name) if name.family() == Family::Unlisted);
         assert!(dealt.len() == 20 && dealt.iter().all(is_unlisted), "{dealt:?}");
-        assert!(deal(7, 3, Some(Kind::Decoy)).iter().all(|d| d.kind == CaseKind::Decoy));
+        assert!(deal(20, 3, None, Some(0.02)).iter().all(|d| d.share == 0.0 || d.share == 0.02));
+        assert!(deal(7, 3, Some(Kind::Decoy), None).iter().all(|d| d.kind == CaseKind::Decoy));
     }
 
     #[test]
     fn names_of_cases_tell_nothing() {
-        let [a, b] = [deal(12, 1, None), deal(12, 2, None)].map(|dealt| {
+        let [a, b] = [deal(12, 1, None, None), deal(12, 2, None, None)].map(|dealt| {
             let names: Vec<String> = dealt.into_iter().map(|d| d.name).collect();
             names
         });

@@ -32,6 +32,8 @@ pub struct Trial<'a> {
     pub seed: u64,
     /// The only kind of case that is dealt, if not all are.
     pub only: Option<Kind>,
+    /// How strong all effects are, as a share of power, if they are not of all strengths.
+    pub share: Option<f64>,
     /// The robot when it is healthy, as its file says.
     pub robot_json: &'a str,
     /// Where everything is written.
@@ -58,7 +60,7 @@ impl Trial<'_> {
     /// Files that cannot be written; a key or case that changed between commitment and opening.
     pub fn run(&self) -> Result<Scoreboard, Error> {
         let robot = RobotFile::from_json(self.robot_json).map_err(Error::Robot)?;
-        let dealt = deal(self.cases, self.seed, self.only);
+        let dealt = deal(self.cases, self.seed, self.only, self.share);
         for folder in ["cases", "keys", "twins"] {
             files::folder(&self.out.join(folder))?;
         }

@@ -43,6 +43,7 @@ fn run(
         cases: 5,
         seed: 11,
         only: None,
+        share: None,
         robot_json: &robot_json,
         out,
         diagnosis: Diagnosis { program: program.to_owned(), threads: 1 },

@@ -15,6 +15,8 @@ use recording::read_paths;
 
 use crate::{failure::BadInput, progress};
 
+/// Shares of power that effects can be given.
+const SHARES: [f64; 2] = [0.002, 0.5];
 /// Most cases of a trial: at some ten seconds each on a core, a night's work.
 const MOST_CASES: usize = 10_000;
 
@@ -29,6 +31,9 @@ pub(crate) struct Arguments {
     /// Only cases of one kind, instead of all kinds
     #[arg(long)]
     only: Option<Only>,
+    /// How strong every effect is, as a share of power; otherwise 1.2, 3, 6 and 12 % take turns
+    #[arg(long)]
+    share: Option<f64>,
     /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
     #[arg(long)]
     out: PathBuf,
@@ -77,6 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         cases: arguments.cases,
         seed: arguments.seed,
         only: arguments.only.map(Kind::from),
+        share: arguments.share,
         robot_json: &robot_json,
         out: &arguments.out,
         // Cases side by side use the cores better than threads within one.
@@ -98,6 +104,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn check(arguments: &Arguments) -> Result<(), BadInput> {
     if !(1..=MOST_CASES).contains(&arguments.cases) {
         return Err(BadInput(format!("--cases {} must lie in 1 to {MOST_CASES}", arguments.cases)));
+    }
+    let [low, high] = SHARES;
+    if let Some(share) = arguments.share.filter(|share| !(low..=high).contains(share)) {
+        return Err(BadInput(format!(
+            "--share {share} must lie in {low} to {high}, such as 0.012 for 1.2 %"
+        )));
     }
     let out = &arguments.out;
     let is_new = !out.exists() || out.read_dir().is_ok_and(|mut entries| entries.next().is_none());
