@@ -52,6 +52,8 @@ fn wrong_arguments_are_refused_before_anything_is_drawn() {
         (room.path(), ["--cases", "6"], "empty folder"),
         (&fresh, ["--cases", "0"], "--cases 0"),
         (&fresh, ["--cases", "99999999"], "--cases"),
+        (&fresh, ["--share", "2"], "--share 2"),
+        (&fresh, ["--share", "NaN"], "--share NaN"),
     ] {
         let output = prove(out, &more);
         let message = String::from_utf8(output.stderr).unwrap();

@@ -96,3 +96,106 @@ impl System {
         (DMatrix::from_diagonal(&squares), right)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::{evidence::Fitted, shared::Shared};
+
+    const ROWS: usize = 60;
+    const BLOCKS: usize = 12;
+    const FOLDS: usize = 4;
+
+    /// Columns unlike each other, and errors of which the last one holds a part.
+    struct Given {
+        columns: Vec<Vec<f64>>,
+        /// Of the even rows only.
+        shared: Vec<Vec<f64>>,
+        candidate: Vec<f64>,
+        errors: Vec<f64>,
+    }
+
+    fn given() -> Given {
+        let column = |which: usize, rows: usize| -> Vec<f64> {
+            (0..rows).map(|i| (1.7 * i as f64 + (i * i * (which + 1)) as f64).sin()).collect()
+        };
+        let columns = vec![column(0, ROWS), column(1, ROWS)];
+        let shared = vec![column(2, ROWS / 2), column(3, ROWS / 2)];
+        let (candidate, noise) = (column(4, ROWS), column(5, ROWS));
+        let errors = noise.iter().zip(&candidate).map(|(noise, x)| noise + 2.0 * x).collect();
+        Given { columns, shared, candidate, errors }
+    }
+
+    fn block(row: usize) -> usize {
+        row * BLOCKS / ROWS
+    }
+
+    fn system(given: &Given, unit: f64) -> System {
+        let even: Vec<usize> = (0..ROWS).step_by(2).collect();
+        let shared: Arc<[Shared]> = Shared::new(even, &given.shared).into_iter().collect();
+        let scaled: Vec<f64> = given.columns[1].iter().map(|x| unit * x).collect();
+        let columns = [given.columns[0].clone(), scaled];
+        // Something is known before of the first, and nothing of the second.
+        let fitted = Fitted { columns: &columns, known: &[1.5, 0.0], offset: &[0.7, 0.0], shared: &shared };
+        System::new(given.errors.clone(), &fitted, ((0..ROWS).map(block).collect(), vec![0; ROWS]))
+    }
+
+    /// The same by least squares over rows, each written down.
+    fn by_hand(given: &Given) -> Vec<f64> {
+        let row = |i: usize, with: bool| {
+            let shared = given.shared.iter().map(|c| if i.is_multiple_of(2) { c[i / 2] } else { 0.0 });
+            let own = given.columns.iter().map(|c| c[i]);
+            own.chain(shared).chain(with.then_some(given.candidate[i])).collect::<Vec<f64>>()
+        };
+        let fold = |i: usize| block(i) * FOLDS / BLOCKS;
+        let left = |i: usize, with: bool| {
+            let others: Vec<usize> = (0..ROWS).filter(|other| fold(*other) != fold(i)).collect();
+            let count = 4 + usize::from(with);
+            let known = [[1.5, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+            let matrix = DMatrix::from_fn(others.len() + 3, count, |k, j| match others.get(k) {
+                Some(other) => row(*other, with)[j],
+                None => known[k - others.len()].get(j).copied().unwrap_or(0.0),
+            });
+            let right = DVector::from_fn(others.len() + 3, |k, _| match others.get(k) {
+                Some(other) => given.errors[*other],
+                None => [0.7, 0.0, 0.0][k - others.len()],
+            });
+            let found = matrix.svd(true, true).solve(&right, 1e-12).unwrap();
+            given.errors[i] - row(i, with).iter().zip(found.iter()).map(|(x, value)| x * value).sum::<f64>()
+        };
+        let mut gains = vec![0.0; BLOCKS];
+        (0..ROWS).for_each(|i| gains[block(i)] += left(i, false).powi(2) - left(i, true).powi(2));
+        gains
+    }
+
+    #[test]
+    fn blocks_gain_what_least_squares_without_their_neighbours_says() {
+        let given = given();
+        let gains = system(&given, 1.0).held_out(std::slice::from_ref(&given.candidate), FOLDS);
+        let by_hand = by_hand(&given);
+        for (gain, by_hand) in gains.iter().zip(&by_hand) {
+            assert!((gain - by_hand).abs() < 1e-6, "{gains:?} {by_hand:?}");
+        }
+        assert!(by_hand.iter().sum::<f64>() > 10.0, "the errors hold it");
+    }
+
+    #[test]
+    fn neither_the_unit_of_a_candidate_nor_that_of_what_stands_beside_it_matters() {
+        let given = given();
+        let tiny: Vec<f64> = given.candidate.iter().map(|x| 1e-9 * x).collect();
+        let [one, other] = [(1.0, &given.candidate), (1e-9, &tiny)].map(|(unit, candidate)| {
+            let system = system(&given, unit);
+            (
+                system.held_out(std::slice::from_ref(candidate), FOLDS),
+                system.weigh(&[candidate.clone()]).unwrap(),
+            )
+        });
+        for (a, b) in one.0.iter().zip(&other.0) {
+            assert!((a - b).abs() < 1e-6 * (1.0 + a.abs()), "{:?} {:?}", one.0, other.0);
+        }
+        assert!((other.1.wald / one.1.wald - 1.0).abs() < 1e-6);
+        assert!((1e-9 * other.1.values[0] / one.1.values[0] - 1.0).abs() < 1e-6);
+    }
+}
