@@ -23,8 +23,8 @@ pub(crate) fn of_channel(averages: &[Average], places: &[usize], mean_w: f64) ->
         (size > 0.0).then(|| values.iter().map(|x| x / size * share * mean_w).collect())
     };
     let known = SHARED.iter().map(|function| (function, SHARE));
-    let of_curves = OF_CURVES.iter().map(|function| (function, SHARE_OF_WHAT_IS_LIKE_EFFECTS));
-    known.chain(of_curves).filter_map(column).collect()
+    let little = OF_CURVES.iter().chain(&OF_STARTS).map(|function| (function, SHARE_OF_WHAT_IS_LIKE_EFFECTS));
+    known.chain(little).filter_map(column).collect()
 }
 
 /// The same of every channel, over all averages.
@@ -65,7 +65,7 @@ const SHARED: [fn(&Input) -> f64; 14] = [
 
 /// Functions of speed times turn tell what a curve that is driven faster than healthy drives did takes on top: with turn alone, half
 /// circles of a robot in order passed for a gain of its meters.
-const OF_CURVES: [fn(&Input) -> f64; 8] = [
+const OF_CURVES: [fn(&Input) -> f64; 7] = [
     |x| sideways(x),
     |x| sideways(x) * sideways(x),
     |x| sideways(x) * x.difference_mps.abs(),
@@ -73,8 +73,24 @@ const OF_CURVES: [fn(&Input) -> f64; 8] = [
     |x| (x.rim_mps * x.difference_mps).abs(),
     |x| x.rim_mps * x.difference_mps * x.difference_mps.abs(),
     |x| x.difference_mps.abs() * x.roll_rad,
-    |x| x.rim_mps.abs() * (-x.moving_s / MOVING_S).exp(),
 ];
+
+/// What wheels, treads and gears take until they roll, which no model of a whole robot tells: terms that go with having just stood still
+/// were all that was found in robots in order.
+const OF_STARTS: [fn(&Input) -> f64; 4] = [
+    starting,
+    |x| starting(x) * x.rim_mps.abs(),
+    |x| starting(x) * x.rim_mps.abs() * (-x.rim_mps.abs() / CREEPING_MPS).exp(),
+    |x| starting(x) * x.rim_mps * x.accel_mps2,
+];
+/// Speeds over which a robot no longer creeps, and no longer stands [m/s].
+const CREEPING_MPS: f64 = 0.2;
+const STANDING_MPS: f64 = 0.05;
+
+/// 1 as a robot begins to move, and next to nothing some seconds later; 0 while it stands.
+fn starting(x: &Input) -> f64 {
+    (x.rim_mps.abs() / STANDING_MPS).tanh() * (-x.moving_s / MOVING_S).exp()
+}
 
 /// Acceleration towards the inside of a curve, times the track [m²/s²].
 fn sideways(x: &Input) -> f64 {
