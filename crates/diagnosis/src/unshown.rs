@@ -1,10 +1,6 @@
 //! Mechanisms that go with what hardly differed: drives of one speed do not show that friction grows with speed.
 
-use crate::{
-    average::Average,
-    search::{State, is_told},
-    series::Series,
-};
+use crate::{average::Average, search::State, series::Series};
 
 /// Standard deviation of speed on the way, over its mean, below which drives are of one speed. There and back in lanes it is 0.11, by the
 /// ends of lanes alone; where drivers change speed as they please, or stop and go, 0.38 to 0.49 (drives of the independent world).
@@ -13,12 +9,11 @@ const LEAST_DIFFERENCE: f64 = 0.2;
 const STANDING_MPS: f64 = 0.05;
 
 /// That drives do not show what one of several mechanisms says, in words. The fit tells it from others then by how curves differ from
-/// straight lines only, which healthy drives have to show the model to know. Nothing that explains as much is in its place: what the
-/// curves show is neither.
+/// straight lines only, in which furrows, fans and resonances do as well. Nothing that explains as much is in its place: what the curves
+/// show is neither.
 pub(crate) fn doubt(series: &Series, state: &State, which: usize) -> Option<String> {
     let name = state.found[which].applied.mechanism.name();
-    let is_shown = name != "speed_dependent_friction" || is_told(series);
-    (!is_shown && difference(&series.averages) < LEAST_DIFFERENCE)
+    (name == "speed_dependent_friction" && difference(&series.averages) < LEAST_DIFFERENCE)
         .then(|| "the drives are of one speed, so that growing with speed is not shown".to_owned())
 }
 
