@@ -189,7 +189,7 @@ mod tests {
             let system = system(&given, unit);
             (
                 system.held_out(std::slice::from_ref(candidate), FOLDS),
-                system.weigh(&[candidate.clone()]).unwrap(),
+                system.weigh(std::slice::from_ref(candidate)).unwrap(),
             )
         });
         for (a, b) in one.0.iter().zip(&other.0) {
