@@ -6,7 +6,7 @@ mod worlds;
 
 use diagnosis::{Diagnosis, Finding, Question, Verdict, diagnose};
 use model::Robot;
-use recording::Recording;
+use recording::{Channel, Recording};
 use world::{Effect, EffectName, Side};
 use worlds::drive;
 
@@ -71,6 +71,22 @@ fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
     let found = said(&robot, &drive(34, 900.0, vec![brake]), &record(31, vec![]));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
+}
+
+#[test]
+fn what_happened_once_is_no_evidence_but_is_said() {
+    // On grass for half a minute, and never again.
+    let robot = model::builtin::husky_a200();
+    let mut suspect = record(32, vec![]);
+    for side in [Channel::LeftPower, Channel::RightPower] {
+        let power_w = suspect.channels.get_mut(&side).unwrap();
+        power_w[3000..3300].iter_mut().for_each(|w| *w += 60.0);
+    }
+    let found = said(&robot, &suspect, &record(31, vec![]));
+    assert!(found.findings.is_empty(), "{}", found.sentence);
+    assert!(found.sentence.contains("from 300 to 320 s power was off by"), "{}", found.sentence);
+    let quiet = said(&robot, &record(32, vec![]), &record(31, vec![]));
+    assert!(quiet.sentence.starts_with("Nothing is missing"), "{}", quiet.sentence);
 }
 
 #[test]

@@ -132,7 +132,7 @@ pub fn diagnose_watched(
         corrected_robot,
         trace: judged.trace(&series, suspect),
     };
-    diagnosis.sentence = words::sentence(&diagnosis, &found.refused);
+    diagnosis.sentence = words::sentence(&diagnosis, &found.refused, judged.event(&series));
     progress("done", 1.0);
     Ok(diagnosis)
 }

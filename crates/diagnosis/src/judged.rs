@@ -7,6 +7,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     discovered::Discovered,
+    event::event,
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
@@ -130,6 +131,13 @@ impl Judged {
             false if is_alone => Verdict::Explained,
             false => Verdict::Ambiguous,
         }
+    }
+
+    /// What happened a few times only, in words, where far more is left than usual.
+    pub(crate) fn event(&self, series: &Series) -> Option<String> {
+        let errors_w = &self.steps.last()?.held_out_w;
+        let is_event = self.missed().is_most();
+        is_event.then(|| event(series, errors_w, self.baseline.noise_floor_w)).flatten()
     }
 
     /// What is left of the difference.

@@ -22,6 +22,7 @@ mod discrepancy;
 mod doubts;
 mod edges;
 mod error;
+mod event;
 mod everywhere;
 mod evidence;
 mod explainable;

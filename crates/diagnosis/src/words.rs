@@ -9,9 +9,16 @@ use crate::{
 /// Percents of an error that follow from what was recorded and are not worth a word.
 const LITTLE_LEFT: f64 = 6.0;
 
-/// The verdict in a sentence, and what comes closest without being it.
-pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused]) -> String {
-    let mut text = verdict(found, !refused.is_empty());
+/// The verdict in a sentence, and what comes closest without being it; `event` is what happened too seldom to be evidence.
+pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<String>) -> String {
+    let mut text = match event.filter(|_| found.verdict == Verdict::Consistent) {
+        Some(event) => format!(
+            "Nothing that comes again is missing, but {event}, where {:.1} W are noise; once is no evidence of what it was: drive the \
+             same again.",
+            found.baseline.noise_floor_w
+        ),
+        None => verdict(found, !refused.is_empty()),
+    };
     for Refused { mechanism, why, .. } in refused {
         text += &format!(" {} would explain part of it, but {why}.", capital(plain(mechanism)));
     }
