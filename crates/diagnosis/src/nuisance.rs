@@ -76,12 +76,10 @@ const OF_CURVES: [fn(&Input) -> f64; 7] = [
 ];
 
 /// What wheels, treads and gears take until they roll, which no model of a whole robot tells: terms that go with having just stood still
-/// were all that was found in robots in order.
-const OF_STARTS: [fn(&Input) -> f64; 4] = [
-    starting,
+/// were all that was found in robots in order. With a power and a share of acceleration as well, real ice was taken up in parts.
+const OF_STARTS: [fn(&Input) -> f64; 2] = [
     |x| starting(x) * x.rim_mps.abs(),
     |x| starting(x) * x.rim_mps.abs() * (-x.rim_mps.abs() / CREEPING_MPS).exp(),
-    |x| starting(x) * x.rim_mps * x.accel_mps2,
 ];
 /// Speeds over which a robot no longer creeps, and no longer stands [m/s].
 const CREEPING_MPS: f64 = 0.2;

@@ -23,7 +23,8 @@ fn the_same_seed_records_the_same_and_another_seed_other_noise_on_the_same_drive
 fn drives_of_one_recording_follow_one_another_and_each_has_noise_of_its_own() {
     let drive = Drive::new(DriveKind::Rich, 60.0, 4);
     let recorded = |sensors: Sensors, drives: &[Drive]| {
-        let world = World { sensors, ..World::from_json(r#"{"terrain": {"rolling": {"grade": 0.03}}}"#).unwrap() };
+        let world =
+            World { sensors, ..World::from_json(r#"{"terrain": {"rolling": {"grade": 0.03}}}"#).unwrap() };
         simulate_all(&world, &example_robot(), drives).unwrap()
     };
     let both = recorded(Sensors::default(), &[drive.clone(), drive.clone()]);
