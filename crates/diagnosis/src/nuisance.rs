@@ -76,19 +76,8 @@ const OF_CURVES: [fn(&Input) -> f64; 7] = [
 ];
 
 /// What wheels, treads and gears take until they roll, which no model of a whole robot tells: terms that go with having just stood still
-/// were all that was found in robots in order. With a power and a share of acceleration as well, real ice was taken up in parts.
-const OF_STARTS: [fn(&Input) -> f64; 2] = [
-    |x| starting(x) * x.rim_mps.abs(),
-    |x| starting(x) * x.rim_mps.abs() * (-x.rim_mps.abs() / CREEPING_MPS).exp(),
-];
-/// Speeds over which a robot no longer creeps, and no longer stands [m/s].
-const CREEPING_MPS: f64 = 0.2;
-const STANDING_MPS: f64 = 0.05;
-
-/// 1 as a robot begins to move, and next to nothing some seconds later; 0 while it stands.
-fn starting(x: &Input) -> f64 {
-    (x.rim_mps.abs() / STANDING_MPS).tanh() * (-x.moving_s / MOVING_S).exp()
-}
+/// were all that was found in robots in order. With more forms of it real ice was taken up in parts.
+const OF_STARTS: [fn(&Input) -> f64; 1] = [|x| x.rim_mps.abs() * (-x.moving_s / MOVING_S).exp()];
 
 /// Acceleration towards the inside of a curve, times the track [m²/s²].
 fn sideways(x: &Input) -> f64 {
