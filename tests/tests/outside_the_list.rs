@@ -84,7 +84,11 @@ fn what_happened_once_is_no_evidence_but_is_said() {
     }
     let found = said(&robot, &suspect, &record(31, vec![]));
     assert!(found.findings.is_empty(), "{}", found.sentence);
-    assert!(found.sentence.contains("from 300 to 320 s power was off by"), "{}", found.sentence);
+    assert!(
+        found.sentence.contains("from 300 to 320 s the power of a side was off by"),
+        "{}",
+        found.sentence
+    );
     let quiet = said(&robot, &record(32, vec![]), &record(31, vec![]));
     assert!(quiet.sentence.starts_with("Nothing is missing"), "{}", quiet.sentence);
 }

@@ -34,8 +34,9 @@ pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<S
         names if names.len() > 1 => format!(" of drive {}", names.get(average.run)?),
         _ => String::new(),
     };
+    let power = if series.channels() == 2 { "the power of a side" } else { "power" };
     Some(format!(
-        "from {from_s:.0} to {:.0} s{drive} power was off by {:.0} W, root mean square",
+        "from {from_s:.0} to {:.0} s{drive} {power} was off by {:.0} W, root mean square",
         from_s + BLOCK_S,
         (sum_w2 / count + floor_w.powi(2)).sqrt()
     ))
