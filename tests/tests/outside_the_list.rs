@@ -49,6 +49,17 @@ fn descriptions_tell_what_it_goes_with_and_take_most_of_what_is_missing() {
 }
 
 #[test]
+fn what_a_robot_in_order_does_as_well_is_nothing_that_is_missing() {
+    let robot = model::builtin::husky_a200();
+    // Furrows are of the ground, and all others of the robot.
+    for (effect, strength, _) in DESCRIBED.into_iter().filter(|one| one.0 != EffectName::Furrows) {
+        let effect = || vec![Effect::new(effect, strength)];
+        let found = said(&robot, &record(32, effect()), &record(31, effect()));
+        assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+    }
+}
+
+#[test]
 fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
     // In the first drive what else would be found beside it hides that it fades, until that is left out.
     let robot = model::builtin::husky_a200();

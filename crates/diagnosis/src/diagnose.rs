@@ -8,7 +8,7 @@ use crate::{
     Error,
     alternatives::{Explanation, alternatives, detectable},
     corrected::corrected,
-    discover::{Sure, discover},
+    discover::discover,
     doubts::doubts,
     judged::Judged,
     next_drive::next_drive,
@@ -87,14 +87,13 @@ pub fn diagnose_watched(
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    let open = match judged.verdict(&found) {
-        Verdict::Unexplained if series.has_healthy() => Some(Sure::AsUsual),
-        Verdict::Consistent if series.has_healthy() => Some(Sure::Very),
-        _ => series.turning.is_some().then_some(Sure::AsUsual),
+    let is_open = match judged.verdict(&found) {
+        Verdict::Consistent | Verdict::Unexplained if series.has_healthy() => true,
+        _ => series.turning.is_some(),
     };
-    if let Some(sure) = open {
+    if is_open {
         progress("looking outside the list", 0.75);
-        let terms = discover(&series, &found.after, &applied, &found.refused, (&found.null, sure))?;
+        let terms = discover(&series, &found.after, &applied, &found.refused, &found.null)?;
         judged.take_up(&series, &found, terms)?;
     }
     progress("locating the difference", 0.8);

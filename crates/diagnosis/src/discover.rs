@@ -7,6 +7,7 @@ use crate::{
     baseline::Baseline,
     candidates::{self, Family},
     discovered::{Discovered, UNKNOWN},
+    everywhere,
     evidence::{Evidence, System, TOGETHER},
     gates::{LEVEL, cosine, passes, spread},
     noise::Whitening,
@@ -30,25 +31,6 @@ const LEAST_SPREAD: f64 = 2.5;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
-/// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
-/// something, and a hundred times surer where they leave nothing that is more than usual. In 140 drives of robots in order, on seeds that
-/// none is scored on, the surest that passed the other gates came to 3e-4; one of 24 that were scored later came to 2e-5 (creeping, having
-/// just stood still), so that this level is no guarantee.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sure {
-    AsUsual,
-    Very,
-}
-
-impl Sure {
-    fn level(self) -> f64 {
-        match self {
-            Sure::AsUsual => LEVEL,
-            Sure::Very => LEVEL / 100.0,
-        }
-    }
-}
-
 /// Terms that explain what is left beside a robot with mechanisms, the strongest first; none where none passes the gates.
 ///
 /// # Errors
@@ -58,7 +40,7 @@ pub(crate) fn discover(
     base: &Baseline,
     applied: &[Applied],
     refused: &[Refused],
-    (null, first): (&Null, Sure),
+    null: &Null,
 ) -> Result<Vec<Discovered>, Error> {
     let of_mechanisms = applied.iter().map(|one| one.span).chain(refused.iter().map(|one| one.span));
     let mut terms = term::of_drives(series, &base.robot, of_mechanisms);
@@ -72,8 +54,7 @@ pub(crate) fn discover(
         // What spectra show comes first, and other terms beside it.
         let is_tried = |term: &&Term| series.turning.is_none() || !found.is_empty() || term.is_turn();
         let tried: Vec<&Term> = terms.iter().filter(is_tried).collect();
-        let level = if found.is_empty() && series.turning.is_none() { first.level() } else { LEVEL };
-        let beside = Beside::new(series, base, null, &taken, (Choices::of(&terms), level));
+        let beside = Beside::new(series, base, null, &taken, Choices::of(&terms));
         let Some(next) = beside.strongest(&tried) else { break };
         found.push(next);
     }
@@ -93,8 +74,6 @@ struct Beside<'a> {
     white: Whitening,
     /// Among how many terms one is chosen.
     choices: Choices,
-    /// Largest chance that passes at last.
-    level: f64,
 }
 
 /// How many terms are tried that go with one quantity at most and always act, and how many others.
@@ -137,23 +116,19 @@ impl<'a> Beside<'a> {
         base: &'a Baseline,
         null: &'a Null,
         taken: &[Vec<f64>],
-        (choices, level): (Choices, f64),
+        choices: Choices,
     ) -> Self {
         let (system, white) = (system_with(series, base, taken), base.whitening(series));
-        Beside { series, base, null, system, white, choices, level }
+        Beside { series, base, null, system, white, choices }
     }
 
-    /// What passes every gate and explains most, if what passes is sure enough.
+    /// What passes every gate and explains most.
     ///
     /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most. A
     /// moment is no evidence that something acts: drives turn for seconds only, in which it goes with all that the model misses of turns.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
         let told = self.told(tried);
-        let surest =
-            told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
-        if surest.p_value > self.level {
-            return None;
-        }
+        told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
         let (mut best, mut held_out_gain) = self.closest(told)?;
         // Since when it acts, and what else it goes with, is looked for about what was tried.
         let mut near = [around(self.series, best.term), best.term.with_one_more()];
@@ -182,15 +157,15 @@ impl<'a> Beside<'a> {
         told.into_iter().find_map(|one| self.gain(&one).map(|gain| (one, gain)))
     }
 
-    /// Of the terms that explain most, those that would be sure enough where mechanisms leave something; the surest first.
+    /// Of the terms that explain most, those that are sure enough; the surest first.
     fn told<'b>(&self, tried: &[&'b Term]) -> Vec<Told<'b>> {
         let ranked = ranked(self.series, self.base, (&self.system, self.null), tried);
         let most: Vec<(f64, &Term)> =
             ranked.into_iter().take_while(|(rank, _)| *rank > 0.0).take(MOST_JUDGED).collect();
+        let pair = |term: &Term| everywhere::of_term(self.series, self.base, term).map(|c| self.white.of(&c));
         let judged = most.par_chunks(TOGETHER).flat_map_iter(|some| {
-            let columns: Vec<Vec<Vec<f64>>> =
-                some.iter().map(|(_, term)| vec![self.white.of(&self.column_w(term))]).collect();
-            let evidences = self.system.weigh_all(&columns).into_iter().zip(some);
+            let pairs: Vec<[Vec<f64>; 2]> = some.iter().map(|(_, term)| pair(term)).collect();
+            let evidences = self.system.weigh_beyond(&pairs).into_iter().zip(some);
             evidences.filter_map(|(evidence, of)| self.judged(evidence?, *of)).collect::<Vec<_>>()
         });
         let mut told: Vec<Told<'b>> = judged.collect();

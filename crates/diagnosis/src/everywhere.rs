@@ -10,11 +10,12 @@ use rayon::prelude::*;
 use crate::{
     Error,
     average::Quantity,
-    baseline::differences,
+    baseline::{Baseline, differences},
     candidates::grids,
     nuisance::{SHARE_OF_WHAT_IS_LIKE_EFFECTS, means},
     series::{Applied, Series},
     span::Span,
+    term::Term,
 };
 
 /// Changes of what is predicted with each number of each mechanism in all drives, each scaled to one sigma of what models miss; none
@@ -48,6 +49,19 @@ fn numbers(mechanism: &'static dyn Mechanism) -> Vec<(&'static dyn Mechanism, us
     let [(_, linear), ..] = &grids(mechanism)[..] else { return Vec::new() };
     let all = if mechanism.name() == "drivetrain_drag" { vec![0, 1] } else { linear.clone() };
     all.into_iter().map(|parameter| (mechanism, parameter)).collect()
+}
+
+/// What a term does in the drives under suspicion, and what of it goes with driving where it acts in all drives alike, scaled in the same
+/// way: a robot in order does it as well, and there only what suspect drives have beyond that is missing. The latter is nothing without
+/// healthy drives, and of what sets in at some time of the suspect ones.
+pub(crate) fn of_term(series: &Series, base: &Baseline, term: &Term) -> [Vec<f64>; 2] {
+    let (robot, averages) = (&base.robot, &series.averages);
+    let suspect = term.column(robot, averages, &base.predicted_w);
+    let everywhere = (series.has_healthy() && term.span.is_all()).then(|| {
+        let means = means(averages, &base.predicted_w);
+        scaled(series, &means, &term.of_driving().everywhere(robot, averages, &base.predicted_w))
+    });
+    [suspect, everywhere.flatten().unwrap_or_else(|| vec![0.0; averages.len()])]
 }
 
 /// A change scaled to the share of power that models may miss; `None` if it changes no power. What other meters show of it goes along.

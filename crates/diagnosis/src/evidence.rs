@@ -1,5 +1,6 @@
 //! How much a candidate explains, beside everything else that is fitted with it.
 
+mod beyond;
 mod held_out;
 
 use std::sync::Arc;
@@ -120,7 +121,7 @@ impl System {
 
     /// What a candidate's columns explain; `None` where the rest explains all that they do.
     pub(crate) fn weigh(&self, columns: &[Vec<f64>]) -> Option<Evidence> {
-        self.weigh_own(columns, self.own(columns))
+        self.weigh_own(columns, self.own(columns), &self.left)
     }
 
     /// The same for many candidates at once, which is far faster.
@@ -130,13 +131,13 @@ impl System {
         let one = |columns: &Vec<Vec<f64>>| {
             let of = own.columns(first, columns.len()).into_owned();
             first += columns.len();
-            self.weigh_own(columns, of)
+            self.weigh_own(columns, of, &self.left)
         };
         candidates.iter().map(one).collect()
     }
 
     /// What columns explain, of which `own` is left when everything fitted always has taken its part.
-    fn weigh_own(&self, columns: &[Vec<f64>], own: DMatrix<f64>) -> Option<Evidence> {
+    fn weigh_own(&self, columns: &[Vec<f64>], own: DMatrix<f64>, left: &DVector<f64>) -> Option<Evidence> {
         let square = own.tr_mul(&own);
         for (j, column) in columns.iter().enumerate() {
             let whole: f64 = column.iter().map(|x| x * x).sum();
@@ -145,10 +146,10 @@ impl System {
             }
         }
         let inverse = square.try_inverse()?;
-        let right = own.tr_mul(&self.left);
+        let right = own.tr_mul(left);
         let values = &inverse * &right;
         let explained = values.dot(&right);
-        let after = &self.left - &own * &values;
+        let after = left - &own * &values;
         let mut scores = DMatrix::<f64>::zeros(columns.len(), self.blocks);
         for (i, block) in self.block.iter().enumerate() {
             for j in 0..columns.len() {
@@ -186,29 +187,51 @@ impl System {
 
     /// Drop of squared errors by what each of some candidates explains at its best.
     pub(crate) fn explained(&self, candidates: &[Vec<Vec<f64>>]) -> Vec<f64> {
-        let all = candidates.concat();
-        let columns = DMatrix::from_fn(self.rows, all.len(), |i, j| all[j][i]);
-        let own = self.transposed.columns(0, self.rows) * &columns;
-        let mut taken = vec![(own.clone(), &self.inverse * own)];
-        taken.extend(self.shared.iter().filter_map(|shared| shared.taken(&columns)));
-        let right = columns.tr_mul(&self.left.rows(0, self.rows));
+        let products = self.products(&candidates.concat());
         let mut first = 0;
         let of = |candidate: &Vec<Vec<f64>>| {
             let (at, count) = (first, candidate.len());
             first += count;
-            let part = columns.columns(at, count);
-            let mut square = part.tr_mul(&part);
-            let whole = square.diagonal();
-            for (products, weights) in &taken {
-                square -= products.columns(at, count).tr_mul(&weights.columns(at, count));
-            }
-            if (0..count).any(|j| is_nothing(square[(j, j)], whole[j])) {
+            let (square, right) = products.of(at, count);
+            if (0..count).any(|j| is_nothing(square[(j, j)], products.whole[at + j])) {
                 return 0.0;
             }
-            let right = right.rows(at, count);
             square.cholesky().map_or(0.0, |root| right.dot(&root.solve(&right)))
         };
         candidates.iter().map(of).collect()
+    }
+
+    /// Products of columns with each other, less what everything fitted always takes of them, and with the errors.
+    fn products(&self, columns: &[Vec<f64>]) -> Products {
+        let columns = DMatrix::from_fn(self.rows, columns.len(), |i, j| columns[j][i]);
+        let own = self.transposed.columns(0, self.rows) * &columns;
+        let mut taken = vec![(own.clone(), &self.inverse * own)];
+        taken.extend(self.shared.iter().filter_map(|shared| shared.taken(&columns)));
+        let right = columns.tr_mul(&self.left.rows(0, self.rows));
+        let whole = columns.column_iter().map(|column| column.norm_squared()).collect();
+        Products { columns, taken, right, whole }
+    }
+}
+
+/// Products of columns with each other and with errors.
+struct Products {
+    columns: DMatrix<f64>,
+    /// Products with what is fitted always, and its weights in the columns.
+    taken: Vec<(DMatrix<f64>, DMatrix<f64>)>,
+    right: DVector<f64>,
+    /// Squares of whole columns.
+    whole: Vec<f64>,
+}
+
+impl Products {
+    /// Of some neighbouring columns.
+    fn of(&self, at: usize, count: usize) -> (DMatrix<f64>, DVector<f64>) {
+        let part = self.columns.columns(at, count);
+        let mut square = part.tr_mul(&part);
+        for (products, weights) in &self.taken {
+            square -= products.columns(at, count).tr_mul(&weights.columns(at, count));
+        }
+        (square, self.right.rows(at, count).into_owned())
     }
 }
 

@@ -28,6 +28,12 @@ impl Group {
         !self.is_peak || averages.iter().any(|a| a.suspect && (self.value)(a, fastest_mps) > REACHED)
     }
 
+    /// Whether it is of what the model's power follows: models miss nothing that goes with where a robot is, where it heads and when.
+    pub(crate) fn is_of_driving(&self) -> bool {
+        let of_driving = [MOVING, PITCH, ROLL, STEEPNESS, SPEED, TURN, ACCELERATION];
+        of_driving.iter().any(|(name, ..)| *name == self.quantity.0)
+    }
+
     /// Whether it is the angle that wheels have turned.
     pub(crate) fn is_turn(&self) -> bool {
         self.quantity.0 == TURNED.0

@@ -3,7 +3,6 @@
 use crate::{
     average::{Average, Input},
     channel,
-    constancy::MOVING_S,
 };
 
 /// Share of mean power that a function may take [-]: about what the force balance misses of a healthy Husky.
@@ -23,7 +22,7 @@ pub(crate) fn of_channel(averages: &[Average], places: &[usize], mean_w: f64) ->
         (size > 0.0).then(|| values.iter().map(|x| x / size * share * mean_w).collect())
     };
     let known = SHARED.iter().map(|function| (function, SHARE));
-    let little = OF_CURVES.iter().chain(&OF_STARTS).map(|function| (function, SHARE_OF_WHAT_IS_LIKE_EFFECTS));
+    let little = OF_CURVES.iter().map(|function| (function, SHARE_OF_WHAT_IS_LIKE_EFFECTS));
     known.chain(little).filter_map(column).collect()
 }
 
@@ -64,20 +63,15 @@ const SHARED: [fn(&Input) -> f64; 14] = [
 ];
 
 /// Functions of speed times turn tell what a curve that is driven faster than healthy drives did takes on top: with turn alone, half
-/// circles of a robot in order passed for a gain of its meters. Leaning to a side loads the wheels there, which skid harder in turns.
-const OF_CURVES: [fn(&Input) -> f64; 7] = [
+/// circles of a robot in order passed for a gain of its meters.
+const OF_CURVES: [fn(&Input) -> f64; 6] = [
     |x| sideways(x),
     |x| sideways(x) * sideways(x),
     |x| sideways(x) * x.difference_mps.abs(),
     |x| x.rim_mps * x.difference_mps,
     |x| (x.rim_mps * x.difference_mps).abs(),
     |x| x.rim_mps * x.difference_mps * x.difference_mps.abs(),
-    |x| x.difference_mps.abs() * x.roll_rad,
 ];
-
-/// A force of the first seconds after standing still: of 80 drives of robots in order terms that go with having just stood still, or with
-/// leaning in turns, were all that was found. With four forms of it real ice was taken up in parts.
-const OF_STARTS: [fn(&Input) -> f64; 1] = [|x| x.rim_mps.abs() * (-x.moving_s / MOVING_S).exp()];
 
 /// Acceleration towards the inside of a curve, times the track [m²/s²].
 fn sideways(x: &Input) -> f64 {

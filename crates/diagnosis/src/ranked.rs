@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     baseline::Baseline,
+    everywhere,
     evidence::{System, TOGETHER},
     null::Null,
     series::Series,
@@ -22,10 +23,10 @@ pub(crate) fn ranked<'t>(
 ) -> Vec<(f64, &'t Term)> {
     let white = base.whitening(series);
     let (common, choice) = (null.common_discount(system.blocks()), (system.blocks() as f64).ln());
-    let column = |term: &Term| white.of(&term.column(&base.robot, &series.averages, &base.predicted_w));
+    let pair = |term: &Term| everywhere::of_term(series, base, term).map(|column| white.of(&column));
     let of_some = terms.par_chunks(TOGETHER).flat_map_iter(|some| {
-        let columns: Vec<Vec<Vec<f64>>> = some.iter().map(|term| vec![column(term)]).collect();
-        let explained = system.explained(&columns).into_iter().zip(some);
+        let pairs: Vec<[Vec<f64>; 2]> = some.iter().map(|term| pair(term)).collect();
+        let explained = system.explained_beyond(&pairs).into_iter().zip(some);
         explained
             .map(|(explained, term)| (explained / common - term.choices() as f64 * choice, *term))
             .collect::<Vec<_>>()

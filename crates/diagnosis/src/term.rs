@@ -106,6 +106,18 @@ fn towards_turn_mps(average: &Average, fastest_mps: f64, is_both: bool) -> f64 {
 impl Term {
     /// Its value in every average of power under suspicion, 0 in the others; `predicted_w` is what the model says \[W\].
     pub(crate) fn column(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
+        let all = self.everywhere(robot, averages, predicted_w).into_iter().zip(averages);
+        all.map(|(value, a)| if a.suspect { value } else { 0.0 }).collect()
+    }
+
+    /// What of it models may miss of a robot in order: how it goes with driving.
+    pub(crate) fn of_driving(&self) -> Term {
+        let groups = self.groups.iter().copied().filter(|group| group.is_of_driving()).collect();
+        Term { groups, ..self.clone() }
+    }
+
+    /// The same where it acts in all drives, under suspicion or not.
+    pub(crate) fn everywhere(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
         let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
         let fastest_mps = robot.max_wheel_speed_mps;
         let side = |a: &Average| match (self.on, a.channel) {
@@ -121,7 +133,7 @@ impl Term {
             Scale::Watt => 1.0,
         };
         let value = |(a, predicted_w): (&Average, &f64)| {
-            if !a.suspect || !a.is_in(self.span) || side(a) == 0.0 {
+            if !a.is_in(self.span) || side(a) == 0.0 {
                 return 0.0;
             }
             let since = a.since(self.span);
