@@ -8,7 +8,7 @@ use crate::{
     Error,
     alternatives::{Explanation, alternatives, detectable},
     corrected::corrected,
-    discover::discover,
+    discover::{Sure, discover},
     doubts::doubts,
     judged::Judged,
     next_drive::next_drive,
@@ -87,13 +87,14 @@ pub fn diagnose_watched(
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    let is_open = match judged.verdict(&found) {
-        Verdict::Consistent | Verdict::Unexplained if series.has_healthy() => true,
-        _ => series.turning.is_some(),
+    let open = match judged.verdict(&found) {
+        Verdict::Unexplained if series.has_healthy() => Some(Sure::AsUsual),
+        Verdict::Consistent if series.has_healthy() => Some(Sure::Very),
+        _ => series.turning.is_some().then_some(Sure::AsUsual),
     };
-    if is_open {
+    if let Some(sure) = open {
         progress("looking outside the list", 0.75);
-        let terms = discover(&series, &found.after, &applied, &found.refused, &found.null)?;
+        let terms = discover(&series, &found.after, &applied, &found.refused, (&found.null, sure))?;
         judged.take_up(&series, &found, terms)?;
     }
     progress("locating the difference", 0.8);

@@ -31,6 +31,24 @@ const LEAST_SPREAD: f64 = 2.5;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
+/// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
+/// something, and a hundred times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
+/// that nothing goes with any of them, shows a term by chance with less.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sure {
+    AsUsual,
+    Very,
+}
+
+impl Sure {
+    fn level(self) -> f64 {
+        match self {
+            Sure::AsUsual => LEVEL,
+            Sure::Very => LEVEL / 100.0,
+        }
+    }
+}
+
 /// Terms that explain what is left beside a robot with mechanisms, the strongest first; none where none passes the gates.
 ///
 /// # Errors
@@ -40,7 +58,7 @@ pub(crate) fn discover(
     base: &Baseline,
     applied: &[Applied],
     refused: &[Refused],
-    null: &Null,
+    (null, first): (&Null, Sure),
 ) -> Result<Vec<Discovered>, Error> {
     let of_mechanisms = applied.iter().map(|one| one.span).chain(refused.iter().map(|one| one.span));
     let mut terms = term::of_drives(series, &base.robot, of_mechanisms);
@@ -54,7 +72,8 @@ pub(crate) fn discover(
         // What spectra show comes first, and other terms beside it.
         let is_tried = |term: &&Term| series.turning.is_none() || !found.is_empty() || term.is_turn();
         let tried: Vec<&Term> = terms.iter().filter(is_tried).collect();
-        let beside = Beside::new(series, base, null, &taken, Choices::of(&terms));
+        let level = if found.is_empty() && series.turning.is_none() { first.level() } else { LEVEL };
+        let beside = Beside::new(series, base, null, &taken, (Choices::of(&terms), level));
         let Some(next) = beside.strongest(&tried) else { break };
         found.push(next);
     }
@@ -74,6 +93,8 @@ struct Beside<'a> {
     white: Whitening,
     /// Among how many terms one is chosen.
     choices: Choices,
+    /// Largest chance that passes at last.
+    level: f64,
 }
 
 /// How many terms are tried that go with one quantity at most and always act, and how many others.
@@ -116,19 +137,23 @@ impl<'a> Beside<'a> {
         base: &'a Baseline,
         null: &'a Null,
         taken: &[Vec<f64>],
-        choices: Choices,
+        (choices, level): (Choices, f64),
     ) -> Self {
         let (system, white) = (system_with(series, base, taken), base.whitening(series));
-        Beside { series, base, null, system, white, choices }
+        Beside { series, base, null, system, white, choices, level }
     }
 
-    /// What passes every gate and explains most.
+    /// What passes every gate and explains most, if what passes is sure enough.
     ///
     /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most. A
     /// moment is no evidence that something acts: drives turn for seconds only, in which it goes with all that the model misses of turns.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
         let told = self.told(tried);
-        told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
+        let surest =
+            told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
+        if surest.p_value > self.level {
+            return None;
+        }
         let (mut best, mut held_out_gain) = self.closest(told)?;
         // Since when it acts, and what else it goes with, is looked for about what was tried.
         let mut near = [around(self.series, best.term), best.term.with_one_more()];

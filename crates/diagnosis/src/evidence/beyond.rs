@@ -103,7 +103,8 @@ mod tests {
     fn what_acts_in_all_rows_alike_is_nothing_beyond_and_what_acts_in_half_of_them_is() {
         let [half, all] = pair();
         let evidence = |signal: &[f64]| {
-            let found = system(&with_noise(signal), &[column(0)], &[0.5]);
+            let strong: Vec<f64> = signal.iter().map(|x| 3.0 * x).collect();
+            let found = system(&with_noise(&strong), &[column(0)], &[0.5]);
             let alone = found.weigh(std::slice::from_ref(&half)).unwrap();
             let beyond = found.weigh_beyond(&[[half.clone(), all.clone()]])[0].clone().unwrap();
             [alone.wald, beyond.wald]
