@@ -63,7 +63,7 @@ fn of_two_at_once_both_are_named_in_most_pairs() {
         (2076, ["drivetrain_drag", "hotel_load"]),
         (2077, ["load_transfer", "regeneration"]),
     ];
-    let told: Vec<String> = pairs
+    let missed: Vec<String> = pairs
         .iter()
         .filter_map(|(seed, names)| {
             let (case, found) = concealing(*seed, names);
@@ -71,5 +71,5 @@ fn of_two_at_once_both_are_named_in_most_pairs() {
             (!are_both).then(|| format!("{:?}: {}", case.truths, found.sentence))
         })
         .collect();
-    assert!(told.len() <= 1, "{told:?}");
+    assert!(missed.len() <= 1, "{missed:?}");
 }

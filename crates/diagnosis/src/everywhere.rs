@@ -1,4 +1,4 @@
-//! What mechanisms do where they act in all drives alike: that is nobody's mechanism, but what the robot's file does not tell.
+//! What mechanisms and terms do where they act in all drives alike: that is nobody's mechanism, but what the robot's file does not tell.
 //!
 //! A robot in order has wheels that spin, tyres that slip and a centre of mass somewhere. What the file leaves out of that is in its
 //! healthy drives as well, and only what suspect drives have beyond them is looked for. Functions of the inputs take it up as far as they

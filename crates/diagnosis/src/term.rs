@@ -116,7 +116,7 @@ impl Term {
         Term { groups, ..self.clone() }
     }
 
-    /// The same where it acts in all drives, under suspicion or not.
+    /// Its value in every average of power, under suspicion or not \[W\].
     pub(crate) fn everywhere(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
         let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
         let fastest_mps = robot.max_wheel_speed_mps;
