@@ -6,7 +6,9 @@ use model::Robot;
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
-use crate::{Error, average::Average, copies::copies, losses, row, row::Row, stuck, watch::Watched};
+use crate::{
+    Error, average::Average, copies::copies, losses, row, row::Row, standstill, stuck, watch::Watched,
+};
 
 /// Rows of one run on one surface without a gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +80,7 @@ impl Drives {
             }
         }
         drives.watch.go_on()?;
+        standstill::settle(&mut drives);
         drives.each_stretch(row::accelerations);
         stuck::flag(&mut drives, robot);
         drives.remember_losses(robot);

@@ -30,6 +30,7 @@ pub mod row;
 mod scatter;
 pub mod score;
 pub mod slip_law;
+mod standstill;
 mod stuck;
 mod watch;
 

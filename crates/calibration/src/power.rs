@@ -151,14 +151,13 @@ fn surface_of_rows(drives: &Drives) -> Vec<u32> {
 pub(crate) struct Ground<'r> {
     surface: &'r Surface,
     friction: Friction,
-    /// Mechanisms of the robot or of this ground act.
+    /// The height of its load, or mechanisms of the robot or of this ground, act.
     adjusted: bool,
 }
 
 impl<'r> Ground<'r> {
     pub(crate) fn new(robot: &Robot, surface: &'r Surface) -> Self {
-        let adjusted = !(robot.mechanisms.is_empty() && surface.mechanisms.is_empty());
-        Ground { surface, friction: Friction::new(robot, surface), adjusted }
+        Ground { surface, friction: Friction::new(robot, surface), adjusted: robot.is_adjusted(surface) }
     }
 
     /// Power of one row.

@@ -117,7 +117,8 @@ fn least_size(
     mechanism: &'static dyn mechanism::Mechanism,
 ) -> Result<Option<Detectable>, Error> {
     let parameter = &mechanism.parameters()[0];
-    let mut least = parameter.bounds[1];
+    let [_, most] = mechanism.bounds(&base.robot, 0);
+    let mut least = most;
     for (values, _) in candidates::grids(mechanism) {
         let probe = Applied { mechanism, values, span: Span::ALL };
         let at = candidates::of(series, &base.robot, applied, &base.predicted_w, probe, vec![0])?;
@@ -140,5 +141,5 @@ fn least_size(
         value: least,
         unit: parameter.unit,
     };
-    Ok((least < parameter.bounds[1]).then(size))
+    Ok((least < most).then(size))
 }

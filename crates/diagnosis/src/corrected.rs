@@ -45,6 +45,10 @@ fn apply(robot: &mut Robot, one: &Applied, surfaces: &[String]) {
     match one.mechanism.name() {
         "payload" => robot.mass_kg += values[0],
         "hotel_load" => robot.hotel_power_w += values[0],
+        // A file has no heights below the ground.
+        "load_transfer" if robot.center_of_mass.height_m + values[0] >= 0.0 => {
+            robot.center_of_mass.height_m += values[0];
+        }
         "regeneration" => robot.motors.regeneration += values[0],
         "surface_change" => on_ground(robot, surfaces, |surface| {
             *surface = surface.scaled(1.0 + values[0], 1.0 + values[1]);
@@ -55,10 +59,7 @@ fn apply(robot: &mut Robot, one: &Applied, surfaces: &[String]) {
             }
         }
         _ => {
-            // What was polished may stand a rounding beyond its bounds, which the file would not be read with.
-            let bounded =
-                one.mechanism.parameters().iter().zip(values).map(|(p, v)| v.clamp(p.bounds[0], p.bounds[1]));
-            let known = KnownMechanism::new(one.mechanism, bounded.collect());
+            let known = KnownMechanism::new(one.mechanism, values.clone());
             // The ground is soft, the robot is not.
             if KnownMechanism::is_of_ground(one.mechanism) {
                 on_ground(robot, surfaces, |surface| surface.mechanisms.push(known.clone()));
@@ -83,6 +84,18 @@ fn keep_possible(robot: &mut Robot) {
     robot.hotel_power_w = robot.hotel_power_w.max(0.0);
     robot.drive_electronics_w = robot.drive_electronics_w.max(0.0);
     robot.motors.regeneration = robot.motors.regeneration.clamp(0.0, 1.0);
+    // What was polished may stand a rounding beyond its bounds, and a robot that became lighter has closer ones.
+    let as_it_is = robot.clone();
+    let bounded = |known: &mut KnownMechanism| {
+        let mechanism = known.mechanism();
+        let values = mechanism.parameters().iter().zip(known.values()).map(|(p, value)| {
+            let [low, high] = p.bounds_of(&as_it_is);
+            value.clamp(low, high)
+        });
+        *known = KnownMechanism::new(mechanism, values.collect());
+    };
+    let of_grounds = robot.surfaces.values_mut().flat_map(|surface| &mut surface.mechanisms);
+    robot.mechanisms.iter_mut().chain(of_grounds).for_each(bounded);
 }
 
 #[cfg(test)]

@@ -98,7 +98,7 @@ pub fn diagnose_watched(
         judged.take_up(&series, &found, terms)?;
     }
     progress("locating the difference", 0.8);
-    let places = judged.places(&series, &found)?;
+    let places = judged.places(&series, robot, &found)?;
     progress("planning the next drive", 0.85);
     let next_drive = decisive_drive(&series, robot, &found)?;
     let (corrected_robot, mut notes) =
@@ -113,7 +113,7 @@ pub fn diagnose_watched(
     if by_current {
         doubts.push(BY_CURRENT.to_owned());
     }
-    let findings = judged.findings(&series, &found);
+    let findings = judged.findings(&series, robot, &found);
     if !judged.discovered.is_empty() {
         doubts.push(OUTSIDE.to_owned());
     }

@@ -212,10 +212,10 @@ impl<'a> Beside<'a> {
 
     /// The gain on held-out blocks, if it passes and is spread over some: of what one block holds there is nothing to compare it with.
     fn gain(&self, one: &Told<'_>) -> Option<f64> {
-        if spread(&self.system, self.series, &one.evidence) < LEAST_SPREAD {
+        let columns = [self.white.of(&self.column_w(one.term))];
+        if spread(&self.system, self.series, &one.evidence, &columns[0]) < LEAST_SPREAD {
             return None;
         }
-        let columns = [self.white.of(&self.column_w(one.term))];
         passes(&self.system, self.series, &one.evidence, (&columns, LEAST_GAIN_OF_A_TERM_SIGMAS))
     }
 }

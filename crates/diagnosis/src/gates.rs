@@ -5,11 +5,13 @@ use nalgebra::DVector;
 use crate::{
     Error,
     baseline::Baseline,
+    candidates,
     evidence::{Evidence, System},
     foremost::Foremost,
     manner,
     null::Null,
     series::{Applied, Series},
+    span::Span,
     visits,
     weigh::{Weighed, blocks, judged, system, system_with, undelayed},
 };
@@ -73,6 +75,9 @@ fn best_that_gains(
         if one.is_in_place() && !is_of_place(series, base, one, null) {
             return None;
         }
+        if !series.has_healthy() && !is_change(series, base, applied, one, null).ok()? {
+            return None;
+        }
         let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS } else { least_gain_sigmas };
         Some((one, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
     });
@@ -117,7 +122,30 @@ fn is_of_place(series: &Series, base: &Baseline, one: &Weighed, null: &Null) -> 
     if rolling_sigmas < LEAST_ROLLING_SIGMAS || share_where_it_acts(series, base, one) < LEAST_IN_PLACE {
         return false;
     }
-    let system = system_with(series, base, &manner::columns(series));
+    is_seen_beside(series, base, one, &manner::columns(series), null)
+}
+
+/// Whether something changed during the drives: of what acts in some part of them, without healthy drives, as much as there is beside the
+/// same acting all the time. That may be what the model misses of any robot, and a part of it is no better.
+fn is_change(
+    series: &Series,
+    base: &Baseline,
+    applied: &[Applied],
+    one: &Weighed,
+    null: &Null,
+) -> Result<bool, Error> {
+    if one.candidate.applied.span.is_all() {
+        return Ok(true);
+    }
+    let always = Applied { span: Span::ALL, ..one.candidate.applied.clone() };
+    let linear = one.candidate.linear.clone();
+    let all = candidates::of(series, &base.robot, applied, &base.predicted_w, always, linear)?;
+    Ok(is_seen_beside(series, base, one, &all.columns, null))
+}
+
+/// Whether a candidate is seen beside some columns as well.
+fn is_seen_beside(series: &Series, base: &Baseline, one: &Weighed, beside: &[Vec<f64>], null: &Null) -> bool {
+    let system = system_with(series, base, beside);
     let white = base.whitening(series);
     let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
     let Some(evidence) = system.weigh(&columns) else { return false };
@@ -158,16 +186,24 @@ fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
     size.iter().map(|size| *size > 0.1 * mean).collect()
 }
 
-/// Among how many blocks what a candidate does is spread: as many as there are if it does as much in each, one if one holds nearly all.
-pub(crate) fn spread(system: &System, series: &Series, one: &Evidence) -> f64 {
-    let size = sizes(system, series, one);
-    let squares: f64 = size.iter().map(|size| size * size).sum();
-    size.iter().sum::<f64>().powi(2) / squares.max(1e-300)
+/// Among how many blocks what a candidate does, of which these are the whitened changes, is spread: as many as there are if it does as
+/// much in each, one if one holds nearly all. Of one that a fit takes nearly all of, what is left lies all over; that counts as little as
+/// what the fit takes.
+pub(crate) fn spread(system: &System, series: &Series, one: &Evidence, column: &[f64]) -> f64 {
+    let over = |size: Vec<f64>| {
+        let squares: f64 = size.iter().map(|size| size * size).sum();
+        size.iter().sum::<f64>().powi(2) / squares.max(1e-300)
+    };
+    let whole = DVector::from_column_slice(column);
+    f64::min(over(sizes(system, series, one)), over(by_block(system, series, &whole)))
 }
 
-/// Squares of what a candidate does, block by block.
+/// Squares of what a candidate does beyond what the fit takes of it, block by block.
 fn sizes(system: &System, series: &Series, one: &Evidence) -> Vec<f64> {
-    let along = &one.own * DVector::from_column_slice(&one.values);
+    by_block(system, series, &(&one.own * DVector::from_column_slice(&one.values)))
+}
+
+fn by_block(system: &System, series: &Series, along: &DVector<f64>) -> Vec<f64> {
     let mut size = vec![0.0; system.blocks()];
     blocks(series).iter().enumerate().for_each(|(i, b)| size[*b] += along[i] * along[i]);
     size

@@ -150,16 +150,20 @@ impl Judged {
         }
     }
 
-    pub(crate) fn findings(&self, series: &Series, found: &Search) -> Vec<Finding> {
+    pub(crate) fn findings(&self, series: &Series, robot: &Robot, found: &Search) -> Vec<Finding> {
         let mut rmse_w = self.held_out_rmse_w.windows(2).map(|pair| [pair[0], pair[1]]);
-        let mut findings: Vec<Finding> =
-            found.found.iter().zip(&mut rmse_w).map(|(f, rmse_w)| finding(series, f, rmse_w)).collect();
+        let mut findings: Vec<Finding> = found
+            .found
+            .iter()
+            .zip(&mut rmse_w)
+            .map(|(f, rmse_w)| finding(series, robot, f, rmse_w))
+            .collect();
         findings.extend(self.discovered.iter().zip(rmse_w).map(|(d, rmse_w)| d.finding(series, rmse_w)));
         findings
     }
 
     /// Where the errors are that the findings take away; where nothing was found, those beyond noise.
-    pub(crate) fn places(&self, series: &Series, found: &Search) -> Result<Vec<Place>, Error> {
+    pub(crate) fn places(&self, series: &Series, robot: &Robot, found: &Search) -> Result<Vec<Place>, Error> {
         if self.verdict(found) == Verdict::Consistent {
             return Ok(Vec::new());
         }
@@ -174,7 +178,7 @@ impl Judged {
             let off = |i: usize| errors_w[i] + after.predicted_w[i] - without_w[i];
             (0..errors_w.len()).map(|i| (off(i).powi(2) - errors_w[i].powi(2)) / variance(i)).collect()
         };
-        let mut places = locate::places(series, &excess);
+        let mut places = locate::places(series, robot, &excess);
         if places.is_empty() {
             let range = Range::of("t_s", [None, None]);
             let statement = "all through the drives, nowhere in particular".into();
@@ -215,19 +219,16 @@ fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
     }
 }
 
-fn finding(series: &Series, found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
+fn finding(series: &Series, robot: &Robot, found: &Found, [before_w, after_w]: [f64; 2]) -> Finding {
     let applied = &found.applied;
     let mechanism = applied.mechanism;
     let numbers = mechanism.parameters().iter().zip(applied.values.iter().zip(&found.half_widths));
     let mut parameters: Vec<FoundParameter> = numbers
-        .map(|(parameter, (&value, half))| FoundParameter {
-            name: parameter.name,
-            value,
-            unit: parameter.unit,
+        .map(|(parameter, (&value, half))| {
             // Beyond what there can be is no interval.
-            interval_95: half.map(|half| {
-                [value - half, value + half].map(|edge| edge.clamp(parameter.bounds[0], parameter.bounds[1]))
-            }),
+            let [low, high] = parameter.bounds_of(robot);
+            let interval_95 = half.map(|half| [value - half, value + half].map(|edge| edge.clamp(low, high)));
+            FoundParameter { name: parameter.name, value, unit: parameter.unit, interval_95 }
         })
         .collect();
     let mut statement = words::capital(&mechanism.statement(&applied.values));

@@ -1,5 +1,6 @@
 //! Where model and recording differ: times, places, ways of driving and sides that hold more than their share of the difference.
 
+use model::Robot;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::{
@@ -24,6 +25,9 @@ const MOST_VARIANCES: f64 = 50.0;
 
 /// Speeds below are standing [m/s].
 const STANDING_MPS: f64 = 0.02;
+/// Speeds below are slow and above are fast, as shares of the highest.
+const SLOW: f64 = 0.3;
+const FAST: f64 = 0.7;
 /// Differences of rim speeds below are straight on [m/s].
 const STRAIGHT_MPS: f64 = 0.08;
 /// Slopes below are level [rad].
@@ -46,10 +50,10 @@ struct Judged {
 /// Places with significantly more excess than the rest of the drives, the clearest of each kind first.
 ///
 /// `excess` is, by average, the squared error beyond what belongs there, in variances of the noise.
-pub(crate) fn places(series: &Series, excess: &[f64]) -> Vec<Place> {
+pub(crate) fn places(series: &Series, robot: &Robot, excess: &[f64]) -> Vec<Place> {
     let excess: Vec<f64> = excess.iter().map(|e| e.clamp(-MOST_VARIANCES, MOST_VARIANCES)).collect();
     let block = blocks(series);
-    let groups = [times(series), grounds(series), regimes(), sides(series)];
+    let groups = [times(series), grounds(series), regimes(robot.max_wheel_speed_mps), sides(series)];
     let tried: usize = groups.iter().map(Vec::len).sum();
     let mut places = Vec::new();
     for cells in groups {
@@ -174,19 +178,25 @@ fn grounds(series: &Series) -> Vec<Cell> {
 }
 
 /// Ways of driving.
-fn regimes() -> Vec<Cell> {
+fn regimes(fastest_mps: f64) -> Vec<Cell> {
     type Of = fn(&Average) -> f64;
     const EVER: f64 = f64::INFINITY;
     let speed: Of = |a| a.input.speed_mps;
     let turn: Of = |a| a.input.difference_mps;
     let grade: Of = |a| a.input.pitch_rad * a.input.speed_mps.signum();
     let gain: Of = |a| a.input.accel_mps2 * a.input.speed_mps.signum();
+    let [slow_mps, fast_mps] = [SLOW, FAST].map(|share| share * fastest_mps);
+    let [slow, middling, fast] = [
+        format!("below {slow_mps:.1} m/s forwards"),
+        format!("between {slow_mps:.1} and {fast_mps:.1} m/s"),
+        format!("above {fast_mps:.1} m/s"),
+    ];
     let bins: [(&str, &str, Of, [f64; 2]); 13] = [
         ("while standing or spinning on the spot", "speed_mps", speed, [-STANDING_MPS, STANDING_MPS]),
         ("while driving backwards", "speed_mps", speed, [-EVER, -STANDING_MPS]),
-        ("below 0.3 m/s forwards", "speed_mps", speed, [STANDING_MPS, 0.3]),
-        ("between 0.3 and 0.7 m/s", "speed_mps", speed, [0.3, 0.7]),
-        ("above 0.7 m/s", "speed_mps", speed, [0.7, EVER]),
+        (&slow, "speed_mps", speed, [STANDING_MPS, slow_mps]),
+        (&middling, "speed_mps", speed, [slow_mps, fast_mps]),
+        (&fast, "speed_mps", speed, [fast_mps, EVER]),
         ("while turning right", "rim_difference_mps", turn, [-EVER, -STRAIGHT_MPS]),
         ("while driving straight", "rim_difference_mps", turn, [-STRAIGHT_MPS, STRAIGHT_MPS]),
         ("while turning left", "rim_difference_mps", turn, [STRAIGHT_MPS, EVER]),

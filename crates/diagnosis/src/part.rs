@@ -53,6 +53,10 @@ pub(crate) struct Part {
 /// mechanisms have it read [A]; rate of climbing [m/s].
 pub(crate) type Seen = [f64; 8];
 
+/// Time that an average stands for at least [s]: a row or two that are left of a second, as where a drive ends, are as noisy as rows are,
+/// and would count for as much as a second does.
+const LEAST_S: f64 = 0.3;
+
 impl Part {
     pub(crate) fn new(
         robot: &Robot,
@@ -61,7 +65,8 @@ impl Part {
         watch: &Watch,
     ) -> Result<Self, Error> {
         // Being stuck is a mechanism's business here.
-        let drives = Drives::watched(robot, recording, watch)?.including_stuck();
+        let mut drives = Drives::watched(robot, recording, watch)?.including_stuck();
+        drives.averages.retain(|average| average.duration_s >= LEAST_S);
         let mut began_s = vec![0.0; recording.rows()];
         for run in &recording.runs {
             let first = run.rows.clone().next().map_or(0.0, |row| recording.t_s[row]);

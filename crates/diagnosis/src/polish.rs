@@ -1,5 +1,7 @@
 //! A candidate fitted together with the robot and everything found before, at its own nonlinear values.
 
+mod sureness;
+
 use model::Robot;
 use nalgebra::DMatrix;
 
@@ -10,12 +12,10 @@ use crate::{
     evidence::Evidence,
     misfit::misfit,
     off_middle,
-    regime::Regime,
-    search::{is_told, openness},
+    search::is_told,
     series::{Applied, Series},
     usual,
     weigh::{Sizes, Weighed, system_at},
-    widths::half_width,
 };
 
 /// A fit with mechanisms that act.
@@ -65,12 +65,15 @@ pub(crate) fn polish(
     if let Some(next) = together.on_the_other_side(series, file)? {
         together = next;
     }
-    // Values from a grid are freed at last, as long as that explains more.
+    // Values from a grid are freed at last, as long as that explains more; of what was found before as well, as it was fitted without
+    // what it stands beside now.
     let last = others.len();
     if own.len() < together.applied[last].values.len() {
-        for _ in 0..POLISHES {
-            let Some(next) = together.freed(series, file, own)? else { break };
-            together = next;
+        together = together.freed_fully(series, file, last)?;
+    }
+    for which in 0..last {
+        if together.has_grid(which) {
+            together = together.freed_fully(series, file, which)?;
         }
     }
     together.polished(series)
@@ -179,11 +182,26 @@ impl Together {
         self.applied.iter().zip(&self.free).map(moved).collect()
     }
 
-    /// One step of all values of the last together, or of those that are within their bounds; `None` where neither explains more.
+    /// The fit with all values of one free, step by step as long as that explains more.
+    fn freed_fully(mut self, series: &Series, file: &Robot, which: usize) -> Result<Self, Error> {
+        let linear = self.free[which].clone();
+        for _ in 0..POLISHES {
+            let Some(next) = self.freed(series, file, which, &linear)? else { break };
+            self = next;
+        }
+        Ok(self)
+    }
+
+    /// One step of all values of one together, or of those that are within their bounds; `None` where neither explains more.
     /// `linear` are those that do not come from a grid.
-    fn freed(&self, series: &Series, file: &Robot, linear: &[usize]) -> Result<Option<Self>, Error> {
-        let last = self.applied.len() - 1;
-        let (applied, others) = apart(&self.applied, last);
+    fn freed(
+        &self,
+        series: &Series,
+        file: &Robot,
+        which: usize,
+        linear: &[usize],
+    ) -> Result<Option<Self>, Error> {
+        let applied = self.applied[which].clone();
         let all: Vec<usize> = (0..applied.values.len()).collect();
         let is_within = |parameter: &usize| {
             let [low, high] = candidates::range(&applied, file, *parameter);
@@ -193,7 +211,8 @@ impl Together {
         let before = cost(series, (&self.applied, &self.base), &self.base);
         for own in [all, within] {
             let mut free = self.free.clone();
-            free[last] = own.clone();
+            free[which] = own.clone();
+            let first: usize = free.iter().take(which).map(Vec::len).sum();
             let with = Together {
                 applied: self.applied.clone(),
                 free,
@@ -201,10 +220,11 @@ impl Together {
                 covariance: DMatrix::zeros(0, 0),
             };
             let Some((values, covariance)) = with.weighed(series)? else { continue };
-            let whole = limited(&applied, &own, &values[values.len() - own.len()..], linear);
+            let whole = limited(&applied, &own, &values[first..first + own.len()], linear);
             for share in SHARES {
                 let by: Vec<f64> = whole.iter().map(|by| share * by).collect();
-                let moved = [others.clone(), vec![candidates::moved(&applied, file, &own, &by)]].concat();
+                let mut moved = self.applied.clone();
+                moved[which] = candidates::moved(&applied, file, &own, &by);
                 let next = Baseline::fit_from(series, file, &moved, &self.base.robot)?;
                 if cost(series, (&moved, &next), &self.base) < before - LEAST_GAIN {
                     return Ok(Some(Together { applied: moved, base: next, covariance, ..with }));
@@ -212,72 +232,6 @@ impl Together {
             }
         }
         Ok(None)
-    }
-
-    /// The fit with the widths of what was fitted.
-    fn polished(self, series: &Series) -> Result<Polished, Error> {
-        let openness = openness(series);
-        let mut half_widths = Vec::new();
-        for (which, one) in self.applied.iter().enumerate() {
-            // Where regimes disagree about a size by more than chance, it is told no better than they agree (the scale factor of the
-            // Particle Data Group, Rosenfeld, Annu. Rev. Nucl. Sci. 25, 1975, p. 555).
-            let wider = self.discord(series, which)?.sqrt();
-            let half = |(parameter, sigma): (usize, &Option<f64>)| {
-                sigma.map(|sigma| half_width(one, parameter, wider * sigma, openness))
-            };
-            half_widths.push(self.sigmas(series, which)?.iter().enumerate().map(half).collect());
-        }
-        Ok(Polished { base: self.base, applied: self.applied, half_widths })
-    }
-
-    /// One sigma of each value of one, with those from a grid as free as the others where the drives tell them; `None` for those that
-    /// were not fitted.
-    fn sigmas(&self, series: &Series, which: usize) -> Result<Vec<Option<f64>>, Error> {
-        let own = self.all_told(which);
-        let mut free = self.free.clone();
-        free[which] = own.clone();
-        let freed = match own.len() > self.free[which].len() {
-            true => Together {
-                free,
-                applied: self.applied.clone(),
-                base: self.base.clone(),
-                covariance: DMatrix::zeros(0, 0),
-            }
-            .weighed(series)?
-            .map(|(_, covariance)| (own, covariance)),
-            false => None,
-        };
-        let (own, covariance) = freed.unwrap_or_else(|| (self.free[which].clone(), self.covariance.clone()));
-        let first: usize = self.free.iter().take(which).map(Vec::len).sum();
-        let mut sigmas = vec![None; self.applied[which].values.len()];
-        for (j, parameter) in own.into_iter().enumerate() {
-            sigmas[parameter] =
-                covariance.get((first + j, first + j)).map(|variance| variance.max(0.0).sqrt());
-        }
-        Ok(sigmas)
-    }
-
-    /// What is fitted of one, and its values from a grid unless all of those are nothing.
-    fn all_told(&self, which: usize) -> Vec<usize> {
-        let Applied { mechanism, values, .. } = &self.applied[which];
-        let sizes: Vec<usize> =
-            candidates::grids(*mechanism).into_iter().flat_map(|(_, linear)| linear).collect();
-        let from_grid: Vec<usize> = (0..values.len()).filter(|i| !sizes.contains(i)).collect();
-        let are_free = from_grid.iter().any(|i| values[*i] != 0.0);
-        let is_free = |i: &usize| self.free[which].contains(i) || are_free && from_grid.contains(i);
-        (0..values.len()).filter(is_free).collect()
-    }
-
-    /// How far the size of one scatters from regime to regime, over what chance makes of it, squared.
-    fn discord(&self, series: &Series, which: usize) -> Result<f64, Error> {
-        let white = self.base.whitening(series);
-        let columns: Vec<Vec<f64>> =
-            self.columns(series, which)?.iter().map(|column| white.of(column)).collect();
-        let values: Vec<f64> = self.free[which].iter().map(|i| self.applied[which].values[*i]).collect();
-        let system = system_at(series, &self.base, Sizes::FreeBut(which), &[]);
-        let regime: Vec<usize> = series.averages.iter().map(Regime::on_slope).collect();
-        let Some(evidence) = system.weigh(&columns) else { return Ok(1.0) };
-        Ok(system.discord_on_slopes(&evidence, &values, &regime))
     }
 }
 

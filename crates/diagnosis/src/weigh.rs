@@ -251,6 +251,7 @@ impl<'a> Scales<'a> {
             evidence.discord = 1.0;
         }
         if !is_plausible(&self.base.robot, &candidate, &evidence)
+            || is_of_any_wheels(&candidate, &evidence)
             || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * self.series.row_s()
         {
             return None;
@@ -311,6 +312,18 @@ fn beyond(evidence: &Evidence, misfit_variance: Vec<f64>) -> Option<f64> {
 
 /// A delay of less than a row, but for what its estimate may be off by, is the sensors' business.
 const LEAST_DELAY_ROWS: f64 = 0.8;
+
+/// Share by which wheels turn otherwise than a robot moves, below which that is what tyres, slopes and ground make of it from drive to drive.
+const LEAST_SLIP: f64 = 0.005;
+
+/// Whether wheels would slip, or be of another size, by no more than any do.
+fn is_of_any_wheels(candidate: &Candidate, evidence: &Evidence) -> bool {
+    let is_of_wheels = matches!(name(candidate), "wheel_slip" | "wheel_radius");
+    let of_candidate = candidate.linear.iter().zip(&evidence.values);
+    let most =
+        of_candidate.map(|(i, value)| (candidate.applied.values[*i] + value).abs()).fold(0.0, f64::max);
+    is_of_wheels && most < LEAST_SLIP
+}
 
 fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bool {
     candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {

@@ -109,7 +109,7 @@ impl Journey {
             journey: self,
             chance,
             conditions,
-            thermal: ThermalModel::default(),
+            thermal: ThermalModel::of(&chance.robot),
             ready: vec![None; self.kinds.len()],
             out: Outcome {
                 energy_j: 0.0,

@@ -108,18 +108,11 @@ impl TryFrom<KnownMechanismFile> for KnownMechanism {
         }
         let value = |(i, p): (usize, &mechanism::Parameter)| {
             let written = file.parameters.get(p.name).copied();
-            let value = written
+            written
                 .or(mechanism.is_optional(i).then_some(0.0))
-                .ok_or(format!("`{name}` lacks its parameter `{}`", p.name))?;
-            let [low, high] = p.bounds;
-            let hint = if p.unit == "1" { "give a ratio".to_owned() } else { format!("give {}", p.unit) };
-            if (low..=high).contains(&value) {
-                Ok(value)
-            } else {
-                Err(format!("`{}` of `{name}` is {value}, must be {low} to {high}; {hint}", p.name))
-            }
+                .ok_or(format!("`{name}` lacks its parameter `{}`", p.name))
         };
-        let values = wanted.iter().enumerate().map(value).collect::<Result<_, _>>()?;
+        let values = wanted.iter().enumerate().map(value).collect::<Result<_, String>>()?;
         Ok(KnownMechanism { mechanism, values })
     }
 }
@@ -138,10 +131,14 @@ impl Moment {
 }
 
 impl Robot {
-    /// What this robot's own mechanisms and those of a surface add at a moment.
+    /// What the height of its centre of mass, this robot's own mechanisms and those of a surface add at a moment.
     #[inline]
     pub fn adjustment(&self, surface: &Surface, moment: &Moment) -> Adjustment {
         let mut all = Adjustment::default();
+        let height_m = self.center_of_mass.height_m;
+        if height_m != 0.0 {
+            all = mechanism::OF_HEIGHT.adjust(self, &[height_m], moment);
+        }
         for known in self.mechanisms.iter().chain(&surface.mechanisms) {
             all = all.and(known.mechanism.adjust(self, &known.values, moment));
         }
@@ -151,6 +148,11 @@ impl Robot {
     /// Whether it has mechanisms, on any ground.
     pub fn has_mechanisms(&self) -> bool {
         !self.mechanisms.is_empty() || self.surfaces.values().any(|surface| !surface.mechanisms.is_empty())
+    }
+
+    /// Whether anything is added to what rolling, skidding and the weight along a slope ask for, on this surface.
+    pub fn is_adjusted(&self, surface: &Surface) -> bool {
+        self.center_of_mass.height_m != 0.0 || !self.mechanisms.is_empty() || !surface.mechanisms.is_empty()
     }
 
     /// The mass that a climb lifts: the robot's with everything that it carries and tows [kg].
@@ -198,6 +200,12 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
             }
         }
     }
+    let of_robot = robot.mechanisms.iter().enumerate().map(|(i, known)| (format!("mechanisms[{i}]"), known));
+    let of_grounds = robot.surfaces.iter().flat_map(|(name, surface)| {
+        let field = move |i| format!("surfaces.{name}.mechanisms[{i}]");
+        surface.mechanisms.iter().enumerate().map(move |(i, known)| (field(i), known))
+    });
+    of_robot.chain(of_grounds).try_for_each(|(field, known)| within_bounds(robot, field, known))?;
     let (mass_kg, slip) = (robot.lifted_mass_kg(), robot.wheel_slip().max(robot.turning_slip()));
     let field = || "mechanisms".to_owned();
     if mass_kg <= 0.0 {
@@ -209,6 +217,23 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
         let message =
             format!("wheels that slip by {slip:.2} do not move or turn the robot; give less than 1 in all");
         return Err(Error::Mechanism { field: field(), message });
+    }
+    Ok(())
+}
+
+/// Refuses a mechanism with a value that a robot of this size cannot have.
+fn within_bounds(robot: &Robot, field: String, known: &KnownMechanism) -> Result<(), Error> {
+    for (p, value) in known.mechanism.parameters().iter().zip(&known.values) {
+        let [low, high] = p.bounds_of(robot);
+        if !(low..=high).contains(value) {
+            let hint = if p.unit == "1" { "give a ratio".to_owned() } else { format!("give {}", p.unit) };
+            let (name, mechanism) = (p.name, known.mechanism.name());
+            let message = format!(
+                "`{name}` of `{mechanism}` is {value}, must be {low} to {high} on a robot of {} kg; {hint}",
+                robot.mass_kg
+            );
+            return Err(Error::Mechanism { field, message });
+        }
     }
     Ok(())
 }
@@ -319,6 +344,31 @@ mod tests {
             let said = with(mechanisms.clone()).unwrap_err().to_string();
             assert!(said.contains(place) && said.contains(hint), "{mechanisms}: {said}");
         }
+    }
+
+    #[test]
+    fn what_can_be_grows_with_the_robot() {
+        let (husky, mut large) = (builtin::husky_a200(), builtin::husky_a200());
+        large.mass_kg = 900.0;
+        for (name, parameter, factor) in [
+            ("drivetrain_drag", 0, 10.0),
+            ("towed_load", 1, 10.0),
+            ("hotel_load", 0, 10.0),
+            ("motor_heating", 0, 0.1),
+            ("motor_heating", 1, 1.0),
+            ("soft_soil", 0, 1.0),
+        ] {
+            let mechanism = mechanism::by_name(name).unwrap();
+            let [[_, usual], [_, on_large]] =
+                [&husky, &large].map(|robot| mechanism.bounds(robot, parameter));
+            assert!((on_large / usual - factor).abs() < 1e-12, "{name}: {usual} {on_large}");
+        }
+        let drag =
+            json!([{"mechanism": "drivetrain_drag", "parameters": {"left_n": 1000.0, "right_n": 0.0}}]);
+        assert!(with(drag.clone()).unwrap_err().to_string().contains("-10 to 300 on a robot of 90 kg"));
+        let mut file = serde_json::to_value(&large).unwrap();
+        file["mechanisms"] = drag;
+        assert!(Robot::from_json(&file.to_string()).is_ok());
     }
 
     #[test]

@@ -37,6 +37,23 @@ impl Default for ThermalModel {
     }
 }
 
+/// Mass of the robot whose motors [`ThermalModel::default`] describes [kg].
+const OF_MASS_KG: f64 = 90.0;
+
+impl ThermalModel {
+    /// Motors of a robot: as a Husky's, with stores that grow and resistances that fall with its mass, so that losses in proportion to it
+    /// warm them alike.
+    pub fn of(robot: &Robot) -> Self {
+        let (size, husky) = (robot.mass_kg / OF_MASS_KG, ThermalModel::default());
+        ThermalModel {
+            winding_j_per_k: size * husky.winding_j_per_k,
+            case_j_per_k: size * husky.case_j_per_k,
+            winding_to_case_k_per_w: husky.winding_to_case_k_per_w / size,
+            case_to_air_k_per_w: husky.case_to_air_k_per_w / size,
+        }
+    }
+}
+
 /// Temperatures of one motor [°C].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorHeat {
@@ -114,6 +131,21 @@ mod tests {
         let (case_c, _, _) = spin(23 * 60);
         assert!((case_c.left - 76.0).abs() < 6.0, "left {}", case_c.left);
         assert!((case_c.right - 76.0).abs() < 12.0, "right {}", case_c.right);
+    }
+
+    #[test]
+    fn twice_the_losses_warm_motors_of_twice_the_robot_alike() {
+        let mut twice = builtin::husky_a200();
+        twice.mass_kg *= 2.0;
+        let warmed = |model: ThermalModel, size: f64| {
+            let mut heat = MotorHeat::at_rest(20.0);
+            (0..1000).for_each(|_| heat.advance(&model, 40.0 * size, 45.0 * size, 20.0, 1.0));
+            [heat.winding_c, heat.case_c]
+        };
+        let husky = ThermalModel::of(&builtin::husky_a200());
+        assert_eq!(husky, ThermalModel::default());
+        let pairs = warmed(husky, 1.0).into_iter().zip(warmed(ThermalModel::of(&twice), 2.0));
+        pairs.for_each(|(one, two)| assert!((one - two).abs() < 1e-9 && one > 30.0, "{one} {two}"));
     }
 
     #[test]

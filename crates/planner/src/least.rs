@@ -44,7 +44,8 @@ fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
 
 fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, manoeuvres: &[Manoeuvre]) -> f64 {
     let (robot, settings) = (&lattice.robot, &lattice.settings);
-    let holds = settings.power_model == PowerModel::ForceBalance && !robot.has_mechanisms();
+    let is_plain = robot.surfaces.values().all(|surface| !robot.is_adjusted(surface));
+    let holds = settings.power_model == PowerModel::ForceBalance && is_plain;
     let floor = if holds { lattice.kappa() * robot.limits.max_roll_rad.cos() } else { 0.0 };
     let steepest = robot.limits.max_roll_rad.tan();
     let on = |manoeuvre: &Manoeuvre| {

@@ -44,9 +44,9 @@ impl Case {
             CaseKind::One(name) => vec![name],
             CaseKind::Two(first, second) => vec![first, second],
         };
-        let drive = drive(&mut random, &names);
+        let drive = drive(&mut random, &names, robot);
         let varied = Drive::new(DriveKind::Rich, HEALTHY_S, random.seed());
-        let mut world = world(&mut random, &names);
+        let mut world = world(&mut random, &names, robot);
         if kind == CaseKind::Decoy {
             disguise(&mut world, &mut random);
         }
@@ -112,7 +112,7 @@ const DRIVE_S: f64 = 900.0;
 const HEALTHY_S: f64 = 450.0;
 
 /// A drive on which the effects can show at all.
-fn drive(random: &mut Random, names: &[EffectName]) -> Drive {
+fn drive(random: &mut Random, names: &[EffectName], robot: &RobotFile) -> Drive {
     use EffectName as E;
     let needs = |some: &[EffectName]| names.iter().any(|name| some.contains(name));
     let kinds: &[DriveKind] = if needs(&[E::Inertia, E::ClockOffset, E::StickyStart]) {
@@ -121,12 +121,12 @@ fn drive(random: &mut Random, names: &[EffectName]) -> Drive {
         &[DriveKind::Rich, DriveKind::Rich, DriveKind::LawnMower]
     };
     Drive {
-        speed_mps: Some(random.between(0.7, 0.9)),
+        speed_mps: Some(random.between(0.7, 0.9) * robot.max_wheel_speed_mps),
         ..Drive::new(random.pick(kinds), DRIVE_S, random.seed())
     }
 }
 
-fn world(random: &mut Random, names: &[EffectName]) -> World {
+fn world(random: &mut Random, names: &[EffectName], robot: &RobotFile) -> World {
     use EffectName as E;
     let steep = [
         E::GradeDependentFriction,
@@ -145,7 +145,7 @@ fn world(random: &mut Random, names: &[EffectName]) -> World {
         patches: Vec::new(),
         ambient_temp_c: None,
         wind: None,
-        sensors: Sensors::default(),
+        sensors: Sensors::of(robot),
         scatter: 0.5,
         seed: random.seed(),
         robot_seed: Some(random.seed()),

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use act::{Act, Conditions, Distortion, Surroundings};
 pub use catalog::{EffectName, Family};
-pub(crate) use outside::{DRAG_AREA_M2, air_force_n, trailer_kg};
+pub(crate) use outside::{air_force_n, drag_area_m2, trailer_kg};
 
 use crate::{Error, limits::within};
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::{
     Drive, Effect, EffectName, Error, Family, Log, RobotFile, World,
-    effect::{DRAG_AREA_M2, trailer_kg},
+    effect::{drag_area_m2, trailer_kg},
     simulate::{Simulation, simulate_closely},
 };
 
@@ -134,7 +134,7 @@ fn parameters(effect: &Effect, robot: &RobotFile) -> Vec<TruthParameter> {
         E::HotelLoad => vec![one("power_w", s, "W")],
         E::Regeneration => vec![one("added", -s * robot.motors.regeneration, "1")],
         E::Wind => vec![
-            one("drag_area_m2", DRAG_AREA_M2[0], "m²"),
+            one("drag_area_m2", drag_area_m2(robot)[0], "m²"),
             one("east_mps", ahead, "m/s"),
             one("north_mps", aside, "m/s"),
         ],

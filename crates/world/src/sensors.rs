@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, limits::within};
+use crate::{Error, RobotFile, limits::within};
 
 /// How a drive is recorded. Every field has a default, which is that of a good robot of the Husky's class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,7 +105,24 @@ impl Default for Sensors {
     }
 }
 
+/// The robot that the default sensors are of: a Husky's mass [kg] and top speed [m/s].
+const OF_MASS_KG: f64 = 90.0;
+const OF_TOP_MPS: f64 = 1.0;
+
 impl Sensors {
+    /// A good set of sensors for a robot: power is measured in proportion to what its weight takes at top speed, speed to that speed.
+    pub fn of(robot: &RobotFile) -> Self {
+        let fast = robot.max_wheel_speed_mps / OF_TOP_MPS;
+        let strong = robot.mass_kg / OF_MASS_KG * fast;
+        let usual = Sensors::default();
+        Sensors {
+            speed_noise_mps: fast * usual.speed_noise_mps,
+            power_noise_w: strong * usual.power_noise_w,
+            power_step_w: strong * usual.power_step_w,
+            ..usual
+        }
+    }
+
     /// Sensors without noise, bias, steps, delays or gaps.
     pub fn perfect() -> Self {
         Sensors {

@@ -9,11 +9,11 @@ use std::{
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
-use model::{Robot, builtin};
+use model::Robot;
 use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
 use recording::read_paths;
 
-use crate::{failure::BadInput, progress};
+use crate::{failure::BadInput, progress, recorded::robot};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -22,6 +22,9 @@ const MOST_CASES: usize = 10_000;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
+    /// Name of a built-in robot, or a robot file: the robot when it is healthy
+    #[arg(long, default_value = "husky-a200")]
+    robot: String,
     /// Cases to draw; healthy drives and decoys are three tenths of them
     #[arg(long, default_value_t = 40)]
     cases: usize,
@@ -69,7 +72,7 @@ impl From<Only> for Kind {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     check(arguments)?;
     let program = std::env::current_exe().context("cannot tell where joulepath itself lies")?;
-    let robot_json = serde_json::to_string_pretty(&builtin::husky_a200())? + "\n";
+    let robot_json = serde_json::to_string_pretty(&robot(&arguments.robot)?)? + "\n";
     let bar = Mutex::new(progress::cases());
     let told = |stage, done, all| {
         if let Ok(bar) = bar.lock() {

@@ -27,7 +27,7 @@ impl Mechanism for Inertia {
 
     /// Rotors and gears that weigh on a robot like several of it are no robot's.
     fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
-        let [low, high] = self.parameters()[parameter].bounds;
+        let [low, high] = self.parameters()[parameter].bounds_of(robot);
         [low, high.min(MOST_MASSES * robot.mass_kg)]
     }
 

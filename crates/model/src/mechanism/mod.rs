@@ -42,10 +42,27 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its unit, `1` for none.
     pub unit: &'static str,
-    /// Least and greatest value.
+    /// Least and greatest value on a robot of a Husky's size.
     pub bounds: [f64; 2],
     /// A small step, in which the power changes in proportion.
     pub probe: f64,
+}
+
+/// Mass of the robot that [`Parameter::bounds`] are of [kg].
+const OF_MASS_KG: f64 = 90.0;
+
+impl Parameter {
+    /// Least and greatest value on a robot: loads, forces and powers grow with its mass, and so do its motors, of which a watt warms
+    /// larger ones less. All else is the same on large robots and on small ones.
+    pub fn bounds_of(&self, robot: &Robot) -> [f64; 2] {
+        let size = robot.mass_kg / OF_MASS_KG;
+        let factor = match self.unit {
+            "N" | "kg" | "W" => size,
+            "K/W" => 1.0 / size,
+            _ => 1.0,
+        };
+        self.bounds.map(|bound| factor * bound)
+    }
 }
 
 /// One instant of a drive.
@@ -62,6 +79,9 @@ pub struct Moment {
     /// Copper loss of each side's motor, averaged over [`Mechanism::memory_s`] backwards [W].
     pub loss_w: Sides<f64>,
 }
+
+/// What a centre of mass high above the ground does, by its height: that of a robot's file counts without a mechanism in its list.
+pub(crate) static OF_HEIGHT: &dyn Mechanism = &load_transfer::LoadTransfer;
 
 /// What is added to the balance of forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,8 +169,8 @@ pub trait Mechanism: Sync {
     fn parameters(&self) -> &'static [Parameter];
 
     /// Least and greatest value of a parameter that a robot can have: the parameter's own bounds, or closer ones.
-    fn bounds(&self, _robot: &Robot, parameter: usize) -> [f64; 2] {
-        self.parameters()[parameter].bounds
+    fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
+        self.parameters()[parameter].bounds_of(robot)
     }
 
     /// Whether a robot's file may leave a parameter out.

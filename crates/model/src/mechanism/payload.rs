@@ -26,7 +26,7 @@ impl Mechanism for Payload {
 
     /// A robot without three tenths of itself does not drive.
     fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
-        let [low, high] = self.parameters()[parameter].bounds;
+        let [low, high] = self.parameters()[parameter].bounds_of(robot);
         [low.max(-LEAST_SHARE * robot.mass_kg), high]
     }
 

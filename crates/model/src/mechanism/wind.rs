@@ -38,7 +38,7 @@ impl Mechanism for Wind {
 
     /// A body of several times the footprint is no robot's.
     fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
-        let [low, high] = self.parameters()[parameter].bounds;
+        let [low, high] = self.parameters()[parameter].bounds_of(robot);
         let most_m2 = MOST_FOOTPRINTS * robot.track_m * robot.wheelbase_m;
         if parameter == 0 { [low, high.min(most_m2)] } else { [low, high] }
     }

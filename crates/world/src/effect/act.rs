@@ -17,6 +17,8 @@ pub(crate) struct Surroundings {
     pub(crate) rim_mps: [f64; 2],
     pub(crate) rim_m: [f64; 2],
     pub(crate) wheel_radius_m: f64,
+    /// Drag areas of the robot, head-on and from the side [m²].
+    pub(crate) drag_area_m2: [f64; 2],
     /// Mass of the robot without effects [kg].
     pub(crate) mass_kg: f64,
     /// Duty of both drivers, −1 to 1.

@@ -1,19 +1,27 @@
 //! Forces from outside: air and trailers.
 
 use super::{Act, Conditions, Surroundings, act::direction};
+use crate::RobotFile;
 
 /// Air density at 20 °C [kg/m³].
 const AIR_KG_PER_M3: f64 = 1.204;
-/// Drag areas of a box of a Husky's size with a mast, head-on and from the side [m²].
-pub(crate) const DRAG_AREA_M2: [f64; 2] = [0.45, 0.60];
+/// Drag areas of a box of a Husky's size with a mast, head-on and from the side [m²], and the area between its wheels [m²].
+const DRAG_AREA_M2: [f64; 2] = [0.45, 0.60];
+const OF_FOOTPRINT_M2: f64 = 0.54 * 0.54;
 const GRAVITY_MPS2: f64 = 9.806_65;
+
+/// Drag areas of a robot, head-on and from the side [m²]: they grow with the area between its wheels.
+pub(crate) fn drag_area_m2(robot: &RobotFile) -> [f64; 2] {
+    let size = robot.wheelbase_m * robot.track_m / OF_FOOTPRINT_M2;
+    DRAG_AREA_M2.map(|area_m2| size * area_m2)
+}
 
 /// Force of the air on the body, forward and left [N].
 pub(crate) fn air_force_n(seen: &Surroundings, speed_mps: f64, toward_rad: f64) -> [f64; 2] {
     let angle = toward_rad - seen.heading_rad;
     let relative = [speed_mps * angle.cos() - seen.speed_mps, speed_mps * angle.sin()];
     let speed = relative[0].hypot(relative[1]);
-    [0, 1].map(|i| 0.5 * AIR_KG_PER_M3 * DRAG_AREA_M2[i] * speed * relative[i])
+    [0, 1].map(|i| 0.5 * AIR_KG_PER_M3 * seen.drag_area_m2[i] * speed * relative[i])
 }
 
 /// Wind that blows to one direction.

@@ -4,7 +4,7 @@ use super::{BEARING_SHARE, Lie, Plant};
 use crate::{
     Error,
     contact::Brush,
-    effect::{Conditions, Surroundings, air_force_n},
+    effect::{Conditions, Surroundings, air_force_n, drag_area_m2},
     plant::{GRAVITY_MPS2, LOOK_STEPS},
 };
 
@@ -77,6 +77,7 @@ impl Plant<'_> {
             rim_mps: [0, 1].map(|i| self.sides[i].rim_mps),
             rim_m: [0, 1].map(|i| self.sides[i].rim_m),
             wheel_radius_m: self.robot.wheel_radius_m,
+            drag_area_m2: drag_area_m2(self.robot),
             mass_kg: self.robot.mass_kg,
             duty: [0, 1].map(|i| self.sides[i].duty),
             relative_voltage: self.battery.relative_voltage(),
