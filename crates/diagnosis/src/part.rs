@@ -53,9 +53,9 @@ pub(crate) struct Part {
 /// mechanisms have it read [A]; rate of climbing [m/s].
 pub(crate) type Seen = [f64; 8];
 
-/// Time that an average stands for at least [s]: a row or two that are left of a second, as where a drive ends, are as noisy as rows are,
-/// and would count for as much as a second does.
-const LEAST_S: f64 = 0.3;
+/// Time that an average stands for at least \[s\]: a row that is left of a second, as where a drive ends, is as noisy as rows are, and would
+/// count for as much as a second does.
+const LEAST_S: f64 = 0.15;
 
 impl Part {
     pub(crate) fn new(

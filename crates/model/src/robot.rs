@@ -65,7 +65,7 @@ pub struct CenterOfMass {
     pub forward_m: f64,
     /// Towards the left wheels [m].
     pub left_m: f64,
-    /// Above the ground [m].
+    /// Above the ground \[m\]; slopes, turns and accelerations shift load by it. 0, as where it is not known, shifts none (eq. 14).
     pub height_m: f64,
 }
 

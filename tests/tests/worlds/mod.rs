@@ -2,21 +2,32 @@
 
 #![allow(clippy::panic)]
 
+use model::Robot;
 use recording::{Recording, read_paths};
-use world::{Drive, DriveKind, Effect, RobotFile, World, simulate};
+use world::{Drive, DriveKind, Effect, RobotFile, Sensors, World, simulate};
 
 /// A rich drive of the built-in robot over gentle hills, the same robot and hills whatever the seed.
 ///
 /// # Panics
 /// When a world with these effects cannot be.
+#[allow(dead_code)]
 pub(crate) fn drive(seed: u64, duration_s: f64, effects: Vec<Effect>) -> Recording {
+    drive_of(&model::builtin::husky_a200(), &Drive::new(DriveKind::Rich, duration_s, seed), effects)
+}
+
+/// The same of any robot, with sensors of its size, and of any kind of drive.
+///
+/// # Panics
+/// When a world with these effects cannot be.
+pub(crate) fn drive_of(robot: &Robot, drive: &Drive, effects: Vec<Effect>) -> Recording {
+    let seed = drive.seed;
     let text = format!(r#"{{"terrain": {{"rolling": {{"grade": 0.03}}}}, "seed": {seed}, "robot_seed": 5}}"#);
     let recorded = || -> Result<Recording, Box<dyn std::error::Error>> {
-        let world = World { effects, ..World::from_json(&text)? };
-        let robot = RobotFile::from_json(&serde_json::to_string(&model::builtin::husky_a200())?)?;
+        let robot = RobotFile::from_json(&serde_json::to_string(robot)?)?;
+        let world = World { effects, sensors: Sensors::of(&robot), ..World::from_json(&text)? };
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("drive.csv");
-        let log = simulate(&world, &robot, &Drive::new(DriveKind::Rich, duration_s, seed))?;
+        let log = simulate(&world, &robot, drive)?;
         log.write_csv(std::fs::File::create(&path)?)?;
         Ok(read_paths(&[path], None)?.0)
     };

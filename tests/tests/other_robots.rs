@@ -1,0 +1,109 @@
+//! Robots that are smaller and larger than a Husky, and recordings that are not as clean as a good robot's.
+
+#![allow(clippy::panic, clippy::unwrap_used)]
+
+mod worlds;
+
+use diagnosis::{Diagnosis, Finding, Question, Verdict, diagnose};
+use joulepath_tests::file;
+use model::Robot;
+use recording::{Channel, Recording};
+use world::{Drive, DriveKind, Effect, EffectName};
+use worlds::drive_of;
+
+fn robot(name: &str) -> Robot {
+    let path = file(&format!("tests/robots/{name}.json"));
+    Robot::from_json(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn said(robot: &Robot, suspect: &Recording, healthy: Option<&Recording>) -> Diagnosis {
+    diagnose(&Question::new(robot, suspect, healthy), &|_, _| {}).unwrap()
+}
+
+fn value(found: &Diagnosis, mechanism: &str, parameter: &str) -> Option<f64> {
+    let finding = found.findings.iter().find(|finding| finding.mechanism == mechanism)?;
+    finding.parameters.iter().find(|p| p.name == parameter).map(|p| p.value)
+}
+
+/// Uniform noise of a standard deviation on both wheels' speeds, in rows in which they stand as well.
+fn with_noisy_wheels(mut drives: Recording, sigma_mps: f64) -> Recording {
+    for (which, channel) in [Channel::LeftSpeed, Channel::RightSpeed].into_iter().enumerate() {
+        let mut state = 88_172_645_463_325_252_u64 + which as u64;
+        for mps in drives.channels.get_mut(&channel).unwrap() {
+            // Xorshift (Marsaglia, "Xorshift RNGs", J. Stat. Softw. 8(14), 2003).
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            let uniform = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            *mps += sigma_mps * 12.0_f64.sqrt() * uniform;
+        }
+    }
+    drives
+}
+
+#[test]
+fn wheels_whose_speeds_are_noise_while_they_stand_stand() {
+    let small = robot("small");
+    let drive = |kind, seed| drive_of(&small, &Drive::new(kind, 600.0, seed), vec![]);
+    let [suspect, healthy] =
+        [(DriveKind::StopAndGo, 61), (DriveKind::Rich, 62)].map(|(kind, seed)| drive(kind, seed));
+    let clean = said(&small, &suspect, Some(&healthy));
+    let [suspect, healthy] = [suspect, healthy].map(|drives| with_noisy_wheels(drives, 0.008));
+    let noisy = said(&small, &suspect, Some(&healthy));
+    for found in [&clean, &noisy] {
+        assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+    }
+    // Standing wheels that were taken for creeping ones would be told to push, hold and roll.
+    let [clean_w, noisy_w] = [&clean, &noisy].map(|found| found.baseline.held_out_rmse_w);
+    assert!(noisy_w < 1.5 * clean_w, "{clean_w} W without noise, {noisy_w} W with it");
+}
+
+#[test]
+fn motors_of_a_small_robot_warm_by_more_for_each_watt_than_a_husky_s_can() {
+    let small = robot("small");
+    let heating = vec![Effect::new(EffectName::MotorHeating, 4.0)];
+    let suspect = drive_of(&small, &Drive::new(DriveKind::Rich, 900.0, 63), heating);
+    let healthy = drive_of(&small, &Drive::new(DriveKind::Rich, 600.0, 64), vec![]);
+    let found = said(&small, &suspect, Some(&healthy));
+    let rise_k_per_w = value(&found, "motor_heating", "rise_k_per_w");
+    // A Husky's two nodes, a fifth as large, four times as warm: 4 (1/3.0 + 1/1.4) 90/17 K/W once the case is warm as well.
+    assert!(rise_k_per_w.is_some_and(|rise| (8.0..30.0).contains(&rise)), "{}", found.sentence);
+}
+
+#[test]
+fn wind_that_was_found_first_is_fitted_anew_beside_a_load() {
+    let large = robot("large");
+    let (speed_mps, toward_rad, load_kg) = (10.0, 0.6, 45.0);
+    let effects = vec![
+        Effect { onset_s: 300.0, ..Effect::new(EffectName::Payload, load_kg) },
+        Effect { direction_rad: toward_rad, ..Effect::new(EffectName::Wind, speed_mps) },
+    ];
+    let suspect = drive_of(&large, &Drive::new(DriveKind::Rich, 900.0, 65), effects);
+    let healthy = drive_of(&large, &Drive::new(DriveKind::Rich, 600.0, 66), vec![]);
+    let found = said(&large, &suspect, Some(&healthy));
+    let [east_mps, north_mps] = ["east_mps", "north_mps"].map(|name| value(&found, "wind", name));
+    let (Some(east_mps), Some(north_mps)) = (east_mps, north_mps) else { panic!("{}", found.sentence) };
+    let off_rad = north_mps.atan2(east_mps) - toward_rad;
+    assert!(off_rad.abs() < 0.15, "{}", found.sentence);
+    assert!((east_mps.hypot(north_mps) / speed_mps - 1.0).abs() < 0.25, "{}", found.sentence);
+    let is_load = |f: &Finding| {
+        f.mechanism == "payload" || f.indistinguishable_from.iter().any(|name| name == "payload")
+    };
+    assert!(found.findings.iter().any(is_load), "{}", found.sentence);
+}
+
+#[test]
+fn alone_what_differs_from_the_file_from_the_beginning_on_is_no_change() {
+    // A load that always lay higher than the file says, and a drag that was always there, set in at no time.
+    let husky = model::builtin::husky_a200();
+    for (effect, strength) in [(EffectName::LoadTransfer, 0.3), (EffectName::DrivetrainDrag, 8.0)] {
+        for seed in [67, 68] {
+            let effects = vec![Effect::new(effect, strength)];
+            let suspect = drive_of(&husky, &Drive::new(DriveKind::Rich, 600.0, seed), effects);
+            let found = said(&husky, &suspect, None);
+            let begins = found.findings.iter().flat_map(|finding| &finding.parameters);
+            let begins: Vec<f64> = begins.filter(|p| p.name == "from_s").map(|p| p.value).collect();
+            assert!(begins.is_empty(), "{effect:?}, seed {seed}: {}", found.sentence);
+        }
+    }
+}
