@@ -32,8 +32,8 @@ const LEAST_SPREAD: f64 = 2.5;
 const ALIKE: f64 = 0.8;
 
 /// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
-/// something, and a hundred times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
-/// that nothing goes with any of them, shows a term by chance with less.
+/// something, and a thousand times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
+/// that nothing goes with any of them, shows a term by chance with less, and so do the lanes of a fast robot, of which each lies elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sure {
     AsUsual,
@@ -44,7 +44,7 @@ impl Sure {
     fn level(self) -> f64 {
         match self {
             Sure::AsUsual => LEVEL,
-            Sure::Very => LEVEL / 100.0,
+            Sure::Very => LEVEL / 1000.0,
         }
     }
 }

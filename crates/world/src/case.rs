@@ -202,7 +202,15 @@ fn strength_of_share(
     let mut steepness = 1.0;
     for _ in 0..8 {
         let acting = World { effects: vec![Effect { strength, ..effect.clone() }], ..quiet.clone() };
-        let log = simulate(&acting, robot, drive)?;
+        let log = match simulate(&acting, robot, drive) {
+            Ok(log) => log,
+            // As much of it makes a robot tip over, or cannot be for another reason: no more than what could be driven.
+            Err(_) if before.is_some() => {
+                strength = before.map_or(strength, |[driven, _]| driven);
+                break;
+            }
+            Err(error) => return Err(error),
+        };
         let pairs = log.rows.iter().zip(&plain.rows).filter(|(row, _)| row.t_s >= effect.onset_s);
         let squares: Vec<f64> = pairs.map(|(a, b)| (a.battery_w - b.battery_w).powi(2)).collect();
         let found =

@@ -200,7 +200,8 @@ impl<'a> Plant<'a> {
         self.draw();
         self.move_on();
         self.t_s += self.step_s;
-        if self.speed.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(Error::Diverged { t_s: self.t_s }) }
+        let is_finite = self.speed.iter().all(|v| v.is_finite()) && self.battery.voltage_v.is_finite();
+        if is_finite { Ok(()) } else { Err(Error::Diverged { t_s: self.t_s }) }
     }
 
     fn mass_kg(&self) -> f64 {

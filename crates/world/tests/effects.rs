@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use world::{
-    Case, CaseKind, Drive, DriveKind, Effect, EffectName, Family, Key, Row, Sensors, Side, World,
+    Case, CaseKind, Drive, DriveKind, Effect, EffectName, Family, Key, RobotFile, Row, Sensors, Side, World,
     example_robot, simulate,
 };
 
@@ -177,4 +177,16 @@ fn keys_tell_sizes_by_the_names_of_reports() {
     assert_eq!(told(ahead)[0], ("forward_m", -0.05));
     // Encoders that report a quarter too much belong to wheels that turn a fifth slower than reported.
     assert!((told(Effect::new(E::WheelRadius, 0.25))[0].1 + 0.2).abs() < 1e-12);
+}
+
+#[test]
+fn a_load_so_high_that_a_robot_would_tip_over_is_as_high_as_it_can_be_driven() {
+    // Six hundredths of its power take a centre of mass so high that this robot tips over in its turns.
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/robots/small.json"));
+    let robot = RobotFile::from_json(&text.unwrap()).unwrap();
+    let case =
+        Case::draw(2_639_225_645_871_671, CaseKind::One(EffectName::LoadTransfer), 0.06, &robot).unwrap();
+    let height_m = case.world.effects[0].strength;
+    assert!((0.1..3.0).contains(&height_m), "{height_m}");
+    assert!(case.key(&robot).is_ok());
 }
