@@ -32,19 +32,23 @@ const LEAST_SPREAD: f64 = 2.5;
 const ALIKE: f64 = 0.8;
 
 /// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
-/// something, and a thousand times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
-/// that nothing goes with any of them, shows a term by chance with less, and so do the lanes of a fast robot, of which each lies elsewhere.
+/// something, and a hundred times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
+/// that nothing goes with any of them, shows a term by chance with less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sure {
     AsUsual,
     Very,
 }
 
+/// How many times surer a term that goes with the heading has to be: lanes of a field each have one heading and lie elsewhere, and what
+/// models miss of their ground goes with it.
+const OF_HEADING: f64 = 10.0;
+
 impl Sure {
     fn level(self) -> f64 {
         match self {
             Sure::AsUsual => LEVEL,
-            Sure::Very => LEVEL / 1000.0,
+            Sure::Very => LEVEL / 100.0,
         }
     }
 }
@@ -151,7 +155,8 @@ impl<'a> Beside<'a> {
         let told = self.told(tried);
         let surest =
             told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
-        if surest.p_value > self.level {
+        let surer = if surest.term.is_of_heading() { OF_HEADING } else { 1.0 };
+        if surest.p_value > self.level / surer {
             return None;
         }
         let (mut best, mut held_out_gain) = self.closest(told)?;

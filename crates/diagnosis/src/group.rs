@@ -34,6 +34,11 @@ impl Group {
         of_driving.iter().any(|(name, ..)| *name == self.quantity.0)
     }
 
+    /// Whether it tells where the robot heads.
+    pub(crate) fn is_of_heading(&self) -> bool {
+        self.quantity.0 == HEADING.0
+    }
+
     /// Whether it is the angle that wheels have turned.
     pub(crate) fn is_turn(&self) -> bool {
         self.quantity.0 == TURNED.0

@@ -116,6 +116,11 @@ impl Term {
         Term { groups, ..self.clone() }
     }
 
+    /// Whether it goes with where the robot heads.
+    pub(crate) fn is_of_heading(&self) -> bool {
+        self.groups.iter().any(|group| group.is_of_heading())
+    }
+
     /// Its value in every average of power, under suspicion or not \[W\].
     pub(crate) fn everywhere(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
         let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
