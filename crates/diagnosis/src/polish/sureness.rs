@@ -58,18 +58,18 @@ impl Together {
 
     /// What is fitted of one, and its values from a grid unless all of those are nothing.
     fn all_told(&self, which: usize) -> Vec<usize> {
-        let (from_grid, are_free) = (self.from_grid(which), self.has_grid(which));
+        let (from_grid, are_free) = (self.of_grid(which), self.has_grid(which));
         let is_free = |i: &usize| self.free[which].contains(i) || are_free && from_grid.contains(i);
         (0..self.applied[which].values.len()).filter(is_free).collect()
     }
 
     /// Whether one has values from a grid that are not all nothing.
     pub(super) fn has_grid(&self, which: usize) -> bool {
-        self.from_grid(which).iter().any(|i| self.applied[which].values[*i] != 0.0)
+        self.of_grid(which).iter().any(|i| self.applied[which].values[*i] != 0.0)
     }
 
     /// Parameters of one whose values a grid has.
-    fn from_grid(&self, which: usize) -> Vec<usize> {
+    fn of_grid(&self, which: usize) -> Vec<usize> {
         let Applied { mechanism, values, .. } = &self.applied[which];
         let sizes: Vec<usize> =
             candidates::grids(*mechanism).into_iter().flat_map(|(_, linear)| linear).collect();
