@@ -28,6 +28,9 @@ const MOST_JUDGED: usize = 500;
 const LEAST_GAIN_OF_A_TERM_SIGMAS: f64 = 1.64;
 /// Blocks over which a term is spread at least: one that fades over a minute is over three.
 const LEAST_SPREAD: f64 = 2.5;
+/// How many times surer a term that goes with the heading has to be: lanes of a field each have one heading and lie elsewhere, and what
+/// models miss of their ground goes with it.
+const OF_HEADING: f64 = 10.0;
 /// Cosine from which a term resembles a mechanism.
 const ALIKE: f64 = 0.8;
 
@@ -39,10 +42,6 @@ pub(crate) enum Sure {
     AsUsual,
     Very,
 }
-
-/// How many times surer a term that goes with the heading has to be: lanes of a field each have one heading and lie elsewhere, and what
-/// models miss of their ground goes with it.
-const OF_HEADING: f64 = 10.0;
 
 impl Sure {
     fn level(self) -> f64 {

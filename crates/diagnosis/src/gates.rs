@@ -65,22 +65,26 @@ fn best_that_gains(
     let Foremost { surest, closest, .. } = Foremost::of(series, base, applied, null)?;
     let (all_fitted, delay_apart) = (system(series, base), undelayed(series, base));
     let white = base.whitening(series);
-    let passing = surest.iter().find_map(|one| {
+    let mut passing = None;
+    for one in &surest {
         if one.p_value > LEVEL || one.score <= 0.0 {
-            return None;
+            continue;
         }
         let is_delay = one.candidate.applied.mechanism.name() == "clock_offset";
         let system = if is_delay { &delay_apart } else { &all_fitted };
         let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
         if one.is_in_place() && !is_of_place(series, base, one, null) {
-            return None;
+            continue;
         }
-        if !series.has_healthy() && !is_change(series, base, applied, one, null).ok()? {
-            return None;
+        if !series.has_healthy() && !is_change(series, base, applied, one, null)? {
+            continue;
         }
         let least_sigmas = if one.is_strong { LEAST_GAIN_SIGMAS } else { least_gain_sigmas };
-        Some((one, passes(system, series, &one.evidence, (&columns, least_sigmas))?))
-    });
+        passing = passes(system, series, &one.evidence, (&columns, least_sigmas)).map(|gain| (one, gain));
+        if passing.is_some() {
+            break;
+        }
+    }
     let Some((passed, gain)) = passing else { return Ok(None) };
     let Some(closest_of_it) = closest.iter().find(|one| one.is_like(passed)) else { return Ok(None) };
     // What was judged stands.
@@ -187,8 +191,8 @@ fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
 }
 
 /// Among how many blocks what a candidate does, of which these are the whitened changes, is spread: as many as there are if it does as
-/// much in each, one if one holds nearly all. Of one that a fit takes nearly all of, what is left lies all over; that counts as little as
-/// what the fit takes.
+/// much in each, one if one holds nearly all. It is no more spread than what it does is before the fit takes its part, as what little a fit
+/// leaves of a single block lies all over.
 pub(crate) fn spread(system: &System, series: &Series, one: &Evidence, column: &[f64]) -> f64 {
     let over = |size: Vec<f64>| {
         let squares: f64 = size.iter().map(|size| size * size).sum();

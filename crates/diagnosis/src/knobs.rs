@@ -32,8 +32,6 @@ const SLIP_TRACK_SIGMA: f64 = 0.1;
 /// Width of standing loads that a robot file gives as nothing \[W\], on a robot of a Husky's size or smaller; drivers grow with the power
 /// that drives a robot, which is in proportion to its weight and top speed.
 const STANDING_SIGMA_W: f64 = 2.0;
-const OF_MASS_KG: f64 = 90.0;
-const OF_TOP_MPS: f64 = 1.0;
 
 impl Knob {
     /// The knobs of a robot on surfaces; the battery shows its hotel load, motor drivers do not, and only a gyroscope how far it turned.
@@ -64,8 +62,7 @@ impl Knob {
             add(format!("motors.{side}.k1_w_per_n2"), Place::K1(which), sigma, [0.1 * k1, 10.0 * k1 + 1e-9]);
             add(format!("motors.{side}.k2"), Place::K2(which), u.k2 * k2, [1.0, 2.0 * k2 + 1.0]);
         }
-        let size = robot.mass_kg / OF_MASS_KG * robot.max_wheel_speed_mps / OF_TOP_MPS;
-        let standing = |w: f64| (0.1 * w).max(STANDING_SIGMA_W * size.max(1.0));
+        let standing = |w: f64| (0.1 * w).max(STANDING_SIGMA_W * robot.strength().max(1.0));
         let electronics_w = robot.drive_electronics_w;
         add("drive_electronics_w".into(), Place::Electronics, standing(electronics_w), [-50.0, 1000.0]);
         if sees_battery {

@@ -54,6 +54,7 @@ mod pairs;
 mod part;
 mod parts;
 mod plain;
+mod plausible;
 mod polish;
 mod profile;
 mod ranked;

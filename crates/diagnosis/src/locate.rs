@@ -185,11 +185,12 @@ fn regimes(fastest_mps: f64) -> Vec<Cell> {
     let turn: Of = |a| a.input.difference_mps;
     let grade: Of = |a| a.input.pitch_rad * a.input.speed_mps.signum();
     let gain: Of = |a| a.input.accel_mps2 * a.input.speed_mps.signum();
-    let [slow_mps, fast_mps] = [SLOW, FAST].map(|share| share * fastest_mps);
+    // As they are told.
+    let [slow_mps, fast_mps] = [SLOW, FAST].map(|share| (100.0 * share * fastest_mps).round() / 100.0);
     let [slow, middling, fast] = [
-        format!("below {slow_mps:.1} m/s forwards"),
-        format!("between {slow_mps:.1} and {fast_mps:.1} m/s"),
-        format!("above {fast_mps:.1} m/s"),
+        format!("below {slow_mps} m/s forwards"),
+        format!("between {slow_mps} and {fast_mps} m/s"),
+        format!("above {fast_mps} m/s"),
     ];
     let bins: [(&str, &str, Of, [f64; 2]); 13] = [
         ("while standing or spinning on the spot", "speed_mps", speed, [-STANDING_MPS, STANDING_MPS]),

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use model::Robot;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
@@ -13,6 +12,7 @@ use crate::{
     evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
+    plausible::is_plausible,
     regime::Regime,
     series::{Applied, Series},
     span::Span,
@@ -243,17 +243,13 @@ impl<'a> Scales<'a> {
 
     /// A candidate with its evidence; `None` where that is more than can be.
     fn judge(&self, candidate: Candidate, mut evidence: Evidence) -> Option<Weighed> {
-        let is_delay = name(&candidate) == "clock_offset";
         // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
         // is not in proportion to its size, and more than models miss.
         let is_strong = self.share(&candidate, &evidence) > STRONG;
         if is_from_grid(&candidate) || is_strong {
             evidence.discord = 1.0;
         }
-        if !is_plausible(&self.base.robot, &candidate, &evidence)
-            || is_of_any_wheels(&candidate, &evidence)
-            || is_delay && evidence.values[0].abs() < LEAST_DELAY_ROWS * self.series.row_s()
-        {
+        if !is_plausible(&self.base.robot, &candidate, &evidence, self.series.row_s()) {
             return None;
         }
         let blocks = self.all_fitted.blocks();
@@ -308,30 +304,6 @@ fn beyond(evidence: &Evidence, misfit_variance: Vec<f64>) -> Option<f64> {
     let values = DVector::from_column_slice(&evidence.values);
     let covariance = &evidence.covariance + DMatrix::from_diagonal(&DVector::from_vec(misfit_variance));
     Some(values.dot(&(covariance.try_inverse()? * &values)))
-}
-
-/// A delay of less than a row, but for what its estimate may be off by, is the sensors' business.
-const LEAST_DELAY_ROWS: f64 = 0.8;
-
-/// Share by which wheels turn otherwise than a robot moves, below which that is what tyres, slopes and ground make of it from drive to drive.
-const LEAST_SLIP: f64 = 0.005;
-
-/// Whether wheels would slip, or be of another size, by no more than any do.
-fn is_of_any_wheels(candidate: &Candidate, evidence: &Evidence) -> bool {
-    let is_of_wheels = matches!(name(candidate), "wheel_slip" | "wheel_radius");
-    let of_candidate = candidate.linear.iter().zip(&evidence.values);
-    let most =
-        of_candidate.map(|(i, value)| (candidate.applied.values[*i] + value).abs()).fold(0.0, f64::max);
-    is_of_wheels && most < LEAST_SLIP
-}
-
-fn is_plausible(robot: &Robot, candidate: &Candidate, evidence: &Evidence) -> bool {
-    candidate.linear.iter().zip(&evidence.values).enumerate().all(|(j, (&parameter, value))| {
-        let [low, high] = candidates::range(&candidate.applied, robot, parameter);
-        let sigma = evidence.covariance[(j, j)].max(0.0).sqrt();
-        let value = candidate.applied.values[parameter] + value;
-        value + 2.0 * sigma >= low && value - 2.0 * sigma <= high
-    })
 }
 
 #[cfg(test)]

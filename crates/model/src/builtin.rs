@@ -23,19 +23,23 @@ pub fn by_name(name: &str) -> Result<Robot, Error> {
     })
 }
 
+/// Mass of a Husky A200 \[kg\] and its top speed, the limit of its firmware \[m/s\] (§IV): what figures that grow with a robot are of.
+pub(crate) const HUSKY_KG: f64 = 90.0;
+pub(crate) const HUSKY_TOP_MPS: f64 = 1.0;
+
 /// The Clearpath Husky A200 of the paper with its centre of mass in the middle: 90 kg, base 0.54 m by 0.54 m,
 /// motor constants of Table I, 1 m/s limit of its firmware (§IV).
 pub fn husky_a200() -> Robot {
     Robot {
         name: "husky-a200".into(),
-        mass_kg: 90.0,
+        mass_kg: HUSKY_KG,
         wheelbase_m: 0.54,
         track_m: 0.54,
         slip_track_m: 0.54,
         wheel_radius_m: 0.165,
         center_of_mass: CenterOfMass::default(),
         yaw_inertia_kgm2: 5.0,
-        max_wheel_speed_mps: 1.0,
+        max_wheel_speed_mps: HUSKY_TOP_MPS,
         motors: Motors {
             left: Motor { k1_w_per_n2: 0.0023, k2: 1.7158, force_n_per_a: None },
             right: Motor { k1_w_per_n2: 0.0016, k2: 1.7723, force_n_per_a: None },

@@ -16,6 +16,7 @@ mod gravity;
 pub mod inversion;
 mod kernel;
 mod known;
+mod known_limits;
 mod lateral;
 pub mod least_squares;
 pub mod mechanism;

@@ -5,7 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use crate::battery::Battery;
-use crate::{Error, Sides, known::KnownMechanism, robot_limits};
+use crate::{
+    Error, Sides,
+    builtin::{HUSKY_KG, HUSKY_TOP_MPS},
+    known::KnownMechanism,
+    robot_limits,
+};
 
 /// A skid-steered robot with one motor a side.
 ///
@@ -217,6 +222,16 @@ impl Surface {
 }
 
 impl Robot {
+    /// Its mass over that of a Husky A200, as which its motors, and what it may carry and pull, are taken to grow.
+    pub fn size(&self) -> f64 {
+        self.mass_kg / HUSKY_KG
+    }
+
+    /// What its weight takes at top speed over what that of a Husky A200 does, as which its drivers are taken to grow.
+    pub fn strength(&self) -> f64 {
+        self.size() * self.max_wheel_speed_mps / HUSKY_TOP_MPS
+    }
+
     /// Reads and checks a robot file.
     ///
     /// # Errors

@@ -37,14 +37,11 @@ impl Default for ThermalModel {
     }
 }
 
-/// Mass of the robot whose motors [`ThermalModel::default`] describes [kg].
-const OF_MASS_KG: f64 = 90.0;
-
 impl ThermalModel {
     /// Motors of a robot: as a Husky's, with stores that grow and resistances that fall with its mass, so that losses in proportion to it
     /// warm them alike.
     pub fn of(robot: &Robot) -> Self {
-        let (size, husky) = (robot.mass_kg / OF_MASS_KG, ThermalModel::default());
+        let (size, husky) = (robot.size(), ThermalModel::default());
         ThermalModel {
             winding_j_per_k: size * husky.winding_j_per_k,
             case_j_per_k: size * husky.case_j_per_k,

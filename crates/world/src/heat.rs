@@ -1,8 +1,6 @@
 //! Heat of one motor: winding and case.
 
-/// Mass of the robot whose motors the figures below are of [kg]: a Husky. Motors grow with the robot.
-const OF_MASS_KG: f64 = 90.0;
-/// Heat capacity of the winding [J/K]: 0.4 kg of copper at 385 J/(kg K).
+/// Heat capacity of the winding of a Husky's motor [J/K]: 0.4 kg of copper at 385 J/(kg K). Motors grow with the robot.
 const WINDING_J_PER_K: f64 = 150.0;
 /// Heat capacity of case, rotor and gearbox [J/K]: 2.3 kg at about 500 J/(kg K).
 const CASE_J_PER_K: f64 = 1150.0;
@@ -17,14 +15,14 @@ const DRAUGHT: f64 = 0.25;
 pub(crate) struct Heat {
     pub(crate) winding_c: f64,
     pub(crate) case_c: f64,
-    /// Mass over that of a Husky's motors.
+    /// Size over that of a Husky's motor.
     size: f64,
 }
 
 impl Heat {
-    /// A motor as warm as the air, of a robot of a mass.
-    pub(crate) fn at_rest(ambient_c: f64, robot_kg: f64) -> Self {
-        Heat { winding_c: ambient_c, case_c: ambient_c, size: robot_kg / OF_MASS_KG }
+    /// A motor as warm as the air, of a robot so many times a Husky's size.
+    pub(crate) fn at_rest(ambient_c: f64, size: f64) -> Self {
+        Heat { winding_c: ambient_c, case_c: ambient_c, size }
     }
 
     /// Advances by a step that is short against the winding's minute.
@@ -52,7 +50,7 @@ mod tests {
     fn a_long_spin_warms_the_case_as_the_paper_measured_and_rest_cools_it() {
         // Dogru & Marques (2018), §V-B: 23 min of spinning with 106 to 150 W a side warm the case from 20 to 76 °C; of that
         // some 40 W heat copper and 45 W gears and motor iron.
-        let mut heat = Heat::at_rest(20.0, 90.0);
+        let mut heat = Heat::at_rest(20.0, 1.0);
         for _ in 0..23 * 60 * 10 {
             heat.advance(42.0, 45.0, 20.0, 0.0, 0.1);
         }

@@ -95,7 +95,7 @@ impl<'a> Plant<'a> {
         let ambient_c = world.ambient_temp_c.unwrap_or(reference_c);
         let side = |left| SideState {
             train: DriveTrain::new(robot, left),
-            heat: Heat::at_rest(ambient_c, robot.mass_kg),
+            heat: Heat::at_rest(ambient_c, robot.size()),
             current_a: 0.0,
             integral_v: 0.0,
             duty: 0.0,

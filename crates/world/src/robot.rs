@@ -119,6 +119,10 @@ impl Default for Uncertainty {
     }
 }
 
+/// Mass of a Husky A200 [kg] and its top speed [m/s] (Dogru & Marques 2018, §IV): what figures that grow with a robot are of.
+const HUSKY_KG: f64 = 90.0;
+const HUSKY_TOP_MPS: f64 = 1.0;
+
 impl RobotFile {
     /// Reads and checks a robot file.
     ///
@@ -128,6 +132,16 @@ impl RobotFile {
         let robot: RobotFile = read_json(text)?;
         robot.check()?;
         Ok(robot)
+    }
+
+    /// Mass over a Husky's.
+    pub(crate) fn size(&self) -> f64 {
+        self.mass_kg / HUSKY_KG
+    }
+
+    /// Top speed over a Husky's.
+    pub(crate) fn fastness(&self) -> f64 {
+        self.max_wheel_speed_mps / HUSKY_TOP_MPS
     }
 
     /// Effective track of the wheels' kinematics [m].
@@ -233,14 +247,14 @@ pub fn example_robot() -> RobotFile {
         |mu_roll, mu_skid| SurfaceFile { mu_roll, mu_skid, slip_angle_scale_rad: 0.30, dogru_marques: None };
     RobotFile {
         name: "husky-like".into(),
-        mass_kg: 90.0,
+        mass_kg: HUSKY_KG,
         wheelbase_m: 0.54,
         track_m: 0.54,
         slip_track_m: None,
         wheel_radius_m: 0.165,
         center_of_mass: CenterOfMass::default(),
         yaw_inertia_kgm2: Some(5.0),
-        max_wheel_speed_mps: 1.0,
+        max_wheel_speed_mps: HUSKY_TOP_MPS,
         motors: Motors {
             left: motor(0.0023, 1.7158),
             right: motor(0.0016, 1.7723),

@@ -105,15 +105,11 @@ impl Default for Sensors {
     }
 }
 
-/// The robot that the default sensors are of: a Husky's mass [kg] and top speed [m/s].
-const OF_MASS_KG: f64 = 90.0;
-const OF_TOP_MPS: f64 = 1.0;
-
 impl Sensors {
     /// A good set of sensors for a robot: power is measured in proportion to what its weight takes at top speed, speed to that speed.
     pub fn of(robot: &RobotFile) -> Self {
-        let fast = robot.max_wheel_speed_mps / OF_TOP_MPS;
-        let strong = robot.mass_kg / OF_MASS_KG * fast;
+        let fast = robot.fastness();
+        let strong = robot.size() * fast;
         let usual = Sensors::default();
         Sensors {
             speed_noise_mps: fast * usual.speed_noise_mps,

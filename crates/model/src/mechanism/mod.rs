@@ -48,17 +48,13 @@ pub struct Parameter {
     pub probe: f64,
 }
 
-/// Mass of the robot that [`Parameter::bounds`] are of [kg].
-const OF_MASS_KG: f64 = 90.0;
-
 impl Parameter {
     /// Least and greatest value on a robot: loads, forces and powers grow with its mass, and so do its motors, of which a watt warms
     /// larger ones less. All else is the same on large robots and on small ones.
     pub fn bounds_of(&self, robot: &Robot) -> [f64; 2] {
-        let size = robot.mass_kg / OF_MASS_KG;
         let factor = match self.unit {
-            "N" | "kg" | "W" => size,
-            "K/W" => 1.0 / size,
+            "N" | "kg" | "W" => robot.size(),
+            "K/W" => 1.0 / robot.size(),
             _ => 1.0,
         };
         self.bounds.map(|bound| factor * bound)
