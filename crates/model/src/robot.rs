@@ -70,7 +70,7 @@ pub struct CenterOfMass {
     pub forward_m: f64,
     /// Towards the left wheels [m].
     pub left_m: f64,
-    /// Above the ground \[m\]; slopes, turns and accelerations shift load by it. 0, as where it is not known, shifts none (eq. 14).
+    /// Above the ground [m]. Slopes, turns and accelerations shift load by it (eq. 14); 0, as where it is not known, shifts none.
     pub height_m: f64,
 }
 
