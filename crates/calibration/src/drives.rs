@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use model::Robot;
+use model::{Robot, Sides};
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
@@ -202,6 +202,15 @@ impl Drives {
             self.average();
         }
         self
+    }
+
+    /// Lowest and highest temperature of each motor \[°C\]; infinite where no row is used.
+    pub fn motor_range_c(&self) -> Sides<[f64; 2]> {
+        let of = |side: fn(&Row) -> f64| {
+            let used = self.rows.iter().filter(|row| row.used).map(side);
+            used.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| [low.min(c), high.max(c)])
+        };
+        Sides { left: of(|row| row.motor_c.left), right: of(|row| row.motor_c.right) }
     }
 
     /// Asks the watch whether to go on.

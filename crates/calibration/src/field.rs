@@ -15,9 +15,9 @@ const REGENERATION_SIGMA: f64 = 0.29;
 /// Sigma of a standing power that the robot file gives as zero \[W\]: a computer and its sensors.
 const STANDING_SIGMA_W: f64 = 30.0;
 /// Sigma of α_R \[1/K\]: copper's 0.0039 is certain, but a sensor on the case is warmer or colder than the winding by a quarter.
-const RESISTANCE_SIGMA_PER_K: f64 = 0.001;
+pub const RESISTANCE_SIGMA_PER_K: f64 = 0.001;
 /// Sigma of α_M \[1/K\], which spans the remanence of magnets: AlNiCo −0.0002, NdFeB −0.0012, ferrite −0.0020.
-const MOTOR_CONSTANT_SIGMA_PER_K: f64 = 0.0006;
+pub const MOTOR_CONSTANT_SIGMA_PER_K: f64 = 0.0006;
 
 /// A field of the robot that is fitted.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,14 +138,10 @@ impl Lines {
     }
 }
 
-/// How far the warmer-and-colder of either motor's temperatures lie apart \[K\].
+/// How far the warmest and the coldest of either motor's temperatures lie apart \[K\].
 fn temperature_span_k(drives: &Drives) -> f64 {
-    let span = |side: fn(&crate::row::Row) -> f64| {
-        let used = drives.rows.iter().filter(|row| row.used).map(side);
-        let [low, high] = used.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c), h.max(c)]);
-        high - low
-    };
-    span(|row| row.motor_c.left).max(span(|row| row.motor_c.right))
+    let of_sides = drives.motor_range_c().map(|[low, high]| high - low);
+    of_sides.left.max(of_sides.right)
 }
 
 /// The robot with fitted values in their fields.

@@ -37,6 +37,7 @@ mod watch;
 pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
 pub use drives::Drives;
 pub use error::Error;
+pub use field::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};
 pub use method::Method;
 pub use predict::{PredictedDrives, Prediction, RunPrediction, predict, predict_watched, with_powers};
 pub use stuck::{SlipTrack, slip_track};

@@ -28,7 +28,7 @@ pub struct Row {
     pub heading_rad: f64,
     /// Copper loss of each motor, averaged backwards over the memory of the robot's own `motor_heating`, if it has one \[W\].
     pub loss_w: Sides<f64>,
-    /// Motor temperatures \[°C\]; the robot's reference where the recording has none.
+    /// Motor temperatures \[°C\]: that of the air where the recording has none, and the robot's reference where it has neither.
     pub motor_c: Sides<f64>,
     /// Enters averages: everything needed is there and the wheels hold the ground.
     pub used: bool,
@@ -83,13 +83,16 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
     let (yaw, pitch, roll) = (channel(Channel::YawRate), channel(Channel::Pitch), channel(Channel::Roll));
     let heading = channel(Channel::Heading);
     let reference_c = robot.motors.reference_temperature_c;
+    // What motors are warmer than the air is told by nothing then, but from a day to another they follow it.
+    let air = channel(Channel::AmbientTemperature).map(|values_c| nearest(values_c, recording));
     let warm = [Channel::LeftMotorTemperature, Channel::RightMotorTemperature]
         .map(|side| channel(side).map(|values_c| nearest(values_c, recording)));
     let [left_c, right_c] = warm.each_ref().map(Option::as_deref);
     let row = |i: usize| {
         let rim_mps = Sides { left: at(left, i, f64::NAN), right: at(right, i, f64::NAN) };
         let (pitch_rad, roll_rad) = (at(pitch, i, 0.0), at(roll, i, 0.0));
-        let motor_c = Sides { left: at(left_c, i, reference_c), right: at(right_c, i, reference_c) };
+        let air_c = Some(at(air.as_deref(), i, reference_c)).filter(|c| c.is_finite()).unwrap_or(reference_c);
+        let motor_c = Sides { left: at(left_c, i, air_c), right: at(right_c, i, air_c) };
         let whole = recorded.iter().all(|column| column[i].is_finite())
             && [rim_mps.left, rim_mps.right, pitch_rad, roll_rad].iter().all(|x| x.is_finite());
         let or = |x: f64, other: f64| if x.is_finite() { x } else { other };
@@ -100,7 +103,7 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
             heading_rad: at(heading, i, f64::NAN),
             pitch_rad: or(pitch_rad, 0.0),
             roll_rad: or(roll_rad, 0.0),
-            motor_c: motor_c.map(|c| or(c, reference_c)),
+            motor_c: motor_c.map(|c| or(c, air_c)),
             used: whole,
             ..Row::default()
         }
@@ -133,5 +136,40 @@ pub(crate) fn accelerations(rows: &mut [Row]) {
         if span_s > 0.0 {
             rows[i].rim_mps2 = after.rim_mps.zip(before.rim_mps).map(|(b, a)| (b - a) / span_s);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use model::builtin;
+    use recording::Run;
+
+    use super::*;
+
+    #[test]
+    fn motors_without_a_sensor_are_as_warm_as_the_air_and_those_with_one_are_not() {
+        let robot = builtin::husky_a200();
+        let reference_c = robot.motors.reference_temperature_c;
+        let of = |more: &[(Channel, [f64; 3])]| {
+            let moving = [Channel::LeftSpeed, Channel::RightSpeed].map(|side| (side, [0.5; 3]));
+            let channels = moving.iter().chain(more).map(|(channel, values)| (*channel, values.to_vec()));
+            let run = Run { name: "one".into(), rows: 0..3, gap_s: 5.0, start_unix_s: None };
+            let recording = Recording {
+                t_s: vec![0.0, 0.1, 0.2],
+                channels: channels.collect::<BTreeMap<_, _>>(),
+                runs: vec![run],
+                ..Recording::default()
+            };
+            inputs(&robot, &recording, &[]).iter().map(|row| row.motor_c).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[]), [Sides::both(reference_c); 3]);
+        let air = (Channel::AmbientTemperature, [2.0, f64::NAN, f64::NAN]);
+        assert_eq!(of(&[air]), [Sides::both(2.0); 3], "a reading holds until the next");
+        let left = (Channel::LeftMotorTemperature, [40.0; 3]);
+        assert_eq!(of(&[air, left]), [Sides { left: 40.0, right: 2.0 }; 3]);
+        let none = (Channel::AmbientTemperature, [f64::NAN; 3]);
+        assert_eq!(of(&[none]), [Sides::both(reference_c); 3]);
     }
 }

@@ -80,7 +80,7 @@ impl Baseline {
         applied: &[Applied],
         near: &Robot,
     ) -> Result<Self, Error> {
-        let knobs = Knob::of(file, &series.surfaces(), series.sees_battery(), series.sees_turning());
+        let knobs = Knob::of(file, &series.surfaces(), series.seen());
         let trusted = series.is_trusted();
         let fitted = if applied.is_empty() { trusted.clone() } else { vec![true; trusted.len()] };
         let mut robot = near.clone();

@@ -44,7 +44,8 @@ pub(crate) enum Sure {
 }
 
 impl Sure {
-    fn level(self) -> f64 {
+    /// Largest chance that is sure enough.
+    pub(crate) fn level(self) -> f64 {
         match self {
             Sure::AsUsual => LEVEL,
             Sure::Very => LEVEL / 100.0,

@@ -1,34 +1,30 @@
-//! What the model misses of the robot, as a smooth function of the inputs that nobody names: the same in suspect and in healthy
-//! drives (Kennedy and O'Hagan, J. R. Stat. Soc. B 63, 2001, §4, with a Gaussian process as prior).
+//! What the model misses of the robot, as a smooth function of the inputs and another of the ground that nobody names: the same in suspect
+//! and in healthy drives (Kennedy and O'Hagan, J. R. Stat. Soc. B 63, 2001, §4, with a Gaussian process as prior).
 //!
 //! Where healthy drives went, they tell the function, and what only suspect drives have stands out against it. Where they did
 //! not go, the function may be anything of its usual size, and nothing small stands out.
 
+mod functions;
+
 use nalgebra::{DMatrix, DVector};
 
-use crate::{
-    average::{Average, Input},
-    channel,
-    noise::Whitening,
-};
+use crate::{average::Average, channel, noise::Whitening};
 
-/// Spreads of an input over which the function changes.
-const LENGTH: f64 = 1.5;
-/// Functions that are taken at most, and the share of the prior variance that may be left out of every average.
-const MOST: usize = 80;
-const LEFT_OUT: f64 = 0.02;
-/// Inputs beyond count as so many spreads: a single bump is no place of its own.
-const FARTHEST: f64 = 3.0;
+/// Logarithm of the likelihood ratio from which ground is taken for uneven: 20, as of any name ([`crate::search::AS_GOOD`]). Of worlds
+/// with the same ground everywhere it stays below 1, of one with patches of 2 % it reaches 4 to 26.
+const SURE: f64 = 3.0;
+/// Channels of power at the wheels.
+const SIDES: usize = 2;
 
 /// Sizes of the function that are weighed, as shares of the mean power, and sizes of the scatter, as shares of what it seems
 /// while the function is not told from it.
 const SIZES: [f64; 7] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08];
 const SCATTERS: [f64; 5] = [0.6, 0.7, 0.8, 0.9, 1.0];
 
-/// The functions of one set of drives, one for each channel.
+/// The functions of one set of drives, by channel: one of the inputs, and one of the ground.
 #[derive(Debug)]
 pub(crate) struct Discrepancy {
-    channels: Vec<Process>,
+    channels: Vec<[Process; 2]>,
 }
 
 #[derive(Debug)]
@@ -53,26 +49,55 @@ impl Discrepancy {
     /// Learns how large the functions are: the size under which the errors of healthy drives are most likely, of all drives
     /// where none is known to be healthy.
     pub(crate) fn learn(averages: &[Average], means: &[f64], beside: &Whitened<'_>) -> Self {
-        let process = |(channel, mean): (usize, &f64)| {
+        let Whitened { errors, columns, white } = beside;
+        let of_channel = |(channel, mean): (usize, &f64)| {
             let places = channel::places(averages, channel);
-            let functions = functions(averages, &places);
-            let columns = channel::spread(&scaled(&functions, *mean), &places, averages.len());
-            Process { share: share(averages, channel, &columns, beside), functions }
+            let whitened = |functions: &[Vec<f64>]| -> Vec<Vec<f64>> {
+                let all = channel::spread(&scaled(functions, *mean), &places, averages.len());
+                all.iter().map(|column| white.of(column)).collect()
+            };
+            let likely = |functions: &[Vec<f64>], beside: &[Vec<f64>]| {
+                likelihoods(averages, channel, (&whitened(functions), beside), errors)
+            };
+            let of_inputs = functions::of_inputs(averages, &places);
+            let share = SIZES[most(&likely(&of_inputs, columns))];
+            let of_inputs = Process { functions: of_inputs, share };
+            // Slopes go with places, and what the model misses of them does.
+            let beside = [&columns[..], &whitened(&of_inputs.columns(1.0))].concat();
+            let of_ground =
+                if channel < SIDES { functions::of_ground(averages, &places) } else { Vec::new() };
+            let by_ground = likely(&of_ground, &beside);
+            (of_inputs, of_ground, by_ground)
         };
-        Discrepancy { channels: means.iter().enumerate().map(process).collect() }
+        let learnt: Vec<_> = means.iter().enumerate().map(of_channel).collect();
+        // Ground is under both sides alike.
+        let likely: Likelihoods = std::array::from_fn(|i| learnt.iter().map(|(.., one)| one[i]).sum());
+        let best = most(&likely);
+        let share = if likely[best] - likely[0] >= SURE { SIZES[best] } else { 0.0 };
+        let both = |(of_inputs, functions, _)| [of_inputs, Process { functions, share }];
+        Discrepancy { channels: learnt.into_iter().map(both).collect() }
     }
 
-    /// Size of the largest function of so many first channels, as a share of the channel's mean.
+    /// Size of the largest function of the inputs of so many first channels, as a share of the channel's mean.
     pub(crate) fn share(&self, channels: usize) -> f64 {
-        self.channels.iter().take(channels).map(|process| process.share).fold(0.0, f64::max)
+        self.channels.iter().take(channels).map(|[of_inputs, _]| of_inputs.share).fold(0.0, f64::max)
     }
 
     /// Columns over the averages of a channel of such a mean size, with weights of one sigma 1; none where it misses nothing.
     pub(crate) fn of_channel(&self, channel: usize, mean: f64) -> Vec<Vec<f64>> {
-        match self.channels.get(channel) {
-            Some(Process { functions, share }) if *share > 0.0 => scaled(functions, share * mean),
-            _ => Vec::new(),
-        }
+        self.channels
+            .get(channel)
+            .iter()
+            .flat_map(|both| both.iter())
+            .flat_map(|one| one.columns(mean))
+            .collect()
+    }
+}
+
+impl Process {
+    /// See [`Discrepancy::of_channel`].
+    fn columns(&self, mean: f64) -> Vec<Vec<f64>> {
+        if self.share > 0.0 { scaled(&self.functions, self.share * mean) } else { Vec::new() }
     }
 }
 
@@ -80,31 +105,42 @@ fn scaled(functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
     functions.iter().map(|function| function.iter().map(|value| value * by).collect()).collect()
 }
 
-/// The likeliest size of a channel's function, as a share of those given.
-fn share(averages: &[Average], channel: usize, functions: &[Vec<f64>], beside: &Whitened<'_>) -> f64 {
+/// Logarithms of likelihoods, by [`SIZES`].
+type Likelihoods = [f64; SIZES.len()];
+
+/// Number of the largest.
+fn most(likelihoods: &Likelihoods) -> usize {
+    (1..SIZES.len()).fold(0, |best, i| if likelihoods[i] > likelihoods[best] { i } else { best })
+}
+
+/// How likely the errors of a channel are where a function has each size, as a share of that of its columns, beside others; all alike
+/// where there is no function.
+fn likelihoods(
+    averages: &[Average],
+    channel: usize,
+    (own, beside): (&[Vec<f64>], &[Vec<f64>]),
+    errors: &[f64],
+) -> Likelihoods {
+    if own.is_empty() {
+        return [0.0; SIZES.len()];
+    }
     let has_healthy = averages.iter().any(|a| !a.suspect);
     let tells = |a: &Average| a.channel == channel && !(has_healthy && a.suspect);
     let rows: Vec<usize> = (0..averages.len()).filter(|i| tells(&averages[*i])).collect();
-    let own: Vec<Vec<f64>> = functions.iter().map(|f| beside.white.of(f)).collect();
-    let first = beside.columns.len();
-    let columns: Vec<&Vec<f64>> = beside.columns.iter().chain(&own).collect();
+    let first = beside.len();
+    let columns: Vec<&Vec<f64>> = beside.iter().chain(own).collect();
     let all = DMatrix::from_fn(rows.len(), columns.len(), |i, j| columns[j][rows[i]]);
-    let errors = DVector::from_fn(rows.len(), |i, _| beside.errors[rows[i]]);
+    let errors = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
     let (square, right) = (all.transpose() * &all, all.tr_mul(&errors));
-    let mut best = (f64::NEG_INFINITY, 0.0);
-    for share in SIZES {
+    SIZES.map(|share| {
         let size = |j: usize| if j < first { 1.0 } else { share };
         let square =
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| square[(i, j)] * size(i) * size(j));
         let right = DVector::from_fn(right.len(), |i, _| right[i] * size(i));
-        for scatter in SCATTERS {
-            let likely = log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
-            if likely > best.0 {
-                best = (likely, share);
-            }
-        }
-    }
-    best.1
+        let of_scatter =
+            |scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
+        SCATTERS.into_iter().map(of_scatter).fold(f64::NEG_INFINITY, f64::max)
+    })
 }
 
 /// Logarithm of the likelihood of errors that are columns with weights of one sigma 1 and noise of one sigma `scatter`, but for
@@ -124,61 +160,10 @@ fn log_likelihood(
     -0.5 * (errors / variance - explained + log_determinant)
 }
 
-/// Functions over the averages of a channel, whose sum with independent weights of one sigma 1 is the process with one sigma 1.
-///
-/// They are the columns of the pivoted Cholesky factor of the covariance exp(−d²/2).
-fn functions(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>> {
-    cholesky(&standardised(averages, places))
-}
-
-/// Inputs of the averages over their spreads and the length.
-fn standardised(averages: &[Average], places: &[usize]) -> Vec<[f64; INPUTS.len()]> {
-    let mut points = vec![[0.0; INPUTS.len()]; places.len()];
-    let count = places.len().max(1) as f64;
-    for (axis, input) in INPUTS.iter().enumerate() {
-        let values: Vec<f64> = places.iter().map(|i| input(&averages[*i].input)).collect();
-        let mean = values.iter().sum::<f64>() / count;
-        let spread = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
-        if spread > 1e-9 {
-            for (point, x) in points.iter_mut().zip(&values) {
-                point[axis] = ((x - mean) / spread).clamp(-FARTHEST, FARTHEST) / LENGTH;
-            }
-        }
-    }
-    points
-}
-
-const INPUTS: [fn(&Input) -> f64; 5] =
-    [|x| x.rim_mps, |x| x.difference_mps, |x| x.pitch_rad, |x| x.roll_rad, |x| x.accel_mps2];
-
-/// Columns of the factor, the place that is known least next.
-fn cholesky(points: &[[f64; INPUTS.len()]]) -> Vec<Vec<f64>> {
-    let mut left = vec![1.0_f64; points.len()];
-    let mut factors: Vec<Vec<f64>> = Vec::new();
-    while factors.len() < MOST {
-        let Some(pivot) = (0..left.len()).max_by(|a, b| left[*a].total_cmp(&left[*b])) else { break };
-        if left[pivot] < LEFT_OUT {
-            break;
-        }
-        let root = f64::sqrt(left[pivot]);
-        let factor: Vec<f64> = (0..points.len())
-            .map(|i| {
-                let square: f64 = points[i].iter().zip(&points[pivot]).map(|(a, b)| (a - b).powi(2)).sum();
-                let told: f64 = factors.iter().map(|f| f[i] * f[pivot]).sum();
-                ((-0.5 * square).exp() - told) / root
-            })
-            .collect();
-        left.iter_mut().zip(&factor).for_each(|(left, x)| *left -= x * x);
-        left[pivot] = 0.0;
-        factors.push(factor);
-    }
-    factors
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::Noise;
+    use crate::{average::Input, noise::Noise};
 
     fn averages(count: usize) -> Vec<Average> {
         let of = |i: usize| {
@@ -194,8 +179,8 @@ mod tests {
         (0..count).map(of).collect()
     }
 
-    /// Errors made of a smooth function of so many watts and noise of one watt.
-    fn learnt(averages: &[Average], size_w: f64) -> f64 {
+    /// Size of the functions of the inputs and of the ground, learnt from errors made of some watts and noise of one watt.
+    fn learnt_of(averages: &[Average], missed_w: &dyn Fn(&Average) -> f64) -> [f64; 2] {
         let mut noise = 12345_u64;
         let mut normal = || -> f64 {
             let uniform = |state: &mut u64| {
@@ -205,14 +190,19 @@ mod tests {
             };
             (0..12).map(|_| uniform(&mut noise)).sum::<f64>() - 6.0
         };
-        let of = |a: &Average| size_w * (1.4 * (2.0 * a.input.rim_mps + a.input.difference_mps).sin());
-        let errors: Vec<f64> = averages.iter().map(|a| of(a) + normal()).collect();
+        let errors: Vec<f64> = averages.iter().map(|a| missed_w(a) + normal()).collect();
         let predicted = vec![100.0; averages.len()];
         let white = Noise::of(&errors, &predicted, averages, &vec![true; averages.len()])
             .whitening(&predicted, averages);
         let beside = Whitened { errors: white.of(&errors), columns: Vec::new(), white: &white };
         let learnt = Discrepancy::learn(averages, &[100.0, 100.0], &beside);
-        learnt.channels[0].share
+        learnt.channels[0].each_ref().map(|process| process.share)
+    }
+
+    /// The same of a smooth function of the inputs of so many watts.
+    fn learnt(averages: &[Average], size_w: f64) -> f64 {
+        let missed_w = |a: &Average| size_w * (1.4 * (2.0 * a.input.rim_mps + a.input.difference_mps).sin());
+        learnt_of(averages, &missed_w)[0]
     }
 
     #[test]
@@ -224,16 +214,33 @@ mod tests {
     }
 
     #[test]
+    fn ground_that_is_uneven_is_learnt_where_the_robot_rolls_and_even_ground_is_not() {
+        let mut averages = averages(1200);
+        for a in &mut averages {
+            a.input.position_m = [20.0 * (0.011 * a.t_s).sin(), 15.0 * (0.0173 * a.t_s).sin()];
+        }
+        // Patches some 13 m across, of 2 W root mean square at the usual speed, as a share of 100 W.
+        let patch = |[x_m, y_m]: [f64; 2]| 2.0 * (0.47 * x_m).sin() * (0.51 * y_m + 1.0).sin();
+        let uneven = |a: &Average| patch(a.input.position_m) * a.input.rim_mps.abs() * 2.0;
+        let [_, share] = learnt_of(&averages, &uneven);
+        assert!((0.005..=0.04).contains(&share), "{share}");
+        assert_eq!(learnt_of(&averages, &|_| 0.0)[1], 0.0);
+        // Where positions are unknown there are no places.
+        averages.iter_mut().for_each(|a| a.input.position_m = [f64::NAN; 2]);
+        assert_eq!(learnt_of(&averages, &uneven)[1], 0.0);
+    }
+
+    #[test]
     fn products_of_the_functions_are_the_covariance_and_channels_stay_apart() {
         let averages = averages(300);
         let of = |channel| {
             let places = channel::places(&averages, channel);
-            channel::spread(&functions(&averages, &places), &places, averages.len())
+            channel::spread(&functions::of_inputs(&averages, &places), &places, averages.len())
         };
         let functions = [of(0), of(1)].concat();
         let covariance = |i: usize, j: usize| -> f64 { functions.iter().map(|f| f[i] * f[j]).sum() };
         for i in (0..300).step_by(7) {
-            assert!((covariance(i, i) - 1.0).abs() < LEFT_OUT + 1e-9, "{i}: {}", covariance(i, i));
+            assert!((covariance(i, i) - 1.0).abs() < functions::LEFT_OUT + 1e-9, "{i}: {}", covariance(i, i));
         }
         assert!(covariance(4, 6) > 0.9, "neighbours go together");
         assert!(covariance(4, 5).abs() < 1e-12, "left and right have each their own");

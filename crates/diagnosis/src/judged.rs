@@ -6,12 +6,14 @@ use recording::{Channel, Recording};
 use crate::{
     Error,
     baseline::{Baseline, differences},
+    discover::Sure,
     discovered::Discovered,
     event::event,
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
     refitted::{Refitted, bias_w, rmse_w},
+    refused::Refused,
     report::{
         BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
         Verdict,
@@ -110,11 +112,13 @@ impl Judged {
 
     pub(crate) fn verdict(&self, found: &Search) -> Verdict {
         let [before, after] = self.explainable;
+        let missed = self.missed();
         let is_little = |explainable: f64| {
-            explainable <= LITTLE || explainable.sqrt() * self.corrected.rmse_w <= MISFIT * self.mean_w
+            explainable <= LITTLE || missed.is_usual(explainable.sqrt() * self.corrected.rmse_w)
         };
-        let is_missed = self.missed().is_most();
-        if !found.refused.is_empty() {
+        let is_missed = missed.is_most();
+        let is_sure = |refused: &Refused| refused.p_value <= Sure::Very.level();
+        if !is_little(before) && !found.refused.is_empty() || found.refused.iter().any(is_sure) {
             return Verdict::Unexplained;
         }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());

@@ -1,5 +1,6 @@
 //! What of the robot's own file a diagnosis fits anew, and how far it trusts the file.
 
+use calibration::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};
 use model::Robot;
 
 /// A number of the robot.
@@ -20,6 +21,8 @@ enum Place {
     SlipScale(String),
     K1([bool; 2]),
     K2([bool; 2]),
+    Resistance,
+    MotorConstant,
     Electronics,
     Hotel,
     SlipTrack,
@@ -33,14 +36,20 @@ const SLIP_TRACK_SIGMA: f64 = 0.1;
 /// that drives a robot, which is in proportion to its weight and top speed.
 const STANDING_SIGMA_W: f64 = 2.0;
 
+/// What drives show of a robot beyond what moves it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Seen {
+    /// Its hotel load, by the battery; its motor drivers show anyway.
+    pub(crate) battery: bool,
+    /// How far it turned, by a gyroscope.
+    pub(crate) turning: bool,
+    /// How its motors are when they are warm, by temperatures that differ.
+    pub(crate) warmth: bool,
+}
+
 impl Knob {
-    /// The knobs of a robot on surfaces; the battery shows its hotel load, motor drivers do not, and only a gyroscope how far it turned.
-    pub(crate) fn of(
-        robot: &Robot,
-        surfaces: &[String],
-        sees_battery: bool,
-        sees_turning: bool,
-    ) -> Vec<Knob> {
+    /// The knobs of a robot as drives show it.
+    pub(crate) fn of(robot: &Robot, surfaces: &[String], seen: Seen) -> Vec<Knob> {
         let u = robot.uncertainty;
         let mut knobs = Vec::new();
         let mut add = |name: String, place: Place, sigma: f64, bounds: [f64; 2]| {
@@ -62,13 +71,18 @@ impl Knob {
             add(format!("motors.{side}.k1_w_per_n2"), Place::K1(which), sigma, [0.1 * k1, 10.0 * k1 + 1e-9]);
             add(format!("motors.{side}.k2"), Place::K2(which), u.k2 * k2, [1.0, 2.0 * k2 + 1.0]);
         }
+        if seen.warmth {
+            let [copper, magnets] = [RESISTANCE_SIGMA_PER_K, MOTOR_CONSTANT_SIGMA_PER_K];
+            add("motors.resistance_per_k".into(), Place::Resistance, copper, [0.0, 0.01]);
+            add("motors.motor_constant_per_k".into(), Place::MotorConstant, magnets, [-0.005, 0.0]);
+        }
         let standing = |w: f64| (0.1 * w).max(STANDING_SIGMA_W * robot.strength().max(1.0));
         let electronics_w = robot.drive_electronics_w;
         add("drive_electronics_w".into(), Place::Electronics, standing(electronics_w), [-50.0, 1000.0]);
-        if sees_battery {
+        if seen.battery {
             add("hotel_power_w".into(), Place::Hotel, standing(robot.hotel_power_w), [-50.0, 5000.0]);
         }
-        if sees_turning {
+        if seen.turning {
             // As far as a robot's file may have it.
             let bounds_m = [0.5 * robot.track_m, 10.0 * robot.track_m];
             let sigma_m = SLIP_TRACK_SIGMA * robot.slip_track_m;
@@ -107,6 +121,8 @@ impl Knob {
             Place::K1(_) => Some(&mut motors.right.k1_w_per_n2),
             Place::K2([true, _]) => Some(&mut motors.left.k2),
             Place::K2(_) => Some(&mut motors.right.k2),
+            Place::Resistance => Some(&mut motors.resistance_per_k),
+            Place::MotorConstant => Some(&mut motors.motor_constant_per_k),
             Place::Electronics => Some(&mut robot.drive_electronics_w),
             Place::Hotel => Some(&mut robot.hotel_power_w),
             Place::SlipTrack => Some(&mut robot.slip_track_m),

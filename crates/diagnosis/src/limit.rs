@@ -2,7 +2,11 @@
 
 use model::Robot;
 
-use crate::{search::State, series::Applied};
+use crate::{
+    average::Average,
+    search::State,
+    series::{Applied, Series},
+};
 
 /// Whether a mechanism has a value at its limit. A share that has fallen to its least, such as of power returned, is gone, which may be.
 pub(crate) fn is_reached(applied: &Applied, robot: &Robot) -> bool {
@@ -14,10 +18,32 @@ pub(crate) fn is_reached(applied: &Applied, robot: &Robot) -> bool {
     applied.values.iter().enumerate().any(is_at_limit)
 }
 
+/// Share of the time for which a robot may lean further than what counts as leaning: attitudes are noisy.
+const RARELY: f64 = 0.01;
+
 /// That one of several mechanisms would have to be more than it can be, in words.
-pub(crate) fn doubt(robot: &Robot, state: &State, which: usize) -> Option<String> {
-    let is_reached = is_reached(&state.found[which].applied, robot);
-    is_reached.then(|| "there would have to be more of it than there can be".to_owned())
+pub(crate) fn doubt(robot: &Robot, series: &Series, state: &State, which: usize) -> Option<String> {
+    let applied = &state.found[which].applied;
+    if is_reached(applied, robot) {
+        return Some("there would have to be more of it than there can be".to_owned());
+    }
+    let falls = applied.mechanism.name() == "load_transfer"
+        && robot.center_of_mass.height_m + applied.values[0] > tips_from_m(robot, &series.averages);
+    falls.then(|| "so high the robot would have tipped over where it drove".to_owned())
+}
+
+/// Height of the centre of mass from which the robot would have fallen over on the slopes that it stood on: the weight then lies outside
+/// the wheels \[m\].
+fn tips_from_m(robot: &Robot, averages: &[Average]) -> f64 {
+    let from_m = |angle: fn(&Average) -> f64, arm_m: f64| {
+        let suspects = averages.iter().filter(|a| a.suspect && a.channel == 0).map(|a| angle(a).abs());
+        let mut leaning_rad: Vec<f64> = suspects.filter(|rad| rad.is_finite()).collect();
+        leaning_rad.sort_by(f64::total_cmp);
+        let at = ((1.0 - RARELY) * leaning_rad.len().saturating_sub(1) as f64) as usize;
+        leaning_rad.get(at).map_or(f64::INFINITY, |rad| arm_m / rad.tan().max(1e-9))
+    };
+    let across_m = from_m(|a| a.input.roll_rad, robot.track_m / 2.0);
+    across_m.min(from_m(|a| a.input.pitch_rad, robot.wheelbase_m / 2.0))
 }
 
 #[cfg(test)]
@@ -25,7 +51,25 @@ mod tests {
     use model::{builtin, mechanism};
 
     use super::*;
-    use crate::span::Span;
+    use crate::{average::Input, span::Span};
+
+    #[test]
+    fn a_robot_that_leans_and_stands_is_not_higher_than_lets_it() {
+        let robot = builtin::husky_a200();
+        let leaning = |roll_rad: f64, pitch_rad: f64| {
+            let input = Input { roll_rad, pitch_rad, ..Input::default() };
+            Average { channel: 0, run: 0, suspect: true, t_s: 0.0, input }
+        };
+        let level = vec![leaning(0.0, 0.0); 400];
+        let across = [level.clone(), vec![leaning(-0.3, 0.1); 40]].concat();
+        // The lower wheels are half a track beside the middle: tan φ = b/2h.
+        let expected_m = robot.track_m / 2.0 / 0.3_f64.tan();
+        assert!((tips_from_m(&robot, &across) - expected_m).abs() < 1e-12);
+        let along = [level.clone(), vec![leaning(0.0, 0.4); 40]].concat();
+        assert!((tips_from_m(&robot, &along) - robot.wheelbase_m / 2.0 / 0.4_f64.tan()).abs() < 1e-12);
+        let stray = [level, vec![leaning(1.2, 0.0); 2]].concat();
+        assert!(tips_from_m(&robot, &stray) > 1e6, "a stray value is no slope");
+    }
 
     #[test]
     fn what_would_have_to_be_more_is_at_its_limit_and_what_is_nothing_or_gone_is_not() {

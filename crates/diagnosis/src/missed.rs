@@ -42,7 +42,12 @@ impl Missed {
     pub(crate) fn is_most(&self) -> bool {
         let left_w2 = self.beyond_noise_w2(self.after_w);
         let before_w2 = (self.before_w.powi(2) - self.floor_w.powi(2)).max(1e-12);
-        left_w2 / before_w2 > REMAINS && left_w2.sqrt() > BEYOND_USUAL * self.usual_w
+        left_w2 / before_w2 > REMAINS && !self.is_usual(left_w2.sqrt())
+    }
+
+    /// Whether so much is no more than what models usually miss [W].
+    pub(crate) fn is_usual(&self, left_w: f64) -> bool {
+        left_w <= BEYOND_USUAL * self.usual_w
     }
 
     fn beyond_noise_w2(&self, rmse_w: f64) -> f64 {
@@ -50,8 +55,8 @@ impl Missed {
     }
 }
 
-/// That one of several mechanisms explains little of the difference where most of it is left, in words; `before` has none. Power says nothing
-/// of what another meter shows.
+/// That one of several mechanisms makes no prediction better where nothing was fitted, or explains little of the difference where most of it
+/// is left, in words; `before` has none. Power says nothing of what another meter shows.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -72,22 +77,36 @@ pub(crate) fn doubt(
         floor_w: floor_w(series, &state.fit).min(rmse_w(series, &after.errors_w)),
         usual_w: usual_w(series, &state.fit, &after.held_out_w).max(MISFIT * bias_w(series, &sizes)),
     };
-    if !missed.is_most() {
-        return Ok(None);
-    }
     let mut others = state.clone();
     others.found.remove(which);
     let without = settle(series, file, &others.applied(), &state.fit.robot)?;
     let effect = differences(&state.fit.predicted_w, &without.base.predicted_w);
-    if shown_in(series, &state.fit.whitening(series).of(&effect)) != Quantity::Power {
+    let effect = state.fit.whitening(series).of(&effect);
+    if shown_in(series, &effect) != Quantity::Power || !is_judged(series, &effect) {
         return Ok(None);
     }
     let others: Vec<&Found> = others.found.iter().collect();
     let without_w = rmse_w(series, &held_out(&without.base, &others)?.held_out_w);
+    if without_w <= missed.after_w {
+        return Ok(Some("predictions are no better with it where nothing was fitted".to_owned()));
+    }
+    if !missed.is_most() {
+        return Ok(None);
+    }
     let there_w2 = missed.beyond_noise_w2(missed.before_w);
     let taken = (without_w.powi(2) - missed.after_w.powi(2)) / there_w2.max(1e-12);
     let left = 100.0 * (1.0 - taken.clamp(0.0, 1.0));
     Ok((taken < LEAST_SHARE).then(|| format!("it leaves {left:.0} % of the difference")))
+}
+
+/// Whether most of an effect, in sigma, is in what held-out errors are of: a standing load shows in what the battery gives beyond both sides.
+fn is_judged(series: &Series, effect: &[f64]) -> bool {
+    let squares = |judged: bool| {
+        let rows = (0..effect.len()).filter(|i| series.is_power(*i) == judged);
+        let of_power = rows.filter(|i| series.averages[*i].quantity() == Quantity::Power);
+        of_power.map(|i| effect[i].powi(2)).sum::<f64>()
+    };
+    squares(true) >= squares(false)
 }
 
 /// What neither the inputs nor the second before tell of an error, over the drives under suspicion [W].

@@ -11,7 +11,7 @@ use crate::{
     misfit::misfit,
     needed::{drop_idle, drop_one},
     null::Null,
-    search::{MOST, State, decide},
+    search::{Found, MOST, State, decide},
     series::{Applied, Series},
     span::Span,
     undoing::last_undoes,
@@ -27,6 +27,8 @@ pub struct Refused {
     pub why: String,
     /// The part of the drives in which it would have acted.
     pub(crate) span: Span,
+    /// Chance of as much as it explains, corrected for all that was tried.
+    pub(crate) p_value: f64,
 }
 
 /// Why one of what was found, by its number, is not what is missing, and of what was put in the place of something doubted; `None` if it
@@ -52,7 +54,7 @@ pub(crate) fn refuse(
         return Ok(refused);
     }
     while let Some((which, why)) = first_doubted(state, doubts)? {
-        let Applied { mechanism, span, .. } = state.found[which].applied;
+        let Found { applied: Applied { mechanism, span, .. }, p_value, .. } = state.found[which];
         let mechanism = mechanism.name();
         tried.push(mechanism);
         let is_shown = unshown::doubt(series, state, which).is_none();
@@ -63,7 +65,7 @@ pub(crate) fn refuse(
             *state = next;
         } else {
             state.found.remove(which);
-            refused.push(Refused { mechanism, why, span });
+            refused.push(Refused { mechanism, why, span, p_value });
             state.refit(series, file)?;
         }
     }

@@ -161,7 +161,7 @@ pub fn search(
     progress("trying pairs", 0.9);
     let mut state = pairs::tried(series, file, &before, state, &null)?;
     second_ground::part(series, file, &mut state)?;
-    let too_much = |state: &State, which: usize, _: bool| Ok(limit::doubt(file, state, which));
+    let too_much = |state: &State, which: usize, _: bool| Ok(limit::doubt(file, series, state, which));
     let of_many_sizes = |state: &State, which: usize, stands_in: bool| {
         constancy::doubt(series, state, which, (&null, stands_in))
     };

@@ -6,7 +6,8 @@
 use std::sync::OnceLock;
 
 use model::{
-    Robot,
+    Robot, Sides,
+    fit::LEAST_RISE_K,
     mechanism::{self, Mechanism},
 };
 use recording::{PowerForm, Recording, Watch, unwatched};
@@ -15,6 +16,7 @@ use crate::{
     Error,
     average::Average,
     discrepancy::Discrepancy,
+    knobs::Seen,
     meter::Meter,
     part::Part,
     region::EDGES,
@@ -199,9 +201,20 @@ impl Series {
         self.meters.iter().any(|meter| matches!(meter, Meter::Battery | Meter::Rest))
     }
 
-    /// Whether a gyroscope tells how far the robot turned.
-    pub(crate) fn sees_turning(&self) -> bool {
-        self.meters.contains(&Meter::Yaw)
+    /// What the drives show of the robot.
+    pub(crate) fn seen(&self) -> Seen {
+        let (battery, turning) = (self.sees_battery(), self.meters.contains(&Meter::Yaw));
+        Seen { battery, turning, warmth: self.sees_warmth() }
+    }
+
+    /// Whether motors, or the air where nothing else is known of them, were at different temperatures.
+    fn sees_warmth(&self) -> bool {
+        let ranges_c = self.parts.iter().map(|part| part.drives.motor_range_c());
+        let both = ranges_c.reduce(|a, b| a.zip(b).map(|([l, h], [low, high])| [l.min(low), h.max(high)]));
+        both.is_some_and(|both| {
+            let Sides { left, right } = both.map(|[low, high]| high - low >= LEAST_RISE_K);
+            left || right
+        })
     }
 
     /// By how much the battery's resistance differs between drives, one sigma, as a share; `None` where voltages tell nothing.

@@ -19,7 +19,9 @@ pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<Str
         ),
         None => verdict(found, !refused.is_empty()),
     };
-    for Refused { mechanism, why, .. } in refused {
+    // What is not sure enough to be missing is not worth a reason.
+    let told = if found.verdict == Verdict::Consistent { &[] } else { refused };
+    for Refused { mechanism, why, .. } in told {
         text += &format!(" {} would explain part of it, but {why}.", capital(plain(mechanism)));
     }
     text
