@@ -10,7 +10,7 @@ use crate::{
     Error,
     average::{Average, Quantity},
     candidates, channel,
-    discrepancy::{Discrepancy, Whitened},
+    discrepancy::{Discrepancy, Ground, Whitened},
     everywhere,
     knobs::Knob,
     noise::{Noise, Whitening},
@@ -47,8 +47,8 @@ pub(crate) struct Baseline {
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
-    /// What [`Baseline::missed`] made.
-    missed: OnceLock<Arc<[Shared]>>,
+    /// What [`Baseline::missed`] made, on even and on uneven ground.
+    missed: [OnceLock<Arc<[Shared]>>; 2],
 }
 
 /// Relative width of the battery's resistance, which voltages tell.
@@ -129,18 +129,20 @@ impl Baseline {
             sags,
             tilts,
             noise,
-            missed: OnceLock::new(),
+            missed: Default::default(),
         })
     }
 
     /// What models miss, the same in suspect and in healthy drives, channel by channel: its averages, and columns over them with
     /// weights of one sigma 1 [W].
-    fn of_channels(&self, series: &Series) -> Vec<(Vec<usize>, Vec<Vec<f64>>)> {
+    fn of_channels(&self, series: &Series, ground: Ground) -> Vec<(Vec<usize>, Vec<Vec<f64>>)> {
         let averages = &series.averages;
         let of = |(channel, mean_w): (usize, f64)| {
             let places = channel::places(averages, channel);
             let mut columns = nuisance::of_channel(averages, &places, mean_w);
-            columns.extend(series.discrepancy.get().iter().flat_map(|one| one.of_channel(channel, mean_w)));
+            if let Some(missed) = series.discrepancy.get() {
+                columns.extend(missed.of_channel(channel, mean_w, ground));
+            }
             (places, columns)
         };
         nuisance::means(averages, &self.predicted_w).into_iter().enumerate().map(of).collect()
@@ -151,11 +153,11 @@ impl Baseline {
         let spread = |(places, columns): (Vec<usize>, Vec<Vec<f64>>)| {
             channel::spread(&columns, &places, series.averages.len())
         };
-        self.of_channels(series).into_iter().flat_map(spread).collect()
+        self.of_channels(series, Ground::Even).into_iter().flat_map(spread).collect()
     }
 
     /// The same, whitened, to be taken out of other columns. They are many and long and asked for again and again.
-    pub(crate) fn missed(&self, series: &Series) -> Arc<[Shared]> {
+    pub(crate) fn missed(&self, series: &Series, ground: Ground) -> Arc<[Shared]> {
         let make = || {
             let white = self.whitening(series);
             let of = |(places, columns): (Vec<usize>, Vec<Vec<f64>>)| {
@@ -163,9 +165,9 @@ impl Baseline {
                     columns.iter().map(|column| white.of_channel(&places, column)).collect();
                 Shared::new(places, &columns)
             };
-            self.of_channels(series).into_iter().filter_map(of).collect()
+            self.of_channels(series, ground).into_iter().filter_map(of).collect()
         };
-        Arc::clone(self.missed.get_or_init(make))
+        Arc::clone(self.missed[ground as usize].get_or_init(make))
     }
 
     /// What makes errors about the fit independent and of one sigma 1.

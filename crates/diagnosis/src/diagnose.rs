@@ -9,7 +9,7 @@ use crate::{
     alternatives::{Explanation, alternatives, detectable},
     corrected::corrected,
     discover::{Sure, discover},
-    doubts::doubts,
+    doubts::{doubts, mistakes},
     judged::Judged,
     next_drive::next_drive,
     report::{Diagnosis, Verdict},
@@ -83,7 +83,12 @@ pub fn diagnose_watched(
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
-    let found = search(&series, robot, healthy, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
+    let mut found =
+        search(&series, robot, healthy, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
+    let mistakes = mistakes(robot, suspect, &series, &found.before)?;
+    if !mistakes.is_empty() {
+        found.forget();
+    }
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
@@ -92,7 +97,7 @@ pub fn diagnose_watched(
         Verdict::Consistent if series.has_healthy() => Some(Sure::Very),
         _ => series.turning.is_some().then_some(Sure::AsUsual),
     };
-    if let Some(sure) = open {
+    if let Some(sure) = open.filter(|_| mistakes.is_empty()) {
         progress("looking outside the list", 0.75);
         let terms = discover(&series, &found.after, &applied, &found.refused, (&found.null, sure))?;
         judged.take_up(&series, &found, terms)?;
@@ -105,7 +110,7 @@ pub fn diagnose_watched(
         corrected(&found.after.robot, &applied, &series.surfaces(), &series.names);
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
-    let mut doubts = doubts(robot, suspect, &series, &found.after)?;
+    let mut doubts = doubts(robot, suspect, &series, &found.after, &mistakes)?;
     doubts.append(&mut notes);
     if healthy.is_none() {
         doubts.push(ALONE.to_owned());
@@ -132,7 +137,13 @@ pub fn diagnose_watched(
         corrected_robot,
         trace: judged.trace(&series, suspect),
     };
-    diagnosis.sentence = words::sentence(&diagnosis, &found.refused, judged.event(&series));
+    diagnosis.sentence = match mistakes.first() {
+        Some(mistake) => {
+            diagnosis.verdict = Verdict::Unexplained;
+            words::mistaken(mistake)
+        }
+        None => words::sentence(&diagnosis, &found.refused, judged.event(&series)),
+    };
     progress("done", 1.0);
     Ok(diagnosis)
 }

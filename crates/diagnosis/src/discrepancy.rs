@@ -27,6 +27,14 @@ pub(crate) struct Discrepancy {
     channels: Vec<[Process; 2]>,
 }
 
+/// Whether the ground may be otherwise from place to place than it is on the whole. What acts in a place only is held against that; what
+/// acts everywhere is the same in many places, and wind on a robot that goes round and round would pass for ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ground {
+    Even,
+    Uneven,
+}
+
 #[derive(Debug)]
 struct Process {
     /// By function, over the averages of the channel.
@@ -83,14 +91,15 @@ impl Discrepancy {
         self.channels.iter().take(channels).map(|[of_inputs, _]| of_inputs.share).fold(0.0, f64::max)
     }
 
-    /// Columns over the averages of a channel of such a mean size, with weights of one sigma 1; none where it misses nothing.
-    pub(crate) fn of_channel(&self, channel: usize, mean: f64) -> Vec<Vec<f64>> {
-        self.channels
-            .get(channel)
-            .iter()
-            .flat_map(|both| both.iter())
-            .flat_map(|one| one.columns(mean))
-            .collect()
+    /// Columns over the averages of a channel of such a mean size, with weights of one sigma 1, those of the ground among them if asked for;
+    /// none where it misses nothing.
+    pub(crate) fn of_channel(&self, channel: usize, mean: f64, ground: Ground) -> Vec<Vec<f64>> {
+        let Some([of_inputs, of_ground]) = self.channels.get(channel) else { return Vec::new() };
+        let mut columns = of_inputs.columns(mean);
+        if ground == Ground::Uneven {
+            columns.extend(of_ground.columns(mean));
+        }
+        columns
     }
 }
 

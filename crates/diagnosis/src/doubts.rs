@@ -10,26 +10,31 @@ use crate::{Error, baseline::Baseline, series::Series, turning::Line};
 const CLEARLY_BETTER: f64 = 0.5;
 /// And when predictions then follow the recording at least so well (r²).
 const FOLLOWS: f64 = 0.5;
-/// Ratios of recorded to predicted power beyond which the file is another robot's: friction of any hard ground is within.
+/// Ratios of recorded to predicted power beyond which the file may be another robot's: friction of any hard ground is within.
 const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
+/// The same beyond which it is, whatever is missing: a real Husky on loam draws no more than twice what it does on flooring, and on ice half.
+const NOT_THIS_ROBOT: [f64; 2] = [1.0 / 3.0, 3.0];
 /// Widths of the file that a fitted number may move before it is told.
 const FAR_SIGMAS: f64 = 5.0;
 
-/// What is doubtful about the drives under suspicion, in sentences.
+/// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round, units
+/// or robots mistaken. Nothing else is told of them before that is mended.
 ///
 /// # Errors
 /// As [`Series::new`] and [`Series::predict`].
-pub(crate) fn doubts(
+pub(crate) fn mistakes(
     robot: &Robot,
     recording: &Recording,
     series: &Series,
-    fitted: &Baseline,
+    healthy: &Baseline,
 ) -> Result<Vec<String>, Error> {
     let mut said = Vec::new();
-    let given = follows(robot, series)?;
+    // Healthy drives tell what this robot takes better than its file.
+    let known = if series.has_healthy() { &healthy.robot } else { robot };
+    let given = follows(known, series, true)?;
     for (change, words) in CHANGES {
         let Some(changed) = change(recording) else { continue };
-        let other = follows(robot, &Series::watched(robot, &changed, None, series.watch())?)?;
+        let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
             said.push(format!(
                 "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
@@ -38,12 +43,39 @@ pub(crate) fn doubts(
             ));
         }
     }
+    let kinds = [(true, "recorded power"), (false, "recorded power of the healthy drives")];
+    for (suspect, which) in kinds.into_iter().filter(|(suspect, _)| *suspect || series.has_healthy()) {
+        let ratio = follows(robot, series, suspect)?.ratio;
+        if said.is_empty() && !(NOT_THIS_ROBOT[0]..NOT_THIS_ROBOT[1]).contains(&ratio) {
+            said.push(another(which, ratio));
+        }
+    }
+    Ok(said)
+}
+
+/// That power is another robot's, or in other units.
+fn another(which: &str, ratio: f64) -> String {
+    format!(
+        "{which} is {ratio:.2} times what the robot's file predicts: the recording may be another robot's, or in other units"
+    )
+}
+
+/// What is doubtful about the drives under suspicion, in sentences, the mistakes among them first.
+///
+/// # Errors
+/// As [`Series::new`] and [`Series::predict`].
+pub(crate) fn doubts(
+    robot: &Robot,
+    recording: &Recording,
+    series: &Series,
+    fitted: &Baseline,
+    mistakes: &[String],
+) -> Result<Vec<String>, Error> {
+    let mut said = mistakes.to_vec();
+    let given = follows(robot, series, true)?;
     let [least, most] = OTHER_ROBOT;
-    if said.is_empty() && !(least..most).contains(&given.ratio) {
-        said.push(format!(
-            "recorded power is {:.2} times what the robot's file predicts: the recording may be another robot's, or in other units",
-            given.ratio
-        ));
+    if mistakes.is_empty() && !(least..most).contains(&given.ratio) {
+        said.push(another("recorded power", given.ratio));
     }
     said.extend(stuck(robot, recording, series)?);
     said.extend(series.turning.as_ref().map(turning));
@@ -90,7 +122,7 @@ fn stuck(robot: &Robot, recording: &Recording, series: &Series) -> Result<Option
     }))
 }
 
-/// How predictions of the robot's file follow what was recorded.
+/// How predictions of a robot follow what was recorded.
 struct Follows {
     /// Squared correlation with its sign.
     r2: f64,
@@ -98,11 +130,12 @@ struct Follows {
     ratio: f64,
 }
 
-fn follows(robot: &Robot, series: &Series) -> Result<Follows, Error> {
+/// How predictions of a robot follow what was recorded in drives under suspicion, or in the healthy ones.
+fn follows(robot: &Robot, series: &Series, suspect: bool) -> Result<Follows, Error> {
     let predicted = series.predict(robot, &[])?;
     let pairs = || {
         let all = series.averages.iter().zip(series.recorded.iter().zip(&predicted));
-        all.filter(|(a, _)| a.suspect).map(|(_, (r, p))| (*r, *p))
+        all.filter(|(a, _)| a.suspect == suspect).map(|(_, (r, p))| (*r, *p))
     };
     let count = pairs().count().max(1) as f64;
     let (r0, p0) = pairs().fold((0.0, 0.0), |(r0, p0), (r, p)| (r0 + r / count, p0 + p / count));

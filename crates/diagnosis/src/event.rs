@@ -29,7 +29,7 @@ pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<S
     }
     let (sum_w2, count, first) = beyond_w2.first()?;
     let average = &series.averages[(*first)?];
-    let from_s = BLOCK_S * (average.t_s / BLOCK_S).floor();
+    let from_s = BLOCK_S * (average.t_s.max(0.0) / BLOCK_S).floor();
     let drive = match &series.names[..] {
         names if names.len() > 1 => format!(" of drive {}", names.get(average.run)?),
         _ => String::new(),

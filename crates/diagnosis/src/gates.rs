@@ -13,7 +13,7 @@ use crate::{
     series::{Applied, Series},
     span::Span,
     visits,
-    weigh::{Weighed, blocks, judged, system, system_with, undelayed},
+    weigh::{Weighed, blocks, judged, system, system_in_place, system_with, undelayed},
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
@@ -126,7 +126,7 @@ fn is_of_place(series: &Series, base: &Baseline, one: &Weighed, null: &Null) -> 
     if rolling_sigmas < LEAST_ROLLING_SIGMAS || share_where_it_acts(series, base, one) < LEAST_IN_PLACE {
         return false;
     }
-    is_seen_beside(series, base, one, &manner::columns(series), null)
+    is_seen_in(&system_in_place(series, base, &manner::columns(series)), series, base, one, null)
 }
 
 /// Whether something changed during the drives: of what acts in some part of them, without healthy drives, as much as there is beside the
@@ -144,12 +144,11 @@ fn is_change(
     let always = Applied { span: Span::ALL, ..one.candidate.applied.clone() };
     let linear = one.candidate.linear.clone();
     let all = candidates::of(series, &base.robot, applied, &base.predicted_w, always, linear)?;
-    Ok(is_seen_beside(series, base, one, &all.columns, null))
+    Ok(is_seen_in(&system_with(series, base, &all.columns), series, base, one, null))
 }
 
-/// Whether a candidate is seen beside some columns as well.
-fn is_seen_beside(series: &Series, base: &Baseline, one: &Weighed, beside: &[Vec<f64>], null: &Null) -> bool {
-    let system = system_with(series, base, beside);
+/// Whether a candidate is seen beside all that is fitted in a system as well.
+fn is_seen_in(system: &System, series: &Series, base: &Baseline, one: &Weighed, null: &Null) -> bool {
     let white = base.whitening(series);
     let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
     let Some(evidence) = system.weigh(&columns) else { return false };

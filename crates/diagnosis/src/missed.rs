@@ -20,6 +20,9 @@ pub(crate) const REMAINS: f64 = 0.35;
 pub(crate) const MISFIT: f64 = 0.015;
 /// How many times what models usually miss may be left where all is explained.
 const BEYOND_USUAL: f64 = 2.0;
+/// Root mean square error of predictions with a mechanism over that without it from which it is none: by less they differ by chance, as a few
+/// rows of great power rule it.
+const WORSE: f64 = 1.03;
 /// Share of the difference that a mechanism has to explain where most of it is left: what is missing is something else then, which it
 /// follows here and there.
 const LEAST_SHARE: f64 = 0.25;
@@ -55,7 +58,7 @@ impl Missed {
     }
 }
 
-/// That one of several mechanisms makes no prediction better where nothing was fitted, or explains little of the difference where most of it
+/// That one of several mechanisms makes predictions worse where nothing was fitted, or explains little of the difference where most of it
 /// is left, in words; `before` has none. Power says nothing of what another meter shows.
 ///
 /// # Errors
@@ -87,8 +90,8 @@ pub(crate) fn doubt(
     }
     let others: Vec<&Found> = others.found.iter().collect();
     let without_w = rmse_w(series, &held_out(&without.base, &others)?.held_out_w);
-    if without_w <= missed.after_w {
-        return Ok(Some("predictions are no better with it where nothing was fitted".to_owned()));
+    if missed.after_w > WORSE * without_w {
+        return Ok(Some("it makes predictions worse where nothing was fitted".to_owned()));
     }
     if !missed.is_most() {
         return Ok(None);

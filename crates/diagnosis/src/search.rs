@@ -77,6 +77,15 @@ pub struct Search {
     pub(crate) null: Null,
 }
 
+impl Search {
+    /// Takes back all that was found and refused.
+    pub(crate) fn forget(&mut self) {
+        self.found.clear();
+        self.refused.clear();
+        self.after = self.before.clone();
+    }
+}
+
 /// What is found so far, and the robot with all of it.
 #[derive(Clone)]
 pub(crate) struct State {

@@ -9,6 +9,7 @@ use crate::{
     average::Average,
     baseline::{Baseline, differences},
     candidates::{self, Candidate, Family},
+    discrepancy::Ground,
     evidence::{Evidence, Fitted, System},
     noise::Whitening,
     null::Null,
@@ -35,12 +36,17 @@ pub(crate) enum Sizes {
 
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
-    system_by(series, (base, Sizes::Free), base, true, &[])
+    system_by(series, (base, Sizes::Free), base, true, (&[], Ground::Even))
 }
 
 /// The same with fewer sizes fitted, beside columns that are.
 pub(crate) fn system_at(series: &Series, base: &Baseline, sizes: Sizes, beside: &[Vec<f64>]) -> System {
-    system_by(series, (base, sizes), base, true, beside)
+    system_by(series, (base, sizes), base, true, (beside, Ground::Even))
+}
+
+/// The same for what acts in a place only, on ground that is as uneven as healthy drives show it.
+pub(crate) fn system_in_place(series: &Series, base: &Baseline, beside: &[Vec<f64>]) -> System {
+    system_by(series, (base, Sizes::Free), base, true, (beside, Ground::Uneven))
 }
 
 /// Whitened errors that nothing takes, average by average.
@@ -55,12 +61,12 @@ pub(crate) fn system_with(series: &Series, base: &Baseline, beside: &[Vec<f64>])
 
 /// The same for the candidate that is a delay itself.
 pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
-    system_by(series, (base, Sizes::Free), base, false, &[])
+    system_by(series, (base, Sizes::Free), base, false, (&[], Ground::Even))
 }
 
 /// Everything that is fitted whatever the candidate, of a fit by the noise of another, so that fits can be compared.
 pub(crate) fn system_of(series: &Series, fit: &Baseline, sizes: Sizes, by: &Baseline) -> System {
-    system_by(series, (fit, sizes), by, true, &[])
+    system_by(series, (fit, sizes), by, true, (&[], Ground::Even))
 }
 
 fn system_by(
@@ -68,7 +74,7 @@ fn system_by(
     (base, sizes): (&Baseline, Sizes),
     by: &Baseline,
     delayed: bool,
-    beside: &[Vec<f64>],
+    (beside, ground): (&[Vec<f64>], Ground),
 ) -> System {
     let white = by.whitening(series);
     let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white.of(c)).collect();
@@ -94,7 +100,8 @@ fn system_by(
     offset.resize(columns.len(), 0.0);
     let errors = white.of(&differences(&series.recorded, &base.predicted_w));
     let regimes = series.averages.iter().map(|average| Regime::of(average) as usize).collect();
-    let fitted = Fitted { columns: &columns, known: &known, offset: &offset, shared: &by.missed(series) };
+    let fitted =
+        Fitted { columns: &columns, known: &known, offset: &offset, shared: &by.missed(series, ground) };
     System::new(errors, &fitted, (blocks(series), regimes))
 }
 

@@ -27,6 +27,11 @@ pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<Str
     text
 }
 
+/// That drives are not what they seem, in a sentence.
+pub(crate) fn mistaken(mistake: &str) -> String {
+    format!("The recording is not what it seems: {mistake}. Mend that first; nothing else is told of it.")
+}
+
 fn verdict(found: &Diagnosis, is_refused: bool) -> String {
     let left = 100.0 * found.explainable[1];
     let said = said(&found.findings);
