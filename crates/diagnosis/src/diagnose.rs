@@ -92,15 +92,9 @@ pub fn diagnose_watched(
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    let open = match judged.verdict(&found) {
-        Verdict::Unexplained if series.has_healthy() => Some(Sure::AsUsual),
-        Verdict::Consistent if series.has_healthy() => Some(Sure::Very),
-        _ => series.turning.is_some().then_some(Sure::AsUsual),
-    };
-    if let Some(sure) = open.filter(|_| mistakes.is_empty()) {
-        progress("looking outside the list", 0.75);
-        let terms = discover(&series, &found.after, &applied, &found.refused, (&found.null, sure))?;
-        judged.take_up(&series, &found, terms)?;
+    progress("looking outside the list", 0.75);
+    if mistakes.is_empty() {
+        look_outside(&series, &found, &applied, &mut judged)?;
     }
     progress("locating the difference", 0.8);
     let places = judged.places(&series, robot, &found)?;
@@ -112,16 +106,10 @@ pub fn diagnose_watched(
     let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
     let mut doubts = doubts(robot, suspect, &series, &found.after, &mistakes)?;
     doubts.append(&mut notes);
-    if healthy.is_none() {
-        doubts.push(ALONE.to_owned());
-    }
-    if by_current {
-        doubts.push(BY_CURRENT.to_owned());
-    }
+    let is_outside = !judged.discovered.is_empty();
+    let said = [(healthy.is_none(), ALONE), (by_current, BY_CURRENT), (is_outside, OUTSIDE)];
+    doubts.extend(said.into_iter().filter(|(is_so, _)| *is_so).map(|(_, note)| note.to_owned()));
     let findings = judged.findings(&series, robot, &found);
-    if !judged.discovered.is_empty() {
-        doubts.push(OUTSIDE.to_owned());
-    }
     let mut diagnosis = Diagnosis {
         verdict: judged.verdict(&found),
         sentence: String::new(),
@@ -146,6 +134,23 @@ pub fn diagnose_watched(
     };
     progress("done", 1.0);
     Ok(diagnosis)
+}
+
+/// Takes up terms outside the list, if what was found leaves it open whether something else acts.
+fn look_outside(
+    series: &Series,
+    found: &Search,
+    applied: &[Applied],
+    judged: &mut Judged,
+) -> Result<(), Error> {
+    let sure = match judged.verdict(found) {
+        Verdict::Unexplained if series.has_healthy() => Sure::AsUsual,
+        Verdict::Consistent if series.has_healthy() => Sure::Very,
+        _ if series.turning.is_some() => Sure::AsUsual,
+        _ => return Ok(()),
+    };
+    let terms = discover(series, &found.after, applied, &found.refused, (&found.null, sure))?;
+    judged.take_up(series, found, terms)
 }
 
 /// The drive that tells the first ambiguous finding from its alternatives.

@@ -118,7 +118,9 @@ impl Judged {
         };
         let is_missed = missed.is_most();
         let is_sure = |refused: &Refused| refused.p_value <= Sure::Very.level();
-        if !is_little(before) && !found.refused.is_empty() || found.refused.iter().any(is_sure) {
+        // What follows inputs, or happened once and is far more than usual, or was sure, is missing though its name was refused.
+        let is_much = is_missed || !is_little(before);
+        if is_much && !found.refused.is_empty() || found.refused.iter().any(is_sure) {
             return Verdict::Unexplained;
         }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());

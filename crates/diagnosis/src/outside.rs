@@ -53,7 +53,9 @@ pub(crate) fn doubt(
     let terms = term::of_drives(series, file, std::iter::once(found.applied.span));
     let terms: Vec<&Term> = terms.iter().collect();
     let best = ranked(series, &without, (&system, null), &terms).into_iter().next();
-    let beside = ranked(series, &state.fit, (&weigh::system(series, &state.fit), null), &terms);
+    // A greater thing shows in what goes with one quantity; all terms would take as long again.
+    let plain: Vec<&Term> = terms.iter().copied().filter(|term| term.is_plain()).collect();
+    let beside = ranked(series, &state.fit, (&weigh::system(series, &state.fit), null), &plain);
     if let Some((missing, term)) = beside.into_iter().next()
         && missing > f64::max(BETTER, GREATER * explained)
     {
