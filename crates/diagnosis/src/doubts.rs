@@ -12,8 +12,8 @@ const CLEARLY_BETTER: f64 = 0.5;
 const FOLLOWS: f64 = 0.5;
 /// Ratios of recorded to predicted power beyond which the file may be another robot's: friction of any hard ground is within.
 const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
-/// The same beyond which it is, whatever is missing: a real Husky on loam draws no more than twice what it does on flooring, and on ice half.
-const NOT_THIS_ROBOT: [f64; 2] = [1.0 / 3.0, 3.0];
+/// The same beyond which it is, whatever is missing: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as much on loam.
+const NOT_THIS_ROBOT: [f64; 2] = [0.1, 3.0];
 /// Widths of the file that a fitted number may move before it is told.
 const FAR_SIGMAS: f64 = 5.0;
 
