@@ -89,7 +89,10 @@ fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
     assert_ne!(found.verdict, Verdict::Consistent);
     let stuck = found.notes.iter().find(|note| note.contains("the robot does not")).unwrap();
     assert!(stuck.contains("100 % of snow-02") && stuck.contains("100 % of snow-04"), "{stuck}");
-    say("sandy loam", &said(&robot, &unlabelled(&folder, "sandy-loam", |_| true), &flooring));
+    // In loam wheels sink, or it is other ground.
+    let found = said(&robot, &unlabelled(&folder, "sandy-loam", |_| true), &flooring);
+    say("sandy loam", &found);
+    assert!(matches!(names(&found)[..], ["soft_soil"] | ["surface_change"]), "{}", found.sentence);
 }
 
 fn say(ground: &str, found: &Diagnosis) {
