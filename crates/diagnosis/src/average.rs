@@ -92,6 +92,8 @@ pub struct Input {
     pub position_m: [f64; 2],
     /// Time since the robot last stood still [s].
     pub moving_s: f64,
+    /// Way driven in the last minutes, of which less and less counts the longer ago it was [m].
+    pub of_late_m: f64,
     /// How near the wheels are to where each turn takes most, 0 to 1, of the side and in the drives in which turns show; else 0.
     pub nearness: f64,
 }

@@ -16,6 +16,8 @@ use crate::{
 
 /// Time over which it fades that a robot stood still [s].
 pub(crate) const MOVING_S: f64 = 3.0;
+/// Time over which what driving builds up does so, such as mud on wheels [s].
+pub(crate) const BUILT_UP_S: f64 = 20.0;
 
 /// Times over which it fades that something set in, or that a drive began with it [s]: what warms up or wears in does so within some minutes,
 /// if it is not strong and does so at once.
@@ -26,7 +28,7 @@ const JUST_S: f64 = 60.0;
 type Quantity = fn(&Average) -> f64;
 
 /// What the size of something else may go with.
-const WITH: [(&str, Quantity); 19] = [
+const WITH: [(&str, Quantity); 21] = [
     ("time", |a| a.t_s),
     ("how long ago it set in", |a| (-a.t_s / FIRST_S).exp()),
     ("how long ago it set in", |a| (-a.t_s / JUST_S).exp()),
@@ -39,6 +41,8 @@ const WITH: [(&str, Quantity); 19] = [
     ("how far it leans to either side", |a| a.input.roll_rad.abs()),
     ("how far its wheels have turned", |a| a.input.nearness),
     ("how long ago it stood still", |a| (-a.input.moving_s / MOVING_S).exp()),
+    ("how long ago it stood still", |a| (-a.input.moving_s / BUILT_UP_S).exp()),
+    ("how much it drove of late", |a| a.input.of_late_m),
     ("height", |a| known(a.input.height_m)),
     ("how far east it is", |a| known(a.input.position_m[0])),
     ("how far north it is", |a| known(a.input.position_m[1])),

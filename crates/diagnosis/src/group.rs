@@ -2,7 +2,10 @@
 
 use model::STANDARD_GRAVITY_MPS2;
 
-use crate::{average::Average, constancy::MOVING_S};
+use crate::{
+    average::Average,
+    constancy::{BUILT_UP_S, MOVING_S},
+};
 
 /// A dimensionless group of recorded quantities.
 #[derive(Clone, Copy)]
@@ -30,7 +33,7 @@ impl Group {
 
     /// Whether it is of what the model's power follows: models miss nothing that goes with where a robot is, where it heads and when.
     pub(crate) fn is_of_driving(&self) -> bool {
-        let of_driving = [MOVING, PITCH, ROLL, STEEPNESS, SPEED, TURN, ACCELERATION];
+        let of_driving = [MOVING, PITCH, ROLL, STEEPNESS, SPEED, TURN, ACCELERATION, OF_LATE];
         of_driving.iter().any(|(name, ..)| *name == self.quantity.0)
     }
 
@@ -49,6 +52,7 @@ impl Group {
 pub(crate) type Quantity = (&'static str, fn(&Average) -> f64, &'static str);
 
 const MOVING: Quantity = ("time since it stood still", |a| a.input.moving_s, "s");
+const OF_LATE: Quantity = ("way driven of late", |a| a.input.of_late_m, "m");
 const TIME: Quantity = ("time since it began", |a| a.t_s, "s");
 const PITCH: Quantity = ("pitch", |a| a.input.pitch_rad, "rad");
 const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
@@ -76,9 +80,10 @@ const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f6
 }
 
 /// All groups. θ pitch, φ roll, γ how steep the ground under the robot is, v mean rim speed, Δ right less left rim speed, u the side's rim speed, a acceleration, ψ
-/// heading, t time since the drive began or it set in, s since the robot stood still, z height, α the angle that the side's wheels have turned, all as
+/// heading, t time since the drive began or it set in, s since the robot stood still, h way driven of
+/// which less and less counts the longer ago it was, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 36] = [
+pub(crate) static GROUPS: [Group; 39] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -106,6 +111,15 @@ pub(crate) static GROUPS: [Group; 36] = [
         (-a.input.accel_mps2).max(0.0) / STANDARD_GRAVITY_MPS2
     }),
     group("e^(−s/3 s)", "having just stood still", MOVING, |a, _| (-a.input.moving_s / MOVING_S).exp()),
+    group("1 − e^(−s/20 s)", "how long it has not stood still", MOVING, |a, _| {
+        1.0 - (-a.input.moving_s / BUILT_UP_S).exp()
+    }),
+    group("h/(100 s u_max)", "how much it drove of late", OF_LATE, |a, fastest| {
+        a.input.of_late_m / (100.0 * fastest)
+    }),
+    group("e^(−h/(30 s u_max))", "having driven little of late", OF_LATE, |a, fastest| {
+        (-a.input.of_late_m / (30.0 * fastest)).exp()
+    }),
     group("e^(−t/15 s)", "the first quarter of a minute", TIME, |a, _| (-a.t_s / 15.0).exp()),
     group("e^(−t/60 s)", "the first minute", TIME, |a, _| (-a.t_s / 60.0).exp()),
     group("e^(−t/300 s)", "the first minutes", TIME, |a, _| (-a.t_s / 300.0).exp()),

@@ -30,6 +30,7 @@ mod foremost;
 mod gates;
 mod ground;
 mod group;
+mod history;
 mod imitate;
 mod judged;
 mod knobs;

@@ -11,7 +11,7 @@ use crate::{
     Error,
     average::{Average, Input},
     climb::Climb,
-    ground,
+    ground, history,
     meter::Meter,
     sag::{Sag, Source},
     shapes::Shapes,
@@ -29,6 +29,8 @@ pub(crate) struct Part {
     position_m: Vec<[f64; 2]>,
     /// By row: since the robot last stood still [s].
     moving_s: Vec<f64>,
+    /// By row: way driven of late [m].
+    of_late_m: Vec<f64>,
     /// By row: beginning of the run [s].
     began_s: Vec<f64>,
     /// What the battery gave beyond both sides, by average; NaN where it was not recorded [W].
@@ -98,7 +100,8 @@ impl Part {
             heading_rad,
             height_m,
             position_m,
-            moving_s: moving_s(&drives),
+            moving_s: history::moving_s(&drives),
+            of_late_m: history::of_late_m(&drives),
             began_s,
             rest_w,
             ground_mps,
@@ -235,6 +238,7 @@ impl Part {
             mean(&|i| self.position_m[i][0]),
             mean(&|i| self.position_m[i][1]),
             mean(&|i| self.moving_s[i]),
+            mean(&|i| self.of_late_m[i]),
         ];
         let of = |(i, average): (usize, &average::Average)| Average {
             channel: meter.channel(),
@@ -253,24 +257,11 @@ impl Part {
                 swing_mps2: inputs[9][i],
                 position_m: [inputs[10][i], inputs[11][i]],
                 moving_s: inputs[12][i],
+                of_late_m: inputs[13][i],
                 nearness: 0.0,
             },
         };
         let all: Vec<Average> = self.drives.averages.iter().enumerate().map(of).collect();
         self.told(meter, &all)
     }
-}
-
-/// By row: time since the robot last stood still, as far as the stretch tells [s].
-fn moving_s(drives: &Drives) -> Vec<f64> {
-    let mut moving_s = vec![0.0; drives.rows.len()];
-    for stretch in &drives.stretches {
-        let mut since_s = 0.0;
-        for i in stretch.rows.clone() {
-            let row = &drives.rows[i];
-            since_s = if row.stands() { 0.0 } else { since_s + row.step_s };
-            moving_s[i] = since_s;
-        }
-    }
-    moving_s
 }
