@@ -83,7 +83,7 @@ const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f6
 /// heading, t time since the drive began or it set in, s since the robot stood still, h way driven of
 /// which less and less counts the longer ago it was, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 39] = [
+pub(crate) static GROUPS: [Group; 38] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -113,9 +113,6 @@ pub(crate) static GROUPS: [Group; 39] = [
     group("e^(−s/3 s)", "having just stood still", MOVING, |a, _| (-a.input.moving_s / MOVING_S).exp()),
     group("1 − e^(−s/20 s)", "how long it has not stood still", MOVING, |a, _| {
         1.0 - (-a.input.moving_s / BUILT_UP_S).exp()
-    }),
-    group("h/(100 s u_max)", "how much it drove of late", OF_LATE, |a, fastest| {
-        a.input.of_late_m / (100.0 * fastest)
     }),
     group("e^(−h/(30 s u_max))", "having driven little of late", OF_LATE, |a, fastest| {
         (-a.input.of_late_m / (30.0 * fastest)).exp()

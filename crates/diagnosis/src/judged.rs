@@ -13,7 +13,6 @@ use crate::{
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
     refitted::{Refitted, bias_w, rmse_w},
-    refused::Refused,
     report::{
         BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
         Verdict,
@@ -117,10 +116,10 @@ impl Judged {
             explainable <= LITTLE || missed.is_usual(explainable.sqrt() * self.corrected.rmse_w)
         };
         let is_missed = missed.is_most();
-        let is_sure = |refused: &Refused| refused.p_value <= Sure::Very.level();
-        // What follows inputs, or happened once and is far more than usual, or was sure, is missing though its name was refused.
+        // What follows inputs, or happened once and is far more than usual, is missing though its name was refused, and so is what was sure.
         let is_much = is_missed || !is_little(before);
-        if is_much && !found.refused.is_empty() || found.refused.iter().any(is_sure) {
+        let least_sure = if is_much { Sure::AsUsual } else { Sure::Very };
+        if found.refused.iter().any(|refused| refused.p_value <= least_sure.level()) {
             return Verdict::Unexplained;
         }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());
