@@ -188,8 +188,8 @@ mod tests {
         (0..count).map(of).collect()
     }
 
-    /// Size of the functions of the inputs and of the ground, learnt from errors made of some watts and noise of one watt.
-    fn learnt_of(averages: &[Average], missed_w: &dyn Fn(&Average) -> f64) -> [f64; 2] {
+    /// The functions as they are learnt from errors made of some watts and noise of one watt.
+    fn learnt_from(averages: &[Average], missed_w: &dyn Fn(&Average) -> f64) -> Discrepancy {
         let mut noise = 12345_u64;
         let mut normal = || -> f64 {
             let uniform = |state: &mut u64| {
@@ -204,8 +204,12 @@ mod tests {
         let white = Noise::of(&errors, &predicted, averages, &vec![true; averages.len()])
             .whitening(&predicted, averages);
         let beside = Whitened { errors: white.of(&errors), columns: Vec::new(), white: &white };
-        let learnt = Discrepancy::learn(averages, &[100.0, 100.0], &beside);
-        learnt.channels[0].each_ref().map(|process| process.share)
+        Discrepancy::learn(averages, &[100.0, 100.0], &beside)
+    }
+
+    /// Size of the functions of the inputs and of the ground, learnt so.
+    fn learnt_of(averages: &[Average], missed_w: &dyn Fn(&Average) -> f64) -> [f64; 2] {
+        learnt_from(averages, missed_w).channels[0].each_ref().map(|process| process.share)
     }
 
     /// The same of a smooth function of the inputs of so many watts.
@@ -222,15 +226,50 @@ mod tests {
         assert!(learnt(&averages, 3.0) > learnt(&averages, 1.0));
     }
 
-    #[test]
-    fn ground_that_is_uneven_is_learnt_where_the_robot_rolls_and_even_ground_is_not() {
+    /// Averages of a drive that comes to most places of a field.
+    fn about_a_field() -> Vec<Average> {
         let mut averages = averages(1200);
         for a in &mut averages {
             a.input.position_m = [20.0 * (0.011 * a.t_s).sin(), 15.0 * (0.0173 * a.t_s).sin()];
         }
-        // Patches some 13 m across, of 2 W root mean square at the usual speed, as a share of 100 W.
-        let patch = |[x_m, y_m]: [f64; 2]| 2.0 * (0.47 * x_m).sin() * (0.51 * y_m + 1.0).sin();
-        let uneven = |a: &Average| patch(a.input.position_m) * a.input.rim_mps.abs() * 2.0;
+        averages
+    }
+
+    /// Patches some 13 m across, of 2 W root mean square at the usual speed, which is a share of 100 W.
+    fn uneven(a: &Average) -> f64 {
+        let [x_m, y_m] = a.input.position_m;
+        4.0 * (0.47 * x_m).sin() * (0.51 * y_m + 1.0).sin() * a.input.rim_mps.abs()
+    }
+
+    /// What drives tell of a column's size, over what they would if the functions missed nothing, with noise of one watt.
+    fn told(functions: &[Vec<f64>], column: &[f64]) -> f64 {
+        let size: f64 = column.iter().map(|x| x * x).sum();
+        let phi = DMatrix::from_fn(column.len(), functions.len(), |i, j| functions[j][i]);
+        let along = phi.tr_mul(&DVector::from_column_slice(column));
+        let inner = DMatrix::identity(functions.len(), functions.len()) + phi.tr_mul(&phi);
+        1.0 - along.dot(&inner.cholesky().map_or_else(|| along.clone(), |root| root.solve(&along))) / size
+    }
+
+    #[test]
+    fn on_uneven_ground_drives_tell_little_of_a_place_and_no_less_of_what_acts_as_it_turns() {
+        let averages = about_a_field();
+        let learnt = learnt_from(&averages, &uneven);
+        let of = |ground: Ground, column: &dyn Fn(&Average) -> f64| {
+            let places = channel::places(&averages, 0);
+            let column: Vec<f64> = places.iter().map(|i| column(&averages[*i])).collect();
+            told(&learnt.of_channel(0, 100.0, ground), &column)
+        };
+        let in_the_east = |a: &Average| if a.input.position_m[0] > 0.0 { a.input.rim_mps.abs() } else { 0.0 };
+        let turning = |a: &Average| a.input.difference_mps.abs();
+        let [even, uneven] = [Ground::Even, Ground::Uneven].map(|ground| of(ground, &in_the_east));
+        assert!(uneven < 0.2 * even, "{even} {uneven}");
+        let [even, uneven] = [Ground::Even, Ground::Uneven].map(|ground| of(ground, &turning));
+        assert!(uneven > 0.5 * even, "{even} {uneven}");
+    }
+
+    #[test]
+    fn ground_that_is_uneven_is_learnt_where_the_robot_rolls_and_even_ground_is_not() {
+        let mut averages = about_a_field();
         let [_, share] = learnt_of(&averages, &uneven);
         assert!((0.005..=0.04).contains(&share), "{share}");
         assert_eq!(learnt_of(&averages, &|_| 0.0)[1], 0.0);

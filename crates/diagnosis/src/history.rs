@@ -53,11 +53,13 @@ mod tests {
         };
         let speeds_mps = [vec![0.5; 600], vec![0.0; 300], vec![0.5; 10]].concat();
         let rows = speeds_mps.into_iter().enumerate().map(row).collect();
-        let stretches = vec![
+        let mut drives = Drives::default();
+        drives.rows = rows;
+        drives.stretches = vec![
             Stretch { run: 0, surface: 0, rows: 0..900 },
             Stretch { run: 1, surface: 0, rows: 900..910 },
         ];
-        Drives { rows, stretches, ..Drives::default() }
+        drives
     }
 
     #[test]

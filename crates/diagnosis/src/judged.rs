@@ -6,7 +6,6 @@ use recording::{Channel, Recording};
 use crate::{
     Error,
     baseline::{Baseline, differences},
-    discover::Sure,
     discovered::Discovered,
     event::event,
     explainable::explained_share,
@@ -118,8 +117,7 @@ impl Judged {
         let is_missed = missed.is_most();
         // What follows inputs, or happened once and is far more than usual, is missing though its name was refused, and so is what was sure.
         let is_much = is_missed || !is_little(before);
-        let least_sure = if is_much { Sure::AsUsual } else { Sure::Very };
-        if found.refused.iter().any(|refused| refused.p_value <= least_sure.level()) {
+        if found.refused.iter().any(|refused| refused.leaves_something(is_much)) {
             return Verdict::Unexplained;
         }
         let is_alone = found.found.iter().all(|f| f.indistinguishable_from.is_empty());

@@ -48,6 +48,20 @@ impl Missed {
         left_w2 / before_w2 > REMAINS && !self.is_usual(left_w2.sqrt())
     }
 
+    /// Why one mechanism is none, in words, of which the error without it is known \[W\]; `None` if it may be one.
+    fn doubt_of(&self, without_w: f64) -> Option<String> {
+        if self.after_w > WORSE * without_w {
+            return Some("it makes predictions worse where nothing was fitted".to_owned());
+        }
+        if !self.is_most() {
+            return None;
+        }
+        let there_w2 = self.beyond_noise_w2(self.before_w);
+        let taken = (without_w.powi(2) - self.after_w.powi(2)) / there_w2.max(1e-12);
+        let left = 100.0 * (1.0 - taken.clamp(0.0, 1.0));
+        (taken < LEAST_SHARE).then(|| format!("it leaves {left:.0} % of the difference"))
+    }
+
     /// Whether so much is no more than what models usually miss [W].
     pub(crate) fn is_usual(&self, left_w: f64) -> bool {
         left_w <= BEYOND_USUAL * self.usual_w
@@ -90,16 +104,7 @@ pub(crate) fn doubt(
     }
     let others: Vec<&Found> = others.found.iter().collect();
     let without_w = rmse_w(series, &held_out(&without.base, &others)?.held_out_w);
-    if missed.after_w > WORSE * without_w {
-        return Ok(Some("it makes predictions worse where nothing was fitted".to_owned()));
-    }
-    if !missed.is_most() {
-        return Ok(None);
-    }
-    let there_w2 = missed.beyond_noise_w2(missed.before_w);
-    let taken = (without_w.powi(2) - missed.after_w.powi(2)) / there_w2.max(1e-12);
-    let left = 100.0 * (1.0 - taken.clamp(0.0, 1.0));
-    Ok((taken < LEAST_SHARE).then(|| format!("it leaves {left:.0} % of the difference")))
+    Ok(missed.doubt_of(without_w))
 }
 
 /// Whether most of an effect, in sigma, is in what held-out errors are of: a standing load shows in what the battery gives beyond both sides.
@@ -129,4 +134,30 @@ pub(crate) fn usual_w(series: &Series, base: &Baseline, errors_w: &[f64]) -> f64
     };
     let beyond: Vec<f64> = (0..series.averages.len()).filter(healthy).map(beyond).collect();
     (beyond.iter().sum::<f64>() / beyond.len().max(1) as f64).max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn missed(before_w: f64, after_w: f64) -> Missed {
+        Missed { before_w, after_w, floor_w: 2.0, usual_w: 0.5 }
+    }
+
+    #[test]
+    fn what_makes_held_out_predictions_worse_is_none_however_well_it_fits() {
+        assert_eq!(missed(2.1, 2.1).doubt_of(2.1), None);
+        assert_eq!(missed(2.1, 2.1).doubt_of(2.05), None, "a few rows of great power make as much");
+        let why = missed(2.1, 2.5).doubt_of(2.1).unwrap_or_default();
+        assert!(why.contains("worse"), "{why}");
+    }
+
+    #[test]
+    fn what_takes_a_small_part_where_most_is_left_is_not_what_is_missing() {
+        // 5² - 2² = 21 W² were there.
+        assert_eq!(missed(5.0, 2.5).doubt_of(5.0), None, "most is taken");
+        let why = missed(5.0, 4.8).doubt_of(5.0).unwrap_or_default();
+        assert_eq!(why, "it leaves 91 % of the difference");
+        assert_eq!(missed(5.0, 4.0).doubt_of(5.0), None, "it takes 9 of 21 W²");
+    }
 }

@@ -57,15 +57,26 @@ pub(crate) fn doubt(
     // A greater thing shows in what goes with one quantity; all terms would take as long again.
     let plain: Vec<&Term> = terms.iter().copied().filter(|term| term.is_plain()).collect();
     let beside = ranked(series, &state.fit, (&weigh::system(series, &state.fit), null), &plain);
+    let open = openness(series);
     if let Some((missing, term)) = beside.into_iter().next()
-        && missing > f64::max(BETTER, GREATER * openness(series).max(1.0) * explained)
+        && is_greater(missing, explained, open)
     {
         return Ok(Some(format!("{} is missing beside it and explains more", term.words())));
     }
-    let least = explained + f64::max(BETTER, BETTER_SHARE * openness(series) * explained);
-    let Some((_, term)) = best.filter(|(most, _)| *most > least) else { return Ok(None) };
+    let Some((_, term)) = best.filter(|(most, _)| is_better(*most, explained, open)) else { return Ok(None) };
     let stands_for_it = leaves_little(series, state, (&without, &system), term)?;
     Ok(stands_for_it.then(|| format!("{} explains it better", term.words())))
+}
+
+/// Whether what is missing beside all that was found is greater than what one mechanism of it explains, both in squared errors over their
+/// variance, where healthy drives show the model to miss so many times what it may.
+fn is_greater(missing: f64, explained: f64, openness: f64) -> bool {
+    missing > f64::max(BETTER, GREATER * openness.max(1.0) * explained)
+}
+
+/// Whether a term explains so much more than a mechanism that it is the better description.
+fn is_better(most: f64, explained: f64, openness: f64) -> bool {
+    most > explained + f64::max(BETTER, BETTER_SHARE * openness * explained)
 }
 
 /// Whether a term leaves little of what a mechanism explains beside others: one that leaves it that is something else that the model
@@ -83,4 +94,37 @@ fn leaves_little(
     let alone = system.explained(&effect)[0];
     let beside = system_with(series, without, &[column]).explained(&effect)[0];
     Ok(beside < SAME * alone)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_term_beside_a_name_refutes_it_if_it_is_the_greater_and_more_so_where_the_model_misses_more() {
+        // Real ground beside sensors' noise: ten times what the model may miss.
+        for (missing, explained, openness, is_it) in [
+            (101.0, 100.0, 0.3, true),
+            (99.0, 100.0, 0.3, false),
+            (101.0, 100.0, 10.0, false),
+            (1001.0, 100.0, 10.0, true),
+            // Next to nothing is no greater thing than next to nothing.
+            (11.0, 2.0, 0.3, false),
+        ] {
+            assert_eq!(is_greater(missing, explained, openness), is_it, "{missing} {explained} {openness}");
+        }
+    }
+
+    #[test]
+    fn a_term_is_better_by_as_much_as_the_best_of_thousands_never_was_beside_the_truth() {
+        for (most, explained, openness, is_it) in [
+            (108.0, 100.0, 1.0, false),
+            (113.0, 100.0, 1.0, true),
+            (2019.0, 2000.0, 1.0, false),
+            (2021.0, 2000.0, 1.0, true),
+            (2100.0, 2000.0, 10.0, false),
+        ] {
+            assert_eq!(is_better(most, explained, openness), is_it, "{most} {explained} {openness}");
+        }
+    }
 }

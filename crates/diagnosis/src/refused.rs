@@ -7,6 +7,7 @@ use crate::{
     alternatives::fitted,
     baseline::Baseline,
     candidates::apart,
+    discover::Sure,
     gates::best_beside_doubted,
     misfit::misfit,
     needed::{drop_idle, drop_one},
@@ -29,6 +30,15 @@ pub struct Refused {
     pub(crate) span: Span,
     /// Chance of as much as it explains, corrected for all that was tried.
     pub(crate) p_value: f64,
+}
+
+impl Refused {
+    /// Whether something is missing though its name was refused: it has to be as sure as a term that is found, and where hardly more than
+    /// usual is left a hundred times surer.
+    pub(crate) fn leaves_something(&self, is_much: bool) -> bool {
+        let least_sure = if is_much { Sure::AsUsual } else { Sure::Very };
+        self.p_value <= least_sure.level()
+    }
 }
 
 /// Why one of what was found, by its number, is not what is missing, and of what was put in the place of something doubted; `None` if it
@@ -180,4 +190,23 @@ fn first_doubted(state: &State, doubts: &[&Doubt<'_>]) -> Result<Option<(usize, 
         }
     }
     Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_never_sure_is_no_reason_to_doubt_once_its_name_is_refused() {
+        let refused = |p_value: f64| Refused {
+            mechanism: "payload",
+            why: "it makes predictions worse where nothing was fitted".to_owned(),
+            span: Span::ALL,
+            p_value,
+        };
+        let leaves = |p_value: f64| [false, true].map(|is_much| refused(p_value).leaves_something(is_much));
+        assert_eq!(leaves(0.55), [false, false]);
+        assert_eq!(leaves(1e-3), [false, true]);
+        assert_eq!(leaves(1e-5), [true, true]);
+    }
 }
