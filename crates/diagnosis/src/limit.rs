@@ -21,6 +21,10 @@ pub(crate) fn is_reached(applied: &Applied, robot: &Robot) -> bool {
 /// Share of the time for which a robot may seem to lean further than it does: attitudes are noisy, but who falls does so at once.
 const RARELY: f64 = 0.001;
 
+/// How much further than it did a robot could lean at least before it falls over: nobody drives at the edge of that, and the less weight is
+/// left on two of its wheels the less a load that shifts is told from one that stands high.
+const MARGIN: f64 = 1.25;
+
 /// That one of several mechanisms would have to be more than it can be, in words.
 pub(crate) fn doubt(robot: &Robot, series: &Series, state: &State, which: usize) -> Option<String> {
     let applied = &state.found[which].applied;
@@ -28,8 +32,13 @@ pub(crate) fn doubt(robot: &Robot, series: &Series, state: &State, which: usize)
         return Some("there would have to be more of it than there can be".to_owned());
     }
     let falls = applied.mechanism.name() == "load_transfer"
-        && robot.center_of_mass.height_m + applied.values[0] > tips_from_m(robot, &series.averages);
-    falls.then(|| "so high the robot would have tipped over where it drove".to_owned())
+        && is_too_high(robot, &series.averages, robot.center_of_mass.height_m + applied.values[0]);
+    falls.then(|| "so high the robot would have tipped over where it drove, or nearly so".to_owned())
+}
+
+/// Whether a robot with its centre of mass so high \[m\] would have fallen over where it drove, or nearly.
+fn is_too_high(robot: &Robot, averages: &[Average], height_m: f64) -> bool {
+    MARGIN * height_m > tips_from_m(robot, averages)
 }
 
 /// Height of the centre of mass from which the robot would have fallen over on the slopes that it stood on: the weight then lies outside
@@ -69,6 +78,8 @@ mod tests {
         assert!((tips_from_m(&robot, &along) - robot.wheelbase_m / 2.0 / 0.4_f64.tan()).abs() < 1e-12);
         let stray = [level, vec![leaning(1.2, 0.0)]].concat();
         assert!(tips_from_m(&robot, &stray) > 1e6, "a stray value is no slope");
+        let heights_m = [0.7, 0.9, 1.1].map(|share| share * expected_m);
+        assert_eq!(heights_m.map(|height_m| is_too_high(&robot, &across, height_m)), [false, true, true]);
     }
 
     #[test]

@@ -54,8 +54,8 @@ mod tests {
     #[test]
     fn a_search_stays_on_its_side_and_looks_at_the_other_as_far_from_the_middle() {
         let mut robot = builtin::husky_a200();
-        assert_eq!(range_m(&at(0.0), &robot), [0.0, 0.135]);
-        assert_eq!(range_m(&at(BEHIND_M), &robot), [-0.135, 0.0]);
+        assert_eq!(range_m(&at(0.0), &robot), [0.0, 0.162]);
+        assert_eq!(range_m(&at(BEHIND_M), &robot), [-0.162, 0.0]);
         assert_eq!(mirrored(&at(0.05), &robot).unwrap().values[0], -0.05);
         robot.center_of_mass.forward_m = -0.03;
         let mirrored_m = mirrored(&at(0.05), &robot).unwrap().values[0];
@@ -63,9 +63,9 @@ mod tests {
     }
 
     #[test]
-    fn nothing_lies_farther_off_than_where_an_axle_carries_three_quarters() {
+    fn nothing_lies_farther_off_than_where_an_axle_carries_four_fifths() {
         let robot = builtin::husky_a200();
-        assert!(is_at_its_limit(&at(0.135), &robot) && is_at_its_limit(&at(-0.135), &robot));
-        assert!(!is_at_its_limit(&at(0.13), &robot) && !is_at_its_limit(&at(0.0), &robot));
+        assert!(is_at_its_limit(&at(0.162), &robot) && is_at_its_limit(&at(-0.162), &robot));
+        assert!(!is_at_its_limit(&at(0.155), &robot) && !is_at_its_limit(&at(0.0), &robot));
     }
 }

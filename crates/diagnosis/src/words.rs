@@ -11,13 +11,18 @@ const LITTLE_LEFT: f64 = 6.0;
 
 /// The verdict in a sentence, and what comes closest without being it; `event` is what happened too seldom to be evidence.
 pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<String>) -> String {
-    let mut text = match event.filter(|_| found.verdict == Verdict::Consistent) {
-        Some(event) => format!(
-            "Nothing that comes again is missing, but {event}, where {:.1} W are noise; once is no evidence of what it was: drive the \
-             same again.",
+    let once = event.map(|event| {
+        format!(
+            "{event}, where {:.1} W are noise; once is no evidence of what it was: drive the same again.",
             found.baseline.noise_floor_w
-        ),
-        None => verdict(found, !refused.is_empty()),
+        )
+    });
+    let mut text = match (&once, found.verdict) {
+        (Some(once), Verdict::Consistent) => format!("Nothing that comes again is missing, but {once}"),
+        (Some(once), Verdict::Unexplained) if found.findings.is_empty() => {
+            format!("{} Most of it came once: {once}", verdict(found, !refused.is_empty()))
+        }
+        _ => verdict(found, !refused.is_empty()),
     };
     // What is not sure enough to be missing is not worth a reason.
     let told = if found.verdict == Verdict::Consistent { &[] } else { refused };
