@@ -224,7 +224,15 @@ fn swapped_sides_and_another_robot_are_said() {
     let kilowatts = in_kilowatts(&std::fs::read_to_string(folder.path().join("suspect.csv")).unwrap());
     std::fs::write(folder.path().join("kilowatts.csv"), kilowatts).unwrap();
     notes(&["--recording", "kilowatts.csv", "--reference", "healthy.csv"]);
-    is_all_that_is_said("in other units");
+    is_all_that_is_said("in kilowatts");
+    // Speeds alone, and with power, which only the gyroscope tells.
+    let speeds = ["v_left_mps", "v_right_mps"];
+    swap_columns(folder.path(), "suspect.csv", "speeds.csv", speeds);
+    notes(&["--recording", "speeds.csv", "--reference", "healthy.csv"]);
+    is_all_that_is_said("`yaw_rate_radps`: it is opposed to the wheel speeds");
+    swap_columns(folder.path(), "swapped.csv", "all.csv", speeds);
+    notes(&["--recording", "all.csv", "--reference", "healthy.csv"]);
+    is_all_that_is_said("`yaw_rate_radps`: it is opposed to the wheel speeds");
     let said = notes(&["--recording", "suspect.csv"]);
     assert!(!said.contains("swapped"), "{said}");
     let mut robot: Value =
@@ -235,6 +243,18 @@ fn swapped_sides_and_another_robot_are_said() {
     std::fs::write(folder.path().join("small.json"), robot.to_string()).unwrap();
     let said = notes(&["--robot", "small.json", "--recording", "suspect.csv"]);
     assert!(said.contains("another robot's"), "{said}");
+}
+
+#[test]
+fn a_drive_is_not_healthy_and_suspect_at_once_and_nothing_is_left_of_what_is_refused() {
+    let folder = folder(&json!([]));
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "suspect.csv", "--out", "found"];
+    let output = joulepath(folder.path(), &arguments);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("of the healthy ones too"), "{said}");
+    assert!(!folder.path().join("found").exists());
 }
 
 #[test]

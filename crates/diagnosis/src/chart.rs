@@ -9,11 +9,11 @@ use crate::{
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 300.0;
-const LEFT: f64 = 52.0;
+const LEFT: f64 = 64.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 30.0;
-/// Points of a line: more would overlap on its 840 pixels.
+/// Points of a line: more would overlap on its 830 pixels.
 const MOST_POINTS: usize = 420;
 
 /// A line of a drawing: its name, colour, width and values by second.

@@ -5,7 +5,7 @@ use model::{Robot, mechanism::Mechanism};
 use recording::{PowerForm, Recording, Watch, unwatched};
 
 use crate::{
-    Error,
+    Error, admissible,
     alternatives::{Explanation, alternatives, detectable},
     corrected::corrected,
     discover::{Sure, discover},
@@ -74,6 +74,7 @@ pub fn diagnose_watched(
 ) -> Result<Diagnosis, Error> {
     let Question { robot, suspect, healthy, ruled_out } = *question;
     progress("preparing the drives", 0.0);
+    admissible::check(suspect, healthy)?;
     let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
     let suspect = &with_powers(robot, suspect, watch)?;
     let healthy = healthy.map(|healthy| with_powers(robot, healthy, watch)).transpose()?;

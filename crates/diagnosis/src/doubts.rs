@@ -2,7 +2,7 @@
 
 use calibration::Drives;
 use model::Robot;
-use recording::{Channel, Recording, Run};
+use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
 
 use crate::{Error, baseline::Baseline, series::Series, turning::Line};
 
@@ -28,20 +28,25 @@ pub(crate) fn mistakes(
     series: &Series,
     healthy: &Baseline,
 ) -> Result<Vec<String>, Error> {
-    let mut said = Vec::new();
+    let mut said = contradictions(recording);
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { &healthy.robot } else { robot };
     let given = follows(known, series, true)?;
+    let mut mended = Vec::new();
     for (change, words) in CHANGES {
         let Some(changed) = change(recording) else { continue };
         let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
-            said.push(format!(
-                "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
-                100.0 * other.r2,
-                100.0 * given.r2
-            ));
+            mended.push((other.r2, words));
         }
+    }
+    // Of several that would mend it the best is told.
+    if let Some((r2, words)) = mended.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        said.push(format!(
+            "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
+            100.0 * r2,
+            100.0 * given.r2
+        ));
     }
     let kinds = [(true, "recorded power"), (false, "recorded power of the healthy drives")];
     for (suspect, which) in kinds.into_iter().filter(|(suspect, _)| *suspect || series.has_healthy()) {
@@ -53,10 +58,36 @@ pub(crate) fn mistakes(
     Ok(said)
 }
 
+/// What channels of motion contradict whatever the robot: the sign of the yaw rate, and sizes that another unit would explain.
+fn contradictions(recording: &Recording) -> Vec<String> {
+    let is_of_motion = |channel: Channel| {
+        use Channel::{LeftSpeed, Pitch, RightSpeed, Roll, YawRate};
+        matches!(channel, Pitch | Roll | LeftSpeed | RightSpeed | YawRate)
+    };
+    let all = suspicions(recording).into_iter();
+    let told = all.filter(|one| {
+        one.kind == SuspicionKind::Opposed || one.kind == SuspicionKind::Unit && is_of_motion(one.channel)
+    });
+    let mut said: Vec<String> = Vec::new();
+    for Suspicion { channel, statement, .. } in told {
+        // One channel is told once, however many drives it was wrong in.
+        let name = format!("`{}`", channel.name());
+        if !said.iter().any(|other| other.starts_with(&name)) {
+            said.push(format!("{name}: {statement}"));
+        }
+    }
+    said
+}
+
+/// Ratios of kilowatts to watts, as far as a robot may be off.
+const KILOWATTS: [f64; 2] = [0.4e-3, 2.5e-3];
+
 /// That power is another robot's, or in other units.
 fn another(which: &str, ratio: f64) -> String {
+    let unit = if (KILOWATTS[0]..KILOWATTS[1]).contains(&ratio) { "in kilowatts" } else { "in other units" };
+    let ratio = if ratio.abs() < 0.01 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") };
     format!(
-        "{which} is {ratio:.2} times what the robot's file predicts: the recording may be another robot's, or in other units"
+        "{which} is {ratio} times what the robot's file predicts: the recording may be another robot's, or {unit}"
     )
 }
 

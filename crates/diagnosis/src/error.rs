@@ -24,6 +24,26 @@ pub enum Error {
         /// Surfaces of the robot.
         known: String,
     },
+    /// Rows that are too far apart to tell how fast speeds change.
+    #[error(
+        "rows are {step_s} s apart, and a diagnosis needs {most_s} s at most: `t_s` must be in seconds; record more often, or give its unit in a map"
+    )]
+    TooCoarse {
+        /// Time between rows in the median \[s\].
+        step_s: f64,
+        /// Most that is accepted \[s\].
+        most_s: f64,
+    },
+    /// Drives under suspicion that are among the healthy ones.
+    #[error(
+        "drive `{drive}` of the recording is drive `{healthy}` of the healthy ones too: what it lacks it would be measured by; name other drives as healthy"
+    )]
+    Same {
+        /// The drive under suspicion.
+        drive: String,
+        /// The same among the healthy ones.
+        healthy: String,
+    },
     /// Not enough to decide anything.
     #[error(
         "{seconds} s of driving are too little for a diagnosis, which compares at least {needed} s of it"

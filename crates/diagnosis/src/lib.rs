@@ -5,6 +5,7 @@
 //! lowers the error, which with thousands of correlated rows every term does, but by what it explains beside everything else,
 //! by blocks of time, and on drives that were held out.
 
+mod admissible;
 mod alternatives;
 mod as_hard;
 mod average;

@@ -60,7 +60,7 @@ impl Diagnosis {
 
     fn places_text(&self) -> String {
         if self.places.is_empty() {
-            return "<p>The recording differs from the model nowhere beyond noise.</p>".into();
+            return "<p>Nothing that comes again differs anywhere beyond noise.</p>".into();
         }
         let mut items = String::new();
         for place in &self.places {

@@ -239,8 +239,8 @@ impl Error {
     /// Missing names, whatever they stand for.
     pub(crate) fn missing_names(missing: &[String], wanted: &[&str], found: &[String]) -> Error {
         let near = |name: &&str| {
-            let best =
-                found.iter().filter(|f| f != name).map(|f| (strsim::normalized_levenshtein(f, name), f));
+            let is_free = |other: &&String| other != name && !wanted.contains(&other.as_str());
+            let best = found.iter().filter(is_free).map(|f| (strsim::normalized_levenshtein(f, name), f));
             let (likeness, best) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
             (likeness >= WORTH_NAMING).then(|| (best.clone(), (*name).to_owned()))
         };

@@ -53,5 +53,6 @@ pub use report::{
     SuspicionKind,
 };
 pub use room::Room;
+pub use suspicion::suspicions;
 pub use units::{Conversion, unit_names};
 pub use watch::Watch;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv, mcap, parquet,
-    suspicion, watch::Watched,
+    suspicion::suspicions, watch::Watched,
 };
 
 /// A recording and what reading it found.
@@ -224,7 +224,7 @@ impl Reading {
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
         report.describe(&recording);
-        report.suspicions = suspicion::find(&recording);
+        report.suspicions = suspicions(&recording);
         Ok(Reading { recording, report })
     }
 }

@@ -136,8 +136,10 @@ pub enum SuspicionKind {
     Saturated,
     /// A magnitude that another unit would explain.
     Unit,
-    /// A sign that flips for single rows, or is opposed to what it should agree with.
+    /// A sign that flips for single rows.
     Sign,
+    /// A sign opposed to that of what it should agree with.
+    Opposed,
     /// A current or power that never changes its sign although the robot's motion does.
     Unsigned,
     /// Wheel speeds and yaw rate that do not belong together.

@@ -17,7 +17,7 @@ use crate::{
 const LEAST_ROWS: usize = 20;
 
 /// A doubt about each channel, for every test that it fails.
-pub(crate) fn find(recording: &Recording) -> Vec<Suspicion> {
+pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
     let mut doubts = Vec::new();
     for (&channel, values) in &recording.channels {
         let doubt = |kind, statement| Suspicion { channel, run: None, kind, statement };
@@ -78,7 +78,7 @@ mod tests {
         }
         let runs = vec![Run::new("drive".into(), 0..ROWS, &t_s, None)];
         let recording = Recording { t_s, channels, runs, ..Recording::default() };
-        find(&recording).into_iter().map(|doubt| (doubt.channel, doubt.kind)).collect()
+        suspicions(&recording).into_iter().map(|doubt| (doubt.channel, doubt.kind)).collect()
     }
 
     #[test]
@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(drive(C::Power, |_, p| p / 1000.0), [(C::Power, Kind::Unit)]);
         assert_eq!(drive(C::Power, |_, p| p.min(100.0)), [(C::Power, Kind::Saturated)]);
         assert_eq!(drive(C::Power, |r, p| if r < 300 { f64::NAN } else { p }), [(C::Power, Kind::Sparse)]);
-        assert_eq!(drive(C::YawRate, |_, w| -w), [(C::YawRate, Kind::Sign)]);
+        assert_eq!(drive(C::YawRate, |_, w| -w), [(C::YawRate, Kind::Opposed)]);
         assert_eq!(drive(C::YawRate, |r, _| (r as f64).sin()), [(C::YawRate, Kind::Slip)]);
         assert_eq!(drive(C::YawRate, |_, w| w.to_degrees()), [(C::YawRate, Kind::Unit); 2]);
         assert_eq!(drive(C::LeftSpeed, |r, v| if r == 200 { -v } else { v }), [(C::LeftSpeed, Kind::Sign)]);
@@ -114,7 +114,7 @@ mod tests {
             ]);
             let runs = vec![Run::new("drive".into(), 0..ROWS, &t_s, None)];
             let recording = Recording { t_s: t_s.clone(), channels, runs, ..Recording::default() };
-            find(&recording).into_iter().filter(|doubt| doubt.kind == Kind::Unsigned).count()
+            suspicions(&recording).into_iter().filter(|doubt| doubt.kind == Kind::Unsigned).count()
         };
         assert_eq!((find(|v| 8.0 * v.abs() + 0.5), find(|v| 8.0 * v)), (2, 0));
     }

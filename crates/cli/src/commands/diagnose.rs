@@ -29,8 +29,17 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let is_new = make_folder(&arguments.out)?;
+    let done = diagnosed(arguments);
+    if done.is_err() && is_new {
+        // Nothing is left of what failed; what somebody else put there meanwhile stays.
+        let _ = fs::remove_dir(&arguments.out);
+    }
+    done
+}
+
+fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { recorded, reference, ruled_out, out } = arguments;
-    make_folder(out)?;
     let (robot, suspect) = recorded.read()?;
     let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference)?) };
     let bar = progress::steps();
@@ -58,12 +67,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Makes the folder before long work is done for it.
-fn make_folder(out: &Path) -> Result<(), BadInput> {
+/// Makes the folder before long work is done for it, and says whether it is new.
+fn make_folder(out: &Path) -> Result<bool, BadInput> {
+    let is_new = !out.exists();
     if out.exists() && !out.is_dir() {
         return Err(BadInput(format!("--out {}: it is a file; name a folder", out.display())));
     }
     fs::create_dir_all(out)
+        .map(|()| is_new)
         .map_err(|error| BadInput(format!("--out {}: the folder cannot be made: {error}", out.display())))
 }
 

@@ -44,7 +44,7 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     }
     let (r2, slip_track_m) = (dw * dw / (dd * ww), dd / dw);
     let (kind, statement) = if dw < 0.0 && r2 > LEAST_R2 {
-        (Kind::Sign, "it is opposed to the wheel speeds: left and right, or its sign, are swapped".into())
+        (Kind::Opposed, "it is opposed to the wheel speeds: left and right, or its sign, are swapped".into())
     } else if r2 < LEAST_R2 {
         let share = 100.0 * r2;
         (
