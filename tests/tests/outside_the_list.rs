@@ -83,7 +83,8 @@ fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
     // Where no term describes it either, it is said when it was.
-    let is_told = found.sentence.contains("came once: from 180 to 200 s the power of a side was off by");
+    let is_told =
+        found.sentence.contains("came once: from 180 to 200 s the power of the left side was off by");
     assert!(is_told || !found.findings.is_empty(), "{}", found.sentence);
 }
 

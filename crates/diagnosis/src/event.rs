@@ -13,9 +13,12 @@ const MOST: f64 = 0.5;
 /// errors are all over the drives.
 pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<String> {
     let block = blocks(series);
-    let mut beyond_w2 = vec![(0.0, 0.0, None); block.iter().max().map_or(0, |last| last + 1)];
+    let mut beyond_w2 = vec![(0.0, 0.0, None, [0.0; 2]); block.iter().max().map_or(0, |last| last + 1)];
     for i in (0..errors_w.len()).filter(|i| series.is_power(*i) && series.averages[*i].suspect) {
-        let (sum_w2, count, first) = &mut beyond_w2[block[i]];
+        let (sum_w2, count, first, by_side_w2) = &mut beyond_w2[block[i]];
+        if let Some(own_w2) = by_side_w2.get_mut(series.averages[i].channel) {
+            *own_w2 += errors_w[i].powi(2);
+        }
         *sum_w2 += errors_w[i].powi(2) - floor_w.powi(2);
         *count += 1.0;
         first.get_or_insert(i);
@@ -27,17 +30,42 @@ pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<S
     if few.map(|(sum_w2, ..)| sum_w2).sum::<f64>() < MOST * all_w2 {
         return None;
     }
-    let (sum_w2, count, first) = beyond_w2.first()?;
+    let (sum_w2, count, first, by_side_w2) = beyond_w2.first()?;
     let average = &series.averages[(*first)?];
     let from_s = BLOCK_S * (average.t_s.max(0.0) / BLOCK_S).floor();
     let drive = match &series.names[..] {
         names if names.len() > 1 => format!(" of drive {}", names.get(average.run)?),
         _ => String::new(),
     };
-    let power = if series.channels() == 2 { "the power of a side" } else { "power" };
+    let power = if series.channels() == 2 { of_side(*by_side_w2) } else { "power" };
     Some(format!(
         "from {from_s:.0} to {:.0} s{drive} {power} was off by {:.0} W, root mean square",
         from_s + BLOCK_S,
         (sum_w2 / count + floor_w.powi(2)).sqrt()
     ))
+}
+
+/// Share of squared errors that one side holds where it is the one that was off.
+const ON_ONE_SIDE: f64 = 0.8;
+
+/// Which power was off, by the squared errors of the left and the right side.
+fn of_side([left_w2, right_w2]: [f64; 2]) -> &'static str {
+    match left_w2 / (left_w2 + right_w2) {
+        share if share >= ON_ONE_SIDE => "the power of the left side",
+        share if share <= 1.0 - ON_ONE_SIDE => "the power of the right side",
+        _ => "the power of a side",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_is_named_that_holds_most_of_it() {
+        assert_eq!(of_side([90.0, 10.0]), "the power of the left side");
+        assert_eq!(of_side([10.0, 90.0]), "the power of the right side");
+        assert_eq!(of_side([60.0, 40.0]), "the power of a side");
+        assert_eq!(of_side([0.0, 0.0]), "the power of a side");
+    }
 }
