@@ -253,7 +253,7 @@ fn a_drive_is_not_healthy_and_suspect_at_once_and_nothing_is_left_of_what_is_ref
     let output = joulepath(folder.path(), &arguments);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("of the healthy ones too"), "{said}");
+    assert!(said.contains("among the healthy ones too"), "{said}");
     assert!(!folder.path().join("found").exists());
 }
 

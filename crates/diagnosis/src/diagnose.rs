@@ -84,12 +84,11 @@ pub fn diagnose_watched(
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
-    let mut found =
-        search(&series, robot, healthy, &|step, share| progress(step, 0.1 + 0.6 * share.min(1.0)))?;
-    let mistakes = mistakes(robot, suspect, &series, &found.before)?;
-    if !mistakes.is_empty() {
-        found.forget();
-    }
+    let told = |step: &str, share: f64| progress(step, 0.1 + 0.6 * share.min(1.0));
+    let begun = Search::begin(&series, robot, healthy, &told)?;
+    let mistakes = mistakes(robot, (suspect, healthy), &series, &begun.before)?;
+    // Nothing else is told of what is not what it seems.
+    let found = if mistakes.is_empty() { search(&series, robot, begun, &told)? } else { begun };
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
     let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();

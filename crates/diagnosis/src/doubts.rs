@@ -24,11 +24,13 @@ const FAR_SIGMAS: f64 = 5.0;
 /// As [`Series::new`] and [`Series::predict`].
 pub(crate) fn mistakes(
     robot: &Robot,
-    recording: &Recording,
+    (recording, healthy_drives): (&Recording, Option<&Recording>),
     series: &Series,
     healthy: &Baseline,
 ) -> Result<Vec<String>, Error> {
     let mut said = contradictions(recording);
+    let of_healthy = healthy_drives.map_or(Vec::new(), contradictions).into_iter();
+    said.extend(of_healthy.map(|why| format!("of the healthy drives, {why}")));
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { &healthy.robot } else { robot };
     let given = follows(known, series, true)?;

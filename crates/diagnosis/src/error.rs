@@ -36,7 +36,7 @@ pub enum Error {
     },
     /// Drives under suspicion that are among the healthy ones.
     #[error(
-        "drive `{drive}` of the recording is drive `{healthy}` of the healthy ones too: what it lacks it would be measured by; name other drives as healthy"
+        "drive `{drive}` of the recording is among the healthy ones too, as `{healthy}`: held against itself it lacks nothing; name other drives as healthy"
     )]
     Same {
         /// The drive under suspicion.

@@ -153,3 +153,26 @@ fn near<const TENTHS: u32>(average: &Average, fastest_mps: f64) -> f64 {
 fn known(value: f64) -> f64 {
     if value.is_finite() { value } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::average::Input;
+
+    #[test]
+    fn groups_of_what_was_before_grow_with_driving_and_fade_with_what_warms() {
+        let of = |symbol: &str, moving_s: f64, of_late_m: f64| {
+            let input = Input { moving_s, of_late_m, ..Input::default() };
+            let average = Average { channel: 0, run: 0, suspect: true, t_s: 900.0, input };
+            let group = GROUPS.iter().find(|group| group.symbol == symbol);
+            group.map(|group| (group.value)(&average, 2.0)).unwrap_or(f64::NAN)
+        };
+        let built_up = |moving_s: f64| of("1 − e^(−s/20 s)", moving_s, 0.0);
+        assert_eq!(built_up(0.0), 0.0);
+        assert!((built_up(20.0) - (1.0 - (-1.0_f64).exp())).abs() < 1e-12);
+        // 60 m at 2 m/s at most are half a minute at full speed.
+        let cold = |of_late_m: f64| of("e^(−h/(30 s u_max))", 0.0, of_late_m);
+        assert_eq!(cold(0.0), 1.0);
+        assert!((cold(60.0) - (-1.0_f64).exp()).abs() < 1e-12);
+    }
+}

@@ -3,7 +3,7 @@
 use calibration::Drives;
 
 /// Time in which what driving has warmed cools to a third \[s\]: brakes, grease and tyres take minutes.
-pub(crate) const COOLS_S: f64 = 300.0;
+const COOLS_S: f64 = 300.0;
 
 /// By row: time since the robot last stood still, as far as the stretch tells [s].
 pub(crate) fn moving_s(drives: &Drives) -> Vec<f64> {

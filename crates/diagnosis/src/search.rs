@@ -78,11 +78,23 @@ pub struct Search {
 }
 
 impl Search {
-    /// Takes back all that was found and refused.
-    pub(crate) fn forget(&mut self) {
-        self.found.clear();
-        self.refused.clear();
-        self.after = self.before.clone();
+    /// Where it begins: the robot fitted, and nothing found yet; `healthy` are those that the series holds beside the suspect ones.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub fn begin(
+        series: &Series,
+        file: &Robot,
+        healthy: Option<&Recording>,
+        progress: &dyn Fn(&str, f64),
+    ) -> Result<Search, Error> {
+        progress("comparing healthy drives", 0.0);
+        let null = Null::of(file, healthy, series.watch())?;
+        progress("fitting the robot", 0.05);
+        let before = Baseline::fit(series, file, &[])?;
+        let left = left(series, &before);
+        let (after, left) = (before.clone(), [left.clone(), left]);
+        Ok(Search { found: Vec::new(), refused: Vec::new(), before, after, left, null })
     }
 }
 
@@ -132,21 +144,17 @@ impl State {
     }
 }
 
-/// Looks for mechanisms in the suspect drives; `healthy` are those that the series holds beside them.
+/// Looks for mechanisms in the suspect drives, from where a search began.
 ///
 /// # Errors
 /// A surface that the robot does not know.
 pub fn search(
     series: &Series,
     file: &Robot,
-    healthy: Option<&Recording>,
+    begun: Search,
     progress: &dyn Fn(&str, f64),
 ) -> Result<Search, Error> {
-    progress("comparing healthy drives", 0.0);
-    let null = Null::of(file, healthy, series.watch())?;
-    progress("fitting the robot", 0.05);
-    let before = Baseline::fit(series, file, &[])?;
-    let left_before = left(series, &before);
+    let Search { before, null, left: [left_before, _], .. } = begun;
     let mut state = State { found: Vec::new(), fit: before.clone() };
     for round in 0..MOST {
         progress("weighing mechanisms", 0.1 + 0.25 * round as f64);
