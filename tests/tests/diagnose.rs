@@ -212,7 +212,9 @@ fn swapped_sides_and_another_robot_are_said() {
             sentence.starts_with("The recording is not what it seems") && sentence.contains(why),
             "{sentence}"
         );
-        assert!(found["findings"].as_array().unwrap().is_empty(), "{}", found["findings"]);
+        for nothing in ["findings", "where"] {
+            assert!(found[nothing].as_array().unwrap().is_empty(), "{}", found[nothing]);
+        }
     };
     let swapped = "power of the left and the right side seem swapped";
     for alone in [true, false] {

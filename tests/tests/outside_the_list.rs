@@ -85,6 +85,8 @@ fn a_brake_that_binds_for_half_a_minute_is_not_called_drag() {
     // No term describes it either, and it is said when it was.
     let when = "came once: from 180 to 200 s the power of the left side was off by";
     assert!(found.findings.is_empty() && found.sentence.contains(when), "{}", found.sentence);
+    let places: Vec<&str> = found.places.iter().map(|place| place.statement.as_str()).collect();
+    assert_eq!(places, ["from 180 to 200 s"]);
 }
 
 #[test]

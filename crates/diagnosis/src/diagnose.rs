@@ -97,7 +97,7 @@ pub fn diagnose_watched(
         look_outside(&series, &found, &applied, &mut judged)?;
     }
     progress("locating the difference", 0.8);
-    let places = judged.places(&series, robot, &found)?;
+    let places = if mistakes.is_empty() { judged.places(&series, robot, &found)? } else { Vec::new() };
     progress("planning the next drive", 0.85);
     let next_drive = decisive_drive(&series, robot, &found)?;
     let (corrected_robot, mut notes) =
@@ -130,7 +130,7 @@ pub fn diagnose_watched(
             diagnosis.verdict = Verdict::Unexplained;
             words::mistaken(mistake)
         }
-        None => words::sentence(&diagnosis, &found.refused, judged.event(&series)),
+        None => words::sentence(&diagnosis, &found.refused, judged.event(&series).map(|event| event.words)),
     };
     progress("done", 1.0);
     Ok(diagnosis)

@@ -1,6 +1,7 @@
 //! What happened a few times only: too much to be noise, and too seldom to be evidence of anything.
 
 use crate::{
+    report::{Place, Range},
     series::Series,
     visits,
     weigh::{BLOCK_S, blocks},
@@ -9,9 +10,17 @@ use crate::{
 /// Share of what is beyond noise that a few blocks hold where it is an event.
 const MOST: f64 = 0.5;
 
-/// When a few blocks of drives under suspicion hold most of the errors beyond noise, and how far power was off there, in words; `None` where
-/// errors are all over the drives.
-pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<String> {
+/// What happened too seldom to be evidence.
+pub(crate) struct Event {
+    /// When, and how far power was off there, in words.
+    pub(crate) words: String,
+    /// When.
+    pub(crate) place: Place,
+}
+
+/// When a few blocks of drives under suspicion hold most of the errors beyond noise, and how far power was off there; `None` where errors
+/// are all over the drives.
+pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<Event> {
     let block = blocks(series);
     let mut beyond_w2 = vec![(0.0, 0.0, None, [0.0; 2]); block.iter().max().map_or(0, |last| last + 1)];
     for i in (0..errors_w.len()).filter(|i| series.is_power(*i) && series.averages[*i].suspect) {
@@ -33,16 +42,16 @@ pub(crate) fn event(series: &Series, errors_w: &[f64], floor_w: f64) -> Option<S
     let (sum_w2, count, first, by_side_w2) = beyond_w2.first()?;
     let average = &series.averages[(*first)?];
     let from_s = BLOCK_S * (average.t_s.max(0.0) / BLOCK_S).floor();
-    let drive = match &series.names[..] {
-        names if names.len() > 1 => format!(" of drive {}", names.get(average.run)?),
-        _ => String::new(),
-    };
+    let to_s = from_s + BLOCK_S;
+    let name = series.names.get(average.run).filter(|_| series.names.len() > 1).cloned();
+    let drive = name.as_ref().map_or(String::new(), |name| format!(" of drive {name}"));
     let power = if series.channels() == 2 { of_side(*by_side_w2) } else { "power" };
-    Some(format!(
-        "from {from_s:.0} to {:.0} s{drive} {power} was off by {:.0} W, root mean square",
-        from_s + BLOCK_S,
-        (sum_w2 / count + floor_w.powi(2)).sqrt()
-    ))
+    let when = format!("from {from_s:.0} to {to_s:.0} s{drive}");
+    let off_w = (sum_w2 / count + floor_w.powi(2)).sqrt();
+    let words = format!("{when} {power} was off by {off_w:.0} W, root mean square");
+    let range = Range { name, ..Range::of("t_s", [Some(from_s), Some(to_s)]) };
+    let place = Place { kind: "time", statement: when, range, share_of_excess: sum_w2 / all_w2 };
+    Some(Event { words, place })
 }
 
 /// Share of squared errors that one side holds where it is the one that was off.

@@ -7,7 +7,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     discovered::Discovered,
-    event::event,
+    event::{Event, event},
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
@@ -136,8 +136,8 @@ impl Judged {
         }
     }
 
-    /// What happened a few times only, in words, where far more is left than usual.
-    pub(crate) fn event(&self, series: &Series) -> Option<String> {
+    /// What happened a few times only, where far more is left than usual.
+    pub(crate) fn event(&self, series: &Series) -> Option<Event> {
         let errors_w = &self.steps.last()?.held_out_w;
         let is_event = self.missed().is_most();
         is_event.then(|| event(series, errors_w, self.baseline.noise_floor_w)).flatten()
@@ -165,8 +165,14 @@ impl Judged {
         findings
     }
 
-    /// Where the errors are that the findings take away; where nothing was found, those beyond noise.
+    /// Where the errors are that the findings take away; where nothing was found, what happened once, or else those beyond noise.
     pub(crate) fn places(&self, series: &Series, robot: &Robot, found: &Search) -> Result<Vec<Place>, Error> {
+        if found.found.is_empty()
+            && self.discovered.is_empty()
+            && let Some(event) = self.event(series)
+        {
+            return Ok(vec![event.place]);
+        }
         if self.verdict(found) == Verdict::Consistent {
             return Ok(Vec::new());
         }

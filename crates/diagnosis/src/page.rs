@@ -59,6 +59,9 @@ impl Diagnosis {
     }
 
     fn places_text(&self) -> String {
+        if self.places.is_empty() && self.verdict != Verdict::Consistent {
+            return String::new();
+        }
         if self.places.is_empty() {
             return "<p>Nothing that comes again differs anywhere beyond noise.</p>".into();
         }
