@@ -11,7 +11,7 @@ use crate::{
     average::{Average, Quantity},
     candidates, channel,
     discrepancy::{Discrepancy, Ground, Whitened},
-    everywhere,
+    everywhere, form,
     knobs::Knob,
     noise::{Noise, Whitening},
     nuisance,
@@ -44,6 +44,8 @@ pub(crate) struct Baseline {
     /// Change of climbs with slopes that were read too steep, per one sigma: in all drives, and in those under suspicion, as an inclinometer is
     /// from one day to the next. One that is askew by more, or from some time on, is.
     pub(crate) tilts: Vec<Vec<f64>>,
+    /// What the forms of mechanisms that act leave open, per one sigma.
+    pub(crate) forms: Vec<Vec<f64>>,
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
     /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
     pub(crate) noise: Noise,
@@ -111,6 +113,7 @@ impl Baseline {
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         let sags = sags(series, &predicted_w);
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
+        let forms = form::forms(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
         if series.everywhere.get().is_none() {
             let none_w =
@@ -128,6 +131,7 @@ impl Baseline {
             delays,
             sags,
             tilts,
+            forms,
             noise,
             missed: Default::default(),
         })
@@ -183,7 +187,7 @@ fn learn(series: &Series, predicted_w: &[f64], columns: &[Vec<f64>], noise: &Noi
     let errors = white.of(&differences(&series.recorded, predicted_w));
     let nuisances = nuisance::columns(&series.averages, predicted_w);
     let columns = columns.iter().chain(&nuisances).map(|column| white.of(column)).collect();
-    Discrepancy::learn(&series.averages, &means, &Whitened { errors, columns, white: &white })
+    Discrepancy::learn(&series.averages, (&means, predicted_w), &Whitened { errors, columns, white: &white })
 }
 
 fn delays(

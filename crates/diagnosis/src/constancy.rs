@@ -1,6 +1,7 @@
 //! Whether what was found has one size all through the drives and acts at once, as a mechanism does; what merely stands in for something
 //! else does not.
 
+use model::mechanism::Kind;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
@@ -25,7 +26,7 @@ const FIRST_S: f64 = 300.0;
 const JUST_S: f64 = 60.0;
 
 /// A quantity by average.
-type Quantity = fn(&Average) -> f64;
+pub(crate) type Quantity = fn(&Average) -> f64;
 
 /// What the size of something else may go with.
 const WITH: [(&str, Quantity); 21] = [
@@ -123,7 +124,9 @@ pub(crate) fn doubt(
     let size = |column: &[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A shift that changes less of it than its form leaves open tells nothing of when it comes.
     let least_s = LEAST_LAG_S.max(FORM_SIGMA * size(&effect) / size(&rate).max(1e-300));
-    let of_time = judge(&rate).and_then(|(p_value, early_s)| {
+    // What a meter adds it adds to what it reads.
+    let is_of_a_meter = applied[which].mechanism.kind() == Kind::Measurement;
+    let of_time = judge(&rate).filter(|_| !is_of_a_meter).and_then(|(p_value, early_s)| {
         let when = if early_s < 0.0 { "late" } else { "early" };
         (early_s.abs() > least_s && !(may_be_early && early_s > 0.0))
             .then(|| (p_value, format!("it comes {:.1} s too {when}", early_s.abs())))
@@ -148,7 +151,7 @@ fn rate_per_s(averages: &[Average], acts: Span, effect: &[f64]) -> Vec<f64> {
 }
 
 /// An effect times how many standard deviations a quantity is from its mean, both by the effect's square; `None` where it stays.
-fn changing(averages: &[Average], effect: &[f64], of: Quantity) -> Option<Vec<f64>> {
+pub(crate) fn changing(averages: &[Average], effect: &[f64], of: Quantity) -> Option<Vec<f64>> {
     let values: Vec<f64> = averages.iter().map(of).collect();
     let whole: f64 = effect.iter().map(|w| w * w).sum();
     let mean = |value: &dyn Fn(f64) -> f64| {

@@ -5,9 +5,9 @@
 //! not go, the function may be anything of its usual size, and nothing small stands out.
 
 mod functions;
+mod likelihood;
 
-use nalgebra::{DMatrix, DVector};
-
+use self::likelihood::{Likelihoods, SIZES, likelihoods, most};
 use crate::{average::Average, channel, noise::Whitening};
 
 /// Logarithm of the likelihood ratio from which ground is taken for uneven: 20, as of any name ([`crate::search::AS_GOOD`]). Of worlds
@@ -16,10 +16,9 @@ const SURE: f64 = 3.0;
 /// Channels of power at the wheels.
 const SIDES: usize = 2;
 
-/// Sizes of the function that are weighed, as shares of the mean power, and sizes of the scatter, as shares of what it seems
-/// while the function is not told from it.
-const SIZES: [f64; 7] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08];
-const SCATTERS: [f64; 5] = [0.6, 0.7, 0.8, 0.9, 1.0];
+/// Parts of the function's variance that grow with the square of what is predicted, which are weighed: of a large robot, whose turns take
+/// six times the mean, healthy drives are e³⁰ times likelier with most of it than with none.
+const GROWING: [f64; 3] = [0.0, 0.5, 0.9];
 
 /// The functions of one set of drives, by channel: one of the inputs, and one of the ground.
 #[derive(Debug)]
@@ -54,9 +53,13 @@ pub(crate) struct Whitened<'a> {
 }
 
 impl Discrepancy {
-    /// Learns how large the functions are: the size under which the errors of healthy drives are most likely, of all drives
-    /// where none is known to be healthy.
-    pub(crate) fn learn(averages: &[Average], means: &[f64], beside: &Whitened<'_>) -> Self {
+    /// Learns how large the functions are, and how they grow with what is predicted: the sizes under which the errors of healthy drives are
+    /// most likely, of all drives where none is known to be healthy. `means` are mean sizes of what is predicted, by channel.
+    pub(crate) fn learn(
+        averages: &[Average],
+        (means, predicted): (&[f64], &[f64]),
+        beside: &Whitened<'_>,
+    ) -> Self {
         let Whitened { errors, columns, white } = beside;
         let of_channel = |(channel, mean): (usize, &f64)| {
             let places = channel::places(averages, channel);
@@ -67,9 +70,14 @@ impl Discrepancy {
             let likely = |functions: &[Vec<f64>], beside: &[Vec<f64>]| {
                 likelihoods(averages, channel, (&whitened(functions), beside), errors)
             };
-            let of_inputs = functions::of_inputs(averages, &places);
-            let share = SIZES[most(&likely(&of_inputs, columns))];
-            let of_inputs = Process { functions: of_inputs, share };
+            let alike = functions::of_inputs(averages, &places);
+            let of_inputs = GROWING.map(|part| {
+                let functions = grown(&alike, &places, predicted, (*mean, part));
+                let by_size = likely(&functions, columns);
+                let best = most(&by_size);
+                (by_size[best], Process { functions, share: SIZES[best] })
+            });
+            let of_inputs = likelier(of_inputs);
             // Slopes go with places, and what the model misses of them does.
             let beside = [&columns[..], &whitened(&of_inputs.columns(1.0))].concat();
             let of_ground =
@@ -110,67 +118,33 @@ impl Process {
     }
 }
 
+/// The process under which errors are likeliest, of some with the logarithm of their likelihood.
+fn likelier<const COUNT: usize>(of: [(f64, Process); COUNT]) -> Process {
+    let most = |a: (f64, Process), b: (f64, Process)| if b.0 > a.0 { b } else { a };
+    let none = (f64::NEG_INFINITY, Process { functions: Vec::new(), share: 0.0 });
+    of.into_iter().fold(none, most).1
+}
+
+/// Functions whose one sigma is the same at the mean power, and elsewhere as of a part of its variance that grows with the square of power.
+fn grown(
+    functions: &[Vec<f64>],
+    places: &[usize],
+    predicted: &[f64],
+    (mean, part): (f64, f64),
+) -> Vec<Vec<f64>> {
+    let size = |i: &usize| (1.0 - part + part * (predicted[*i] / mean.max(1e-9)).powi(2)).sqrt();
+    let sizes: Vec<f64> = places.iter().map(size).collect();
+    functions.iter().map(|function| function.iter().zip(&sizes).map(|(x, size)| x * size).collect()).collect()
+}
+
 fn scaled(functions: &[Vec<f64>], by: f64) -> Vec<Vec<f64>> {
     functions.iter().map(|function| function.iter().map(|value| value * by).collect()).collect()
 }
 
-/// Logarithms of likelihoods, by [`SIZES`].
-type Likelihoods = [f64; SIZES.len()];
-
-/// Number of the largest.
-fn most(likelihoods: &Likelihoods) -> usize {
-    (1..SIZES.len()).fold(0, |best, i| if likelihoods[i] > likelihoods[best] { i } else { best })
-}
-
-/// How likely the errors of a channel are where a function has each size, as a share of that of its columns, beside others; all alike
-/// where there is no function.
-fn likelihoods(
-    averages: &[Average],
-    channel: usize,
-    (own, beside): (&[Vec<f64>], &[Vec<f64>]),
-    errors: &[f64],
-) -> Likelihoods {
-    if own.is_empty() {
-        return [0.0; SIZES.len()];
-    }
-    let has_healthy = averages.iter().any(|a| !a.suspect);
-    let tells = |a: &Average| a.channel == channel && !(has_healthy && a.suspect);
-    let rows: Vec<usize> = (0..averages.len()).filter(|i| tells(&averages[*i])).collect();
-    let first = beside.len();
-    let columns: Vec<&Vec<f64>> = beside.iter().chain(own).collect();
-    let all = DMatrix::from_fn(rows.len(), columns.len(), |i, j| columns[j][rows[i]]);
-    let errors = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
-    let (square, right) = (all.transpose() * &all, all.tr_mul(&errors));
-    SIZES.map(|share| {
-        let size = |j: usize| if j < first { 1.0 } else { share };
-        let square =
-            DMatrix::from_fn(columns.len(), columns.len(), |i, j| square[(i, j)] * size(i) * size(j));
-        let right = DVector::from_fn(right.len(), |i, _| right[i] * size(i));
-        let of_scatter =
-            |scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
-        SCATTERS.into_iter().map(of_scatter).fold(f64::NEG_INFINITY, f64::max)
-    })
-}
-
-/// Logarithm of the likelihood of errors that are columns with weights of one sigma 1 and noise of one sigma `scatter`, but for
-/// a constant.
-fn log_likelihood(
-    square: &DMatrix<f64>,
-    right: &DVector<f64>,
-    errors: f64,
-    rows: usize,
-    scatter: f64,
-) -> f64 {
-    let variance = scatter * scatter;
-    let system = DMatrix::identity(square.nrows(), square.ncols()) + square / variance;
-    let Some(root) = system.cholesky() else { return f64::NEG_INFINITY };
-    let log_determinant = 2.0 * root.l_dirty().diagonal().map(f64::ln).sum() + rows as f64 * variance.ln();
-    let explained = right.dot(&root.solve(right)) / (variance * variance);
-    -0.5 * (errors / variance - explained + log_determinant)
-}
-
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
+
     use super::*;
     use crate::{average::Input, noise::Noise};
 
@@ -188,8 +162,13 @@ mod tests {
         (0..count).map(of).collect()
     }
 
-    /// The functions as they are learnt from errors made of some watts and noise of one watt.
+    /// The functions as they are learnt from errors made of some watts and noise of one watt, where 100 W are predicted.
     fn learnt_from(averages: &[Average], missed_w: &dyn Fn(&Average) -> f64) -> Discrepancy {
+        learnt_at(averages, &vec![100.0; averages.len()], missed_w)
+    }
+
+    /// The same where other powers are.
+    fn learnt_at(averages: &[Average], predicted: &[f64], missed_w: &dyn Fn(&Average) -> f64) -> Discrepancy {
         let mut noise = 12345_u64;
         let mut normal = || -> f64 {
             let uniform = |state: &mut u64| {
@@ -200,11 +179,10 @@ mod tests {
             (0..12).map(|_| uniform(&mut noise)).sum::<f64>() - 6.0
         };
         let errors: Vec<f64> = averages.iter().map(|a| missed_w(a) + normal()).collect();
-        let predicted = vec![100.0; averages.len()];
-        let white = Noise::of(&errors, &predicted, averages, &vec![true; averages.len()])
-            .whitening(&predicted, averages);
+        let white = Noise::of(&errors, predicted, averages, &vec![true; averages.len()])
+            .whitening(predicted, averages);
         let beside = Whitened { errors: white.of(&errors), columns: Vec::new(), white: &white };
-        Discrepancy::learn(averages, &[100.0, 100.0], &beside)
+        Discrepancy::learn(averages, (&[100.0, 100.0], predicted), &beside)
     }
 
     /// Size of the functions of the inputs and of the ground, learnt so.
@@ -224,6 +202,23 @@ mod tests {
         assert_eq!(learnt(&averages, 0.0), 0.0);
         assert!((0.005..=0.02).contains(&learnt(&averages, 1.0)), "{}", learnt(&averages, 1.0));
         assert!(learnt(&averages, 3.0) > learnt(&averages, 1.0));
+    }
+
+    #[test]
+    fn what_is_missed_in_proportion_to_power_may_be_more_where_more_is_predicted_and_what_is_not_may_not() {
+        let averages = averages(1200);
+        let predicted: Vec<f64> = (0..1200).map(|i| if i % 8 < 2 { 340.0 } else { 20.0 }).collect();
+        let smooth = |a: &Average| (1.4 * (2.0 * a.input.rim_mps + a.input.difference_mps)).sin();
+        // One sigma of the functions at much and at little power.
+        let sizes = |missed_w: &dyn Fn(&Average) -> f64| {
+            let learnt = learnt_at(&averages, &predicted, missed_w);
+            let functions = learnt.of_channel(0, 100.0, Ground::Even);
+            [0, 1].map(|k| functions.iter().map(|f| f[k] * f[k]).sum::<f64>().sqrt())
+        };
+        let [much, little] = sizes(&|a| 0.05 * predicted[a.t_s as usize] * smooth(a));
+        assert!(much > 5.0 * little, "{much} {little}");
+        let [much, little] = sizes(&|a| 5.0 * smooth(a));
+        assert!(little > 0.5 * much, "{much} {little}");
     }
 
     /// Averages of a drive that comes to most places of a field.

@@ -28,6 +28,7 @@ mod everywhere;
 mod evidence;
 mod explainable;
 mod foremost;
+mod form;
 mod gates;
 mod ground;
 mod group;

@@ -12,7 +12,7 @@ use crate::{
     search::{State, openness},
     series::{Applied, Series},
     term::{self, Term},
-    weigh::{self, system_with},
+    weigh::{Sizes, system, system_at},
 };
 
 /// By how much a term that stands for the same has to explain more, in squared errors over their variance less what choices cost, and as
@@ -47,16 +47,16 @@ pub(crate) fn doubt(
     let mut others: Vec<Applied> = state.applied();
     others.remove(which);
     let without = Baseline::fit(series, file, &others)?;
-    let system = weigh::system(series, &without);
+    let alone = system_at(series, &without, Sizes::Free, &[]);
     let whole = least_misfit(series, &without, &without) - least_misfit(series, &state.fit, &without);
-    let choices = found.numbers() as f64 * (system.blocks() as f64).ln();
-    let explained = whole / null.common_discount(system.blocks()) - choices;
+    let choices = found.numbers() as f64 * (alone.blocks() as f64).ln();
+    let explained = whole / null.common_discount(alone.blocks()) - choices;
     let terms = term::of_drives(series, file, std::iter::once(found.applied.span));
     let terms: Vec<&Term> = terms.iter().collect();
-    let best = ranked(series, &without, (&system, null), &terms).into_iter().next();
+    let best = ranked(series, &without, (&alone, null), &terms).into_iter().next();
     // A greater thing shows in what goes with one quantity; all terms would take as long again.
     let plain: Vec<&Term> = terms.iter().copied().filter(|term| term.is_plain()).collect();
-    let beside = ranked(series, &state.fit, (&weigh::system(series, &state.fit), null), &plain);
+    let beside = ranked(series, &state.fit, (&system(series, &state.fit), null), &plain);
     let open = openness(series);
     if let Some((missing, term)) = beside.into_iter().next()
         && is_greater(missing, explained, open)
@@ -64,7 +64,7 @@ pub(crate) fn doubt(
         return Ok(Some(format!("{} is missing beside it and explains more", term.words())));
     }
     let Some((_, term)) = best.filter(|(most, _)| is_better(*most, explained, open)) else { return Ok(None) };
-    let stands_for_it = leaves_little(series, state, (&without, &system), term)?;
+    let stands_for_it = leaves_little(series, state, (&without, &alone), term)?;
     Ok(stands_for_it.then(|| format!("{} explains it better", term.words())))
 }
 
@@ -84,15 +84,15 @@ fn is_better(most: f64, explained: f64, openness: f64) -> bool {
 fn leaves_little(
     series: &Series,
     state: &State,
-    (without, system): (&Baseline, &System),
+    (without, system_without): (&Baseline, &System),
     term: &Term,
 ) -> Result<bool, Error> {
     let white = without.whitening(series);
     let column = term.column(&without.robot, &series.averages, &without.predicted_w);
     let with_w = series.predict(&without.robot, &state.applied())?;
     let effect = [vec![white.of(&differences(&with_w, &without.predicted_w))]];
-    let alone = system.explained(&effect)[0];
-    let beside = system_with(series, without, &[column]).explained(&effect)[0];
+    let alone = system_without.explained(&effect)[0];
+    let beside = system_at(series, without, Sizes::Free, &[column]).explained(&effect)[0];
     Ok(beside < SAME * alone)
 }
 

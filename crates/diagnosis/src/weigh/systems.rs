@@ -12,13 +12,15 @@ use crate::{
 /// Length of a block [s]: longer than a manoeuvre, so that errors of different blocks hardly hang together.
 pub(crate) const BLOCK_S: f64 = 20.0;
 
-/// Which sizes of mechanisms that act are fitted whatever the candidate. What is found later may take over a part of what was found
-/// first, so that nothing is ranked on what a frozen size left.
+/// What of mechanisms that act is fitted whatever the candidate. What is found later may take over a part of what was found first, so
+/// that nothing is ranked on what a frozen size left.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sizes {
-    /// All.
+    /// All sizes, and what forms leave open: what goes with either is no second thing.
+    Open,
+    /// All sizes.
     Free,
-    /// All but those of one mechanism, by its number.
+    /// All sizes but those of one mechanism, by its number.
     FreeBut(usize),
     /// None.
     Fixed,
@@ -26,17 +28,17 @@ pub(crate) enum Sizes {
 
 /// Everything that is fitted whatever the candidate.
 pub(crate) fn system(series: &Series, base: &Baseline) -> System {
-    system_by(series, (base, Sizes::Free), base, true, (&[], Ground::Even))
+    system_by(series, (base, Sizes::Open), base, true, (&[], Ground::Even))
 }
 
-/// The same with fewer sizes fitted, beside columns that are.
+/// The same with less of mechanisms that act fitted, beside columns that are.
 pub(crate) fn system_at(series: &Series, base: &Baseline, sizes: Sizes, beside: &[Vec<f64>]) -> System {
     system_by(series, (base, sizes), base, true, (beside, Ground::Even))
 }
 
 /// The same for what acts in a place only, on ground that is as uneven as healthy drives show it.
 pub(crate) fn system_in_place(series: &Series, base: &Baseline, beside: &[Vec<f64>]) -> System {
-    system_by(series, (base, Sizes::Free), base, true, (beside, Ground::Uneven))
+    system_by(series, (base, Sizes::Open), base, true, (beside, Ground::Uneven))
 }
 
 /// Whitened errors that nothing takes, average by average.
@@ -46,12 +48,12 @@ pub(crate) fn left(series: &Series, base: &Baseline) -> Vec<f64> {
 
 /// The same beside columns that are fitted too.
 pub(crate) fn system_with(series: &Series, base: &Baseline, beside: &[Vec<f64>]) -> System {
-    system_at(series, base, Sizes::Free, beside)
+    system_at(series, base, Sizes::Open, beside)
 }
 
 /// The same for the candidate that is a delay itself.
 pub(crate) fn undelayed(series: &Series, base: &Baseline) -> System {
-    system_by(series, (base, Sizes::Free), base, false, (&[], Ground::Even))
+    system_by(series, (base, Sizes::Open), base, false, (&[], Ground::Even))
 }
 
 /// Everything that is fitted whatever the candidate, of a fit by the noise of another, so that fits can be compared.
@@ -77,10 +79,13 @@ fn system_by(
     }
     let everywhere = series.everywhere.get().into_iter().flatten();
     columns.extend(base.sags.iter().chain(&base.tilts).chain(everywhere).map(|c| white.of(c)));
+    if sizes == Sizes::Open {
+        columns.extend(base.forms.iter().map(|c| white.of(c)));
+    }
     let mut known = vec![1.0; columns.len()];
     // Of sizes and of what stands beside nothing is known before.
     let is_free = |which: usize| match sizes {
-        Sizes::Free => true,
+        Sizes::Open | Sizes::Free => true,
         Sizes::FreeBut(one) => which != one,
         Sizes::Fixed => false,
     };

@@ -1,0 +1,65 @@
+//! How likely errors are where a function of some size is among what made them.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::average::Average;
+
+/// Sizes of the function that are weighed, as shares of the mean power, and sizes of the scatter, as shares of what it seems
+/// while the function is not told from it.
+pub(super) const SIZES: [f64; 8] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16];
+const SCATTERS: [f64; 5] = [0.6, 0.7, 0.8, 0.9, 1.0];
+
+/// Logarithms of likelihoods, by [`SIZES`].
+pub(super) type Likelihoods = [f64; SIZES.len()];
+
+/// Number of the largest.
+pub(super) fn most(likelihoods: &Likelihoods) -> usize {
+    (1..SIZES.len()).fold(0, |best, i| if likelihoods[i] > likelihoods[best] { i } else { best })
+}
+
+/// How likely the errors of a channel are where a function has each size, as a share of that of its columns, beside others; all alike
+/// where there is no function.
+pub(super) fn likelihoods(
+    averages: &[Average],
+    channel: usize,
+    (own, beside): (&[Vec<f64>], &[Vec<f64>]),
+    errors: &[f64],
+) -> Likelihoods {
+    if own.is_empty() {
+        return [0.0; SIZES.len()];
+    }
+    let has_healthy = averages.iter().any(|a| !a.suspect);
+    let tells = |a: &Average| a.channel == channel && !(has_healthy && a.suspect);
+    let rows: Vec<usize> = (0..averages.len()).filter(|i| tells(&averages[*i])).collect();
+    let first = beside.len();
+    let columns: Vec<&Vec<f64>> = beside.iter().chain(own).collect();
+    let all = DMatrix::from_fn(rows.len(), columns.len(), |i, j| columns[j][rows[i]]);
+    let errors = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
+    let (square, right) = (all.transpose() * &all, all.tr_mul(&errors));
+    SIZES.map(|share| {
+        let size = |j: usize| if j < first { 1.0 } else { share };
+        let square =
+            DMatrix::from_fn(columns.len(), columns.len(), |i, j| square[(i, j)] * size(i) * size(j));
+        let right = DVector::from_fn(right.len(), |i, _| right[i] * size(i));
+        let of_scatter =
+            |scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
+        SCATTERS.into_iter().map(of_scatter).fold(f64::NEG_INFINITY, f64::max)
+    })
+}
+
+/// Logarithm of the likelihood of errors that are columns with weights of one sigma 1 and noise of one sigma `scatter`, but for
+/// a constant.
+fn log_likelihood(
+    square: &DMatrix<f64>,
+    right: &DVector<f64>,
+    errors: f64,
+    rows: usize,
+    scatter: f64,
+) -> f64 {
+    let variance = scatter * scatter;
+    let system = DMatrix::identity(square.nrows(), square.ncols()) + square / variance;
+    let Some(root) = system.cholesky() else { return f64::NEG_INFINITY };
+    let log_determinant = 2.0 * root.l_dirty().diagonal().map(f64::ln).sum() + rows as f64 * variance.ln();
+    let explained = right.dot(&root.solve(right)) / (variance * variance);
+    -0.5 * (errors / variance - explained + log_determinant)
+}
