@@ -67,6 +67,8 @@ pub struct Server {
     child: Child,
     /// Where it listens, as `http://127.0.0.1:41234`.
     pub url: String,
+    /// Where it keeps what lasts as long as it does, which it cannot remove when it is killed.
+    _temporary: tempfile::TempDir,
 }
 
 impl Server {
@@ -116,9 +118,12 @@ impl Server {
     /// # Panics
     /// When it does not start.
     pub fn start_in(bind: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
+        let temporary =
+            tempfile::tempdir().unwrap_or_else(|error| panic!("no folder for the server: {error}"));
         let mut child = Command::new(program())
             .args(["serve", "--bind", bind])
             .args(arguments)
+            .env("TMPDIR", temporary.path())
             .envs(environment.iter().copied())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -129,7 +134,7 @@ impl Server {
         let read = BufReader::new(stdout).read_line(&mut line);
         let url = line.trim().strip_prefix("listening on ").map(|url| url.replace("0.0.0.0", "127.0.0.1"));
         let url = url.unwrap_or_else(|| panic!("the server said {line:?} ({read:?})"));
-        Server { child, url }
+        Server { child, url, _temporary: temporary }
     }
 
     /// Sends a body with a content type.

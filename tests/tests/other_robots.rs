@@ -105,6 +105,21 @@ fn wind_that_was_found_first_is_fitted_anew_beside_a_meter_that_reads_too_much()
 }
 
 #[test]
+fn a_weaker_mechanism_beside_a_stronger_one_is_told_from_what_that_ones_form_misses() {
+    // The load lies far to the left, and from some time on the ground holds back more where it is steep.
+    let small = robot("small");
+    let effects = vec![
+        Effect { direction_rad: 1.7, ..Effect::new(EffectName::CenterOfMass, 0.1) },
+        Effect { onset_s: 358.0, ..Effect::new(EffectName::GradeDependentFriction, 3.0) },
+    ];
+    let suspect = drive_of(&small, &Drive::new(DriveKind::Rich, 900.0, 69), effects);
+    let healthy = drive_of(&small, &Drive::new(DriveKind::Rich, 600.0, 70), vec![]);
+    let found = said(&small, &suspect, Some(&healthy));
+    let named: Vec<&str> = found.findings.iter().map(|finding| finding.mechanism.as_str()).collect();
+    assert_eq!(named, ["center_of_mass", "grade_dependent_friction"], "{}", found.sentence);
+}
+
+#[test]
 fn alone_what_differs_from_the_file_from_the_beginning_on_is_no_change() {
     // A load that always lay higher than the file says, and a drag that was always there, set in at no time.
     let husky = model::builtin::husky_a200();

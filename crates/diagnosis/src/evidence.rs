@@ -104,7 +104,7 @@ impl System {
     }
 
     /// What is left of columns when everything fitted always has taken its part.
-    fn own(&self, columns: &[Vec<f64>]) -> DMatrix<f64> {
+    pub(crate) fn own(&self, columns: &[Vec<f64>]) -> DMatrix<f64> {
         let mut own = DMatrix::zeros(self.left.len(), columns.len());
         for (j, column) in columns.iter().enumerate() {
             own.view_mut((0, j), (self.rows, 1)).copy_from_slice(column);

@@ -43,24 +43,28 @@ pub(crate) fn forms(
     applied: &[Applied],
     predicted: &[f64],
 ) -> Result<Vec<Vec<f64>>, Error> {
-    let sigma = form_sigma(series);
-    if sigma == 0.0 {
+    if form_sigma(series) == 0.0 {
         return Ok(Vec::new());
     }
-    let uncertain = (0..applied.len()).filter(|which| !is_certain(applied[*which].mechanism.name()));
-    let effects: Vec<Vec<f64>> = uncertain
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(|which| {
-            let mut others = applied.to_vec();
-            others.remove(which);
-            Ok(differences(predicted, &series.predict(robot, &others)?))
-        })
-        .collect::<Result<_, Error>>()?;
-    Ok(effects.iter().flat_map(|effect| of_effect(&series.averages, effect, sigma)).collect())
+    let of_each = |which: usize| {
+        let mut others = applied.to_vec();
+        let one = others.remove(which);
+        let effect = differences(predicted, &series.predict(robot, &others)?);
+        Ok(of_one(series, one.mechanism.name(), &effect))
+    };
+    let all: Vec<Vec<Vec<f64>>> =
+        (0..applied.len()).into_par_iter().map(of_each).collect::<Result<_, Error>>()?;
+    Ok(all.concat())
 }
 
 /// The same of one mechanism, of which the effect is known.
+pub(crate) fn of_one(series: &Series, name: &str, effect: &[f64]) -> Vec<Vec<f64>> {
+    match form_sigma(series) {
+        sigma if sigma > 0.0 && !is_certain(name) => of_effect(&series.averages, effect, sigma),
+        _ => Vec::new(),
+    }
+}
+
 fn of_effect(averages: &[Average], effect: &[f64], sigma: f64) -> Vec<Vec<f64>> {
     let columns = WITH.iter().filter_map(|of| changing(averages, effect, *of));
     columns.map(|column| column.iter().map(|x| sigma * x).collect()).collect()

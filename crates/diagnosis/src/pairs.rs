@@ -6,12 +6,14 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     Error,
     baseline::Baseline,
+    evidence::System,
     foremost::Foremost,
+    form,
     gates::best,
     misfit::misfit,
     needed::drop_one,
     null::Null,
-    search::{AS_GOOD, Found, State, decide, is_told},
+    search::{AS_GOOD, Found, State, decide},
     series::{Applied, Series},
     undoing::{last_undoes, undo_in_all},
     weigh::{Weighed, system},
@@ -19,10 +21,9 @@ use crate::{
 
 /// Mechanisms of which pairs are tried, those that explain most by themselves.
 const TRIED: usize = 12;
-/// By how much a pair has to explain more than any mechanism by itself: a χ² that one of 66 pairs reaches by chance once in 100 drives.
+/// By how much a pair has to explain more than any mechanism by itself, each with what its form leaves open: a χ² that one of 66 pairs
+/// reaches by chance once in 100 drives.
 const SECOND: f64 = 14.4;
-/// The same as a share of what that explains, where the model misses something itself: less may be just that.
-const MORE: f64 = 0.25;
 
 /// Two mechanisms that were found, each weighed again beside the other, if that explains more; anything else as it is.
 ///
@@ -86,43 +87,41 @@ fn pair(
     null: &Null,
 ) -> Result<Option<[Applied; 2]>, Error> {
     let Foremost { closest: mut weighed, blocks, .. } = Foremost::of(series, before, &[], null)?;
-    let left = system(series, before).left().clone();
+    let beside = system(series, before);
+    let left = beside.left();
     // A delay is weighed beside less than everything else, and hides nothing.
     weighed.retain(|one| one.evidence.own.nrows() == left.len());
-    let score = |set: &[&Weighed]| -> Option<(f64, Vec<f64>)> {
-        if set.is_empty() {
-            return None;
-        }
-        let columns: Vec<_> = set.iter().flat_map(|one| one.evidence.own.column_iter()).collect();
-        let own = DMatrix::from_columns(&columns);
-        let right = own.tr_mul(&left);
-        let values = own.tr_mul(&own).cholesky()?.solve(&right);
-        let explained = values.dot(&right) / null.common_discount(blocks);
-        let count: usize = set.iter().map(|one| one.candidate.numbers()).sum();
-        Some((explained - count as f64 * (blocks as f64).ln(), values.iter().copied().collect()))
+    let is_found = |one: &Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
+    let mut place = 0;
+    weighed.retain(|one| {
+        place += 1;
+        place <= TRIED || is_found(one)
+    });
+    let weighed: Vec<Open> = weighed.into_iter().map(|one| Open::of(one, series, before, &beside)).collect();
+    let score = |set: &[&Open]| -> Option<(f64, Vec<f64>)> {
+        let (explained, values) = explained(set, left)?;
+        let count: usize = set.iter().map(|one| one.weighed.candidate.numbers()).sum();
+        Some((explained / null.common_discount(blocks) - count as f64 * (blocks as f64).ln(), values))
     };
-    let is_found = |one: &&Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
-    let so_far: Vec<&Weighed> = weighed.iter().filter(is_found).collect();
+    let so_far: Vec<&Open> = weighed.iter().filter(|one| is_found(&one.weighed)).collect();
     let single = weighed.iter().filter_map(|one| score(&[one])).map(|(score, _)| score).fold(0.0, f64::max);
     let so_far = score(&so_far).filter(|_| so_far.len() > 1).map_or(0.0, |(score, _)| score + AS_GOOD);
-    // Where nothing passes by itself, nothing is replaced.
-    let more = if found.is_empty() || is_told(series) { 0.0 } else { MORE };
-    let least = f64::max((1.0 + more) * single + SECOND, so_far);
-    weighed.truncate(TRIED);
+    let least = f64::max(single + SECOND, so_far);
     let mut most: Option<(f64, [Applied; 2])> = None;
-    for (i, a) in weighed.iter().enumerate() {
-        for b in &weighed[i + 1..] {
-            if a.name() == b.name() {
+    let tried = &weighed[..weighed.len().min(TRIED)];
+    for (i, a) in tried.iter().enumerate() {
+        for b in &tried[i + 1..] {
+            if a.weighed.name() == b.weighed.name() {
                 continue;
             }
             let Some((score, values)) = score(&[a, b]) else { continue };
-            let [own_w, other_w] = parts(&[a, b], &values);
+            let [own_w, other_w] = parts(&[&a.weighed, &b.weighed], &values);
             if undo_in_all(series, &own_w, &other_w) {
                 continue;
             }
             if score > least && most.as_ref().is_none_or(|(best, _)| score > *best) {
-                let (own, other) = values.split_at(a.candidate.linear.len());
-                most = Some((score, [a.at(before, own), b.at(before, other)]));
+                let (own, other) = values.split_at(a.weighed.candidate.linear.len());
+                most = Some((score, [a.weighed.at(before, own), b.weighed.at(before, other)]));
             }
         }
     }
@@ -130,6 +129,43 @@ fn pair(
         pair.iter().any(|one| found.iter().all(|f| f.mechanism.name() != one.mechanism.name()))
     };
     Ok(most.map(|(_, pair)| pair).filter(is_new))
+}
+
+/// A mechanism with what its form leaves open.
+struct Open {
+    weighed: Weighed,
+    /// Per one sigma, less what is fitted anyway.
+    forms: DMatrix<f64>,
+}
+
+impl Open {
+    fn of(weighed: Weighed, series: &Series, before: &Baseline, beside: &System) -> Open {
+        let white = before.whitening(series);
+        let mut effect_w = vec![0.0; series.recorded.len()];
+        for (column, value) in weighed.candidate.columns.iter().zip(&weighed.evidence.values) {
+            effect_w.iter_mut().zip(column).for_each(|(sum, x)| *sum += x * value);
+        }
+        let forms = form::of_one(series, weighed.name(), &effect_w);
+        let forms: Vec<Vec<f64>> = forms.iter().map(|column| white.of(column)).collect();
+        Open { weighed, forms: beside.own(&forms) }
+    }
+}
+
+/// Squared errors that some mechanisms take together, and their values; `None` where they cannot be told apart.
+fn explained(set: &[&Open], left: &DVector<f64>) -> Option<(f64, Vec<f64>)> {
+    let own = set.iter().flat_map(|one| one.weighed.evidence.own.column_iter());
+    let forms = set.iter().flat_map(|one| one.forms.column_iter());
+    let columns: Vec<_> = own.chain(forms).collect();
+    let first_form = columns.len() - set.iter().map(|one| one.forms.ncols()).sum::<usize>();
+    if first_form == 0 {
+        return None;
+    }
+    let all = DMatrix::from_columns(&columns);
+    let mut square = all.tr_mul(&all);
+    (first_form..all.ncols()).for_each(|i| square[(i, i)] += 1.0);
+    let right = all.tr_mul(left);
+    let values = square.cholesky()?.solve(&right);
+    Some((values.dot(&right), values.rows(0, first_form).iter().copied().collect()))
 }
 
 /// What each of two mechanisms explains.
@@ -154,4 +190,43 @@ fn revise(series: &Series, file: &Robot, pair: &[Applied], null: &Null) -> Resul
     state.take_up(decided);
     let is_needed = !drop_one(series, file, &mut state, null)? && !last_undoes(series, &state)?;
     Ok(is_needed.then_some(state))
+}
+
+#[cfg(test)]
+mod tests {
+    use model::mechanism;
+
+    use super::*;
+    use crate::{candidates::Candidate, evidence::Evidence, span::Span};
+
+    /// A mechanism that changes rows by so much, in sigma, with what its form leaves open.
+    fn open(name: &str, own: DVector<f64>, forms: DMatrix<f64>) -> Open {
+        let mechanism = mechanism::by_name(name).unwrap();
+        let applied = Applied { mechanism, values: vec![0.0], span: Span::ALL };
+        let candidate = Candidate { applied, linear: vec![0], columns: Vec::new() };
+        let own = DMatrix::from_columns(&[own]);
+        let (values, covariance) = (vec![1.0], DMatrix::identity(1, 1));
+        let evidence = Evidence { values, covariance, wald: 1.0, explained: 1.0, own, discord: 1.0 };
+        let weighed =
+            Weighed { candidate, evidence, tried: 1, score: 0.0, rank: 0.0, p_value: 0.0, is_strong: true };
+        Open { weighed, forms }
+    }
+
+    #[test]
+    fn what_the_form_of_one_leaves_open_makes_no_pair_and_what_it_does_not_makes_one() {
+        let rows = 200;
+        let with = DVector::from_fn(rows, |i, _| if i % 2 == 0 { 1.0 } else { -1.0 });
+        let strong = DVector::from_element(rows, 10.0);
+        // A twelfth of it goes with something, which one sigma of its form allows for; the other mechanism does just that.
+        let left = &strong + 0.83 * &with;
+        let no_forms = DMatrix::zeros(rows, 0);
+        let more = |forms: DMatrix<f64>| {
+            let one = open("wind", strong.clone(), forms);
+            let other = open("inertia", with.clone(), no_forms.clone());
+            let of = |set: &[&Open]| explained(set, &left).map_or(0.0, |(explained, _)| explained);
+            of(&[&one, &other]) - of(&[&one])
+        };
+        assert!(more(DMatrix::from_columns(&[0.8 * &with])) < SECOND);
+        assert!(more(no_forms.clone()) > SECOND);
+    }
 }

@@ -50,7 +50,7 @@ pub(super) fn of_ground(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>>
 fn standardised<const COUNT: usize>(
     averages: &[Average],
     places: &[usize],
-    inputs: [(fn(&Input) -> f64, f64); COUNT],
+    inputs: [Axis; COUNT],
     farthest: f64,
 ) -> Vec<[f64; COUNT]> {
     let mut points = vec![[0.0; COUNT]; places.len()];
@@ -68,7 +68,10 @@ fn standardised<const COUNT: usize>(
     points
 }
 
-const INPUTS: [(fn(&Input) -> f64, f64); 6] = [
+/// An input, and the spreads of it over which a function changes.
+type Axis = (fn(&Input) -> f64, f64);
+
+const INPUTS: [Axis; 6] = [
     (|x| x.rim_mps, OF_SPEEDS),
     (|x| x.difference_mps, OF_SPEEDS),
     (|x| x.pitch_rad, OF_SLOPES),
@@ -77,7 +80,7 @@ const INPUTS: [(fn(&Input) -> f64, f64); 6] = [
     (|x| x.swing_mps2, OF_CHANGES),
 ];
 
-const POSITION: [(fn(&Input) -> f64, f64); 2] = [(|x| x.position_m[0], PATCH), (|x| x.position_m[1], PATCH)];
+const POSITION: [Axis; 2] = [(|x| x.position_m[0], PATCH), (|x| x.position_m[1], PATCH)];
 
 /// Columns of the factor, the place that is known least next.
 fn cholesky<const COUNT: usize>(points: &[[f64; COUNT]]) -> Vec<Vec<f64>> {
