@@ -20,6 +20,10 @@ const SIDES: usize = 2;
 /// six times the mean, healthy drives are e³⁰ times likelier with most of it than with none.
 const GROWING: [f64; 3] = [0.0, 0.5, 0.9];
 
+/// Logarithm of the likelihood ratio from which one of so many sizes and ways to grow is one: with none to be learnt, the best of them is
+/// ahead by less in most drives.
+const LIKELIER: f64 = 1.0;
+
 /// The functions of one set of drives, by channel: one of the inputs, and one of the ground.
 #[derive(Debug)]
 pub(crate) struct Discrepancy {
@@ -75,9 +79,9 @@ impl Discrepancy {
                 let functions = grown(&alike, &places, predicted, (*mean, part));
                 let by_size = likely(&functions, columns);
                 let best = most(&by_size);
-                (by_size[best], Process { functions, share: SIZES[best] })
+                (by_size[best] - by_size[0], Process { functions, share: SIZES[best] })
             });
-            let of_inputs = likelier(of_inputs);
+            let of_inputs = likeliest(of_inputs);
             // Slopes go with places, and what the model misses of them does.
             let beside = [&columns[..], &whitened(&of_inputs.columns(1.0))].concat();
             let of_ground =
@@ -118,10 +122,11 @@ impl Process {
     }
 }
 
-/// The process under which errors are likeliest, of some with the logarithm of their likelihood.
-fn likelier<const COUNT: usize>(of: [(f64, Process); COUNT]) -> Process {
+/// The process under which errors are likeliest, of some with the logarithm of how much likelier they are than with none; none if they hardly
+/// are.
+fn likeliest<const COUNT: usize>(of: [(f64, Process); COUNT]) -> Process {
     let most = |a: (f64, Process), b: (f64, Process)| if b.0 > a.0 { b } else { a };
-    let none = (f64::NEG_INFINITY, Process { functions: Vec::new(), share: 0.0 });
+    let none = (LIKELIER, Process { functions: Vec::new(), share: 0.0 });
     of.into_iter().fold(none, most).1
 }
 
