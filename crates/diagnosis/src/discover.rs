@@ -35,9 +35,8 @@ const OF_HEADING: f64 = 10.0;
 const ALIKE: f64 = 0.8;
 
 /// How sure a first term has to be, by the chance of as much corrected for all that was tried: as every candidate where mechanisms leave
-/// something, and a thousand times surer where they leave nothing that is more than usual: each of 25 concealed effects that terms told
-/// had a mechanism refused first, and in healthy drives terms came with chances of 3e-5 and 7e-5. Drag that was dealt anew against its
-/// inputs, so that nothing goes with any of them, shows a term by chance as well.
+/// something, and a hundred times surer where they leave nothing that is more than usual. Drag that was dealt anew against its inputs, so
+/// that nothing goes with any of them, shows a term by chance with less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sure {
     AsUsual,
@@ -49,7 +48,7 @@ impl Sure {
     pub(crate) fn level(self) -> f64 {
         match self {
             Sure::AsUsual => LEVEL,
-            Sure::Very => LEVEL / 1000.0,
+            Sure::Very => LEVEL / 100.0,
         }
     }
 }

@@ -7,7 +7,8 @@ use crate::{
     alternatives::fitted,
     baseline::Baseline,
     candidates::apart,
-    gates::{LEVEL, best_beside_doubted},
+    discover::Sure,
+    gates::best_beside_doubted,
     misfit::misfit,
     needed::{drop_idle, drop_one},
     null::Null,
@@ -17,9 +18,6 @@ use crate::{
     undoing::last_undoes,
     unshown,
 };
-
-/// How many times surer something has to be for its refused name to leave something where hardly more than usual is left.
-const SURER: f64 = 100.0;
 
 /// A mechanism that explains much and is not what is missing.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +36,8 @@ impl Refused {
     /// Whether something is missing though its name was refused: it has to be as sure as a term that is found, and where hardly more than
     /// usual is left a hundred times surer.
     pub(crate) fn leaves_something(&self, is_much: bool) -> bool {
-        let surer = if is_much { 1.0 } else { SURER };
-        self.p_value <= LEVEL / surer
+        let least_sure = if is_much { Sure::AsUsual } else { Sure::Very };
+        self.p_value <= least_sure.level()
     }
 }
 

@@ -2,13 +2,8 @@
 
 use crate::average::{Average, Input};
 
-/// Spreads over which the function of the inputs changes: of rim speed and turn, of slopes, and of how fast speed and turn change.
-///
-/// Chosen by how likely healthy drives of three robots in a simulator and of others in a second one are, which no score is of: in the logarithm
-/// of the likelihood, 45, 16, 16 and 20 more per drive than where all are 1.5 and how fast the turn changes is no input.
-const OF_SPEEDS: f64 = 0.75;
-const OF_SLOPES: f64 = 5.0;
-const OF_CHANGES: f64 = 2.0;
+/// Spreads of an input over which the function changes.
+const LENGTH: f64 = 1.5;
 /// Spreads of the positions over which the ground changes: an eighth of what was driven.
 const PATCH: f64 = 0.4;
 /// Functions that are taken at most, and the share of the prior variance that may be left out of every average.
@@ -21,7 +16,7 @@ const FARTHEST: f64 = 3.0;
 ///
 /// They are the columns of the pivoted Cholesky factor of the covariance exp(−d²/2).
 pub(super) fn of_inputs(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>> {
-    cholesky(&standardised(averages, places, INPUTS, FARTHEST))
+    cholesky(&standardised(averages, places, INPUTS, (LENGTH, FARTHEST)))
 }
 
 /// Functions of where the robot is, over the averages of a channel, whose sum with independent weights of one sigma 1 is a process with
@@ -35,7 +30,7 @@ pub(super) fn of_ground(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>>
     }
     let squares: f64 = known.iter().map(|i| averages[*i].input.rim_mps.powi(2)).sum();
     let usual_mps = (squares / known.len() as f64).sqrt().max(1e-9);
-    let points = standardised(averages, &known, POSITION, f64::INFINITY);
+    let points = standardised(averages, &known, POSITION, (PATCH, f64::INFINITY));
     let of_known = |function: Vec<f64>| {
         let mut all = vec![0.0; places.len()];
         let rows = places.iter().enumerate().filter(|(_, i)| is_known(i));
@@ -46,16 +41,16 @@ pub(super) fn of_ground(averages: &[Average], places: &[usize]) -> Vec<Vec<f64>>
     cholesky(&points).into_iter().map(of_known).collect()
 }
 
-/// Inputs of the averages over the spreads over which a function changes, no further from the middle than so many of their own.
+/// Inputs of the averages over their spreads and the length over which a function changes, no further from the middle than that.
 fn standardised<const COUNT: usize>(
     averages: &[Average],
     places: &[usize],
-    inputs: [Axis; COUNT],
-    farthest: f64,
+    inputs: [fn(&Input) -> f64; COUNT],
+    (length, farthest): (f64, f64),
 ) -> Vec<[f64; COUNT]> {
     let mut points = vec![[0.0; COUNT]; places.len()];
     let count = places.len().max(1) as f64;
-    for (axis, (input, length)) in inputs.iter().enumerate() {
+    for (axis, input) in inputs.iter().enumerate() {
         let values: Vec<f64> = places.iter().map(|i| input(&averages[*i].input)).collect();
         let mean = values.iter().sum::<f64>() / count;
         let spread = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -68,19 +63,10 @@ fn standardised<const COUNT: usize>(
     points
 }
 
-/// An input, and the spreads of it over which a function changes.
-type Axis = (fn(&Input) -> f64, f64);
+const INPUTS: [fn(&Input) -> f64; 5] =
+    [|x| x.rim_mps, |x| x.difference_mps, |x| x.pitch_rad, |x| x.roll_rad, |x| x.accel_mps2];
 
-const INPUTS: [Axis; 6] = [
-    (|x| x.rim_mps, OF_SPEEDS),
-    (|x| x.difference_mps, OF_SPEEDS),
-    (|x| x.pitch_rad, OF_SLOPES),
-    (|x| x.roll_rad, OF_SLOPES),
-    (|x| x.accel_mps2, OF_CHANGES),
-    (|x| x.swing_mps2, OF_CHANGES),
-];
-
-const POSITION: [Axis; 2] = [(|x| x.position_m[0], PATCH), (|x| x.position_m[1], PATCH)];
+const POSITION: [fn(&Input) -> f64; 2] = [|x| x.position_m[0], |x| x.position_m[1]];
 
 /// Columns of the factor, the place that is known least next.
 fn cholesky<const COUNT: usize>(points: &[[f64; COUNT]]) -> Vec<Vec<f64>> {

@@ -6,7 +6,7 @@ use crate::average::Average;
 
 /// Sizes of the function that are weighed, as shares of the mean power, and sizes of the scatter, as shares of what it seems
 /// while the function is not told from it.
-pub(super) const SIZES: [f64; 8] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16];
+pub(super) const SIZES: [f64; 7] = [0.0, 0.0025, 0.005, 0.01, 0.02, 0.04, 0.08];
 const SCATTERS: [f64; 5] = [0.6, 0.7, 0.8, 0.9, 1.0];
 
 /// Logarithms of likelihoods, by [`SIZES`].
