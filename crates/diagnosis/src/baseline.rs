@@ -119,8 +119,9 @@ impl Baseline {
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         let sags = sags(series, &predicted_w);
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
-        let forms = form::forms(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
+        // How far forms are open hangs on what was learnt.
+        let forms = form::forms(series, &robot, applied, &predicted_w)?;
         if series.everywhere.get().is_none() {
             let none_w =
                 if applied.is_empty() { predicted_w.clone() } else { series.predict(&robot, &[])? };

@@ -31,6 +31,15 @@ impl Candidate {
     pub(crate) fn numbers(&self) -> usize {
         self.linear.len() + self.applied.span.bounds()
     }
+
+    /// Change of every prediction with values of its linear parameters [W].
+    pub(crate) fn effect_w(&self, values: &[f64]) -> Vec<f64> {
+        let mut effect_w = vec![0.0; self.columns.first().map_or(0, Vec::len)];
+        for (column, value) in self.columns.iter().zip(values) {
+            effect_w.iter_mut().zip(column).for_each(|(sum, by)| *sum += by * value);
+        }
+        effect_w
+    }
 }
 
 /// Moments at which a mechanism may set in, as shares of the time driven.

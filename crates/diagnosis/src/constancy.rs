@@ -1,7 +1,7 @@
 //! Whether what was found has one size all through the drives and acts at once, as a mechanism does; what merely stands in for something
 //! else does not.
 
-use model::mechanism::Kind;
+use model::mechanism::{Kind, Mechanism};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::{
@@ -118,21 +118,23 @@ pub(crate) fn doubt(
         let (p_value, change) = judge(&changing(&since, &effect, *of)?)?;
         (change.abs() > least_change).then(|| (p_value, format!("its size goes with {with}")))
     });
-    // Treads wind up before they hold, so that what a turn loses is lost as it begins.
-    let may_be_early = applied[which].mechanism.name() == "wheel_slip";
     let rate = rate_per_s(&series.averages, applied[which].span, &effect);
     let size = |column: &[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A shift that changes less of it than its form leaves open tells nothing of when it comes.
     let least_s = LEAST_LAG_S.max(FORM_SIGMA * size(&effect) / size(&rate).max(1e-300));
-    // What a meter adds it adds to what it reads.
-    let is_of_a_meter = applied[which].mechanism.kind() == Kind::Measurement;
-    let of_time = judge(&rate).filter(|_| !is_of_a_meter).and_then(|(p_value, early_s)| {
-        let when = if early_s < 0.0 { "late" } else { "early" };
-        (early_s.abs() > least_s && !(may_be_early && early_s > 0.0))
-            .then(|| (p_value, format!("it comes {:.1} s too {when}", early_s.abs())))
+    let of_time = judge(&rate).and_then(|(p_value, early_s)| {
+        Some((p_value, at_another_time(applied[which].mechanism, early_s, least_s)?))
     });
     let clearest = of_sizes.chain(of_time).min_by(|a, b| a.0.total_cmp(&b.0));
     Ok(clearest.map(|(_, why)| why))
+}
+
+/// In words, that a mechanism acts so much earlier than the model has it, where that is at least so much and tells it is another thing.
+fn at_another_time(mechanism: &dyn Mechanism, early_s: f64, least_s: f64) -> Option<String> {
+    // What a meter adds it adds to what it reads. Treads wind up before they hold, so that what a turn loses is lost as it begins.
+    let may_be = mechanism.kind() == Kind::Measurement || mechanism.name() == "wheel_slip" && early_s > 0.0;
+    let when = if early_s < 0.0 { "late" } else { "early" };
+    (early_s.abs() > least_s && !may_be).then(|| format!("it comes {:.1} s too {when}", early_s.abs()))
 }
 
 /// How fast an effect changes, by the seconds before and after, which are what comes of it before it does. That it sets in or ends is no
@@ -167,6 +169,22 @@ pub(crate) fn changing(averages: &[Average], effect: &[f64], of: Quantity) -> Op
 mod tests {
     use super::*;
     use crate::average::Input;
+
+    #[test]
+    fn what_comes_late_or_early_is_another_thing_but_for_meters_and_for_turns_lost_as_they_begin() {
+        let told = |name: &str, early_s: f64| {
+            let mechanism = model::mechanism::by_name(name).unwrap();
+            at_another_time(mechanism, early_s, 0.3)
+        };
+        assert_eq!(told("soft_soil", -0.6).unwrap(), "it comes 0.6 s too late");
+        assert_eq!(told("soft_soil", 0.6).unwrap(), "it comes 0.6 s too early");
+        assert_eq!(told("soft_soil", 0.2), None);
+        assert_eq!(told("wheel_slip", 0.6), None);
+        assert!(told("wheel_slip", -0.6).is_some());
+        for meter in ["power_scale", "power_offset", "wheel_radius", "pitch_bias"] {
+            assert_eq!([told(meter, -0.6), told(meter, 0.6)], [None, None], "{meter}");
+        }
+    }
 
     #[test]
     fn an_effect_changes_as_fast_as_its_drive_shows_it() {

@@ -20,8 +20,8 @@ const SIDES: usize = 2;
 /// six times the mean, healthy drives are e³⁰ times likelier with most of it than with none.
 const GROWING: [f64; 3] = [0.0, 0.5, 0.9];
 
-/// Logarithm of the likelihood ratio from which one of so many sizes and ways to grow is one: with none to be learnt, the best of them is
-/// ahead by less in most drives.
+/// Logarithm of the likelihood ratio from which a size is one: as much as one more number is asked for by Akaike's information criterion
+/// (IEEE Trans. Autom. Control 19, 1974).
 const LIKELIER: f64 = 1.0;
 
 /// The functions of one set of drives, by channel: one of the inputs, and one of the ground.
@@ -224,6 +224,13 @@ mod tests {
         assert!(much > 5.0 * little, "{much} {little}");
         let [much, little] = sizes(&|a| 5.0 * smooth(a));
         assert!(little > 0.5 * much, "{much} {little}");
+    }
+
+    #[test]
+    fn the_likeliest_process_is_learnt_if_it_is_likelier_than_none_by_as_much_as_a_number_costs() {
+        let process = |share: f64| Process { functions: vec![vec![1.0]], share };
+        assert_eq!(likeliest([(0.9, process(0.01)), (0.5, process(0.02))]).share, 0.0);
+        assert_eq!(likeliest([(1.1, process(0.01)), (2.5, process(0.02))]).share, 0.02);
     }
 
     /// Averages of a drive that comes to most places of a field.

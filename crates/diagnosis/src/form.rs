@@ -33,7 +33,7 @@ pub(crate) fn is_certain(name: &str) -> bool {
 }
 
 /// What mechanisms that act may do otherwise than their equations say, per one sigma: more or less as each quantity of [`WITH`] is far from
-/// its mean. Nothing where healthy drives show the model to be right.
+/// its mean.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -43,14 +43,13 @@ pub(crate) fn forms(
     applied: &[Applied],
     predicted: &[f64],
 ) -> Result<Vec<Vec<f64>>, Error> {
-    if form_sigma(series) == 0.0 {
-        return Ok(Vec::new());
-    }
     let of_each = |which: usize| {
         let mut others = applied.to_vec();
-        let one = others.remove(which);
-        let effect = differences(predicted, &series.predict(robot, &others)?);
-        Ok(of_one(series, one.mechanism.name(), &effect))
+        let name = others.remove(which).mechanism.name();
+        if !is_open(series, name) {
+            return Ok(Vec::new());
+        }
+        Ok(of_one(series, name, &differences(predicted, &series.predict(robot, &others)?)))
     };
     let all: Vec<Vec<Vec<f64>>> =
         (0..applied.len()).into_par_iter().map(of_each).collect::<Result<_, Error>>()?;
@@ -59,10 +58,12 @@ pub(crate) fn forms(
 
 /// The same of one mechanism, of which the effect is known.
 pub(crate) fn of_one(series: &Series, name: &str, effect: &[f64]) -> Vec<Vec<f64>> {
-    match form_sigma(series) {
-        sigma if sigma > 0.0 && !is_certain(name) => of_effect(&series.averages, effect, sigma),
-        _ => Vec::new(),
-    }
+    if is_open(series, name) { of_effect(&series.averages, effect, form_sigma(series)) } else { Vec::new() }
+}
+
+/// Whether the form of a mechanism leaves anything open: not where healthy drives show the model to be right.
+fn is_open(series: &Series, name: &str) -> bool {
+    form_sigma(series) > 0.0 && !is_certain(name)
 }
 
 fn of_effect(averages: &[Average], effect: &[f64], sigma: f64) -> Vec<Vec<f64>> {

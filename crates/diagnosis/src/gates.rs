@@ -110,10 +110,10 @@ const LEAST_ROLLING_SIGMAS: f64 = 4.0;
 /// Change of power that a candidate stands for where it acts, over the power, both root mean square.
 fn share_where_it_acts(series: &Series, base: &Baseline, one: &Weighed) -> f64 {
     let counts = |i: &usize| series.is_power(*i) && series.averages[*i].is_in(one.candidate.applied.span);
+    let effect_w = one.candidate.effect_w(&one.evidence.values);
     let (mut change, mut whole) = (0.0, 0.0);
     for i in (0..series.averages.len()).filter(counts).filter(|i| series.averages[*i].suspect) {
-        let parts = one.candidate.columns.iter().zip(&one.evidence.values);
-        change += parts.map(|(column, value)| column[i] * value).sum::<f64>().powi(2);
+        change += effect_w[i].powi(2);
         whole += base.predicted_w[i].powi(2);
     }
     f64::sqrt(change / whole.max(1e-300))

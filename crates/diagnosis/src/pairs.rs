@@ -92,12 +92,8 @@ fn pair(
     // A delay is weighed beside less than everything else, and hides nothing.
     weighed.retain(|one| one.evidence.own.nrows() == left.len());
     let is_found = |one: &Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
-    let mut place = 0;
-    weighed.retain(|one| {
-        place += 1;
-        place <= TRIED || is_found(one)
-    });
-    let weighed: Vec<Open> = weighed.into_iter().map(|one| Open::of(one, series, before, &beside)).collect();
+    let weighed = weighed.into_iter().enumerate().filter(|(i, one)| *i < TRIED || is_found(one));
+    let weighed: Vec<Open> = weighed.map(|(_, one)| Open::of(one, series, before, &beside)).collect();
     let score = |set: &[&Open]| -> Option<(f64, Vec<f64>)> {
         let (explained, values) = explained(set, left)?;
         let count: usize = set.iter().map(|one| one.weighed.candidate.numbers()).sum();
@@ -141,10 +137,7 @@ struct Open {
 impl Open {
     fn of(weighed: Weighed, series: &Series, before: &Baseline, beside: &System) -> Open {
         let white = before.whitening(series);
-        let mut effect_w = vec![0.0; series.recorded.len()];
-        for (column, value) in weighed.candidate.columns.iter().zip(&weighed.evidence.values) {
-            effect_w.iter_mut().zip(column).for_each(|(sum, x)| *sum += x * value);
-        }
+        let effect_w = weighed.candidate.effect_w(&weighed.evidence.values);
         let forms = form::of_one(series, weighed.name(), &effect_w);
         let forms: Vec<Vec<f64>> = forms.iter().map(|column| white.of(column)).collect();
         Open { weighed, forms: beside.own(&forms) }

@@ -186,11 +186,10 @@ impl<'a> Scales<'a> {
     /// Change of power that a candidate stands for, over the power, both root mean square over the suspect drives.
     fn share(&self, candidate: &Candidate, evidence: &Evidence) -> f64 {
         let (mut change, mut whole) = (0.0, 0.0);
-        for (i, predicted_w) in self.base.predicted_w.iter().enumerate() {
+        let effect_w = candidate.effect_w(&evidence.values);
+        for (i, (predicted_w, effect_w)) in self.base.predicted_w.iter().zip(effect_w).enumerate() {
             if self.series.is_power(i) && self.series.averages[i].suspect {
-                let parts =
-                    candidate.columns.iter().zip(&evidence.values).map(|(column, value)| column[i] * value);
-                change += parts.sum::<f64>().powi(2);
+                change += effect_w.powi(2);
                 whole += predicted_w * predicted_w;
             }
         }
