@@ -20,10 +20,14 @@ fn text(bytes: &[u8]) -> String {
 
 /// Records a drive of ten minutes over gentle hills, by one robot whatever the seed.
 fn record(folder: &Path, name: &str, seed: u64, effects: &Value) {
+    record_on(folder, name, seed, effects, &json!({"kind": "rich", "duration_s": 600, "seed": seed}));
+}
+
+/// Records a drive over the hills of a seed.
+fn record_on(folder: &Path, name: &str, seed: u64, effects: &Value, drive: &Value) {
     let world = json!({
         "terrain": {"rolling": {"grade": 0.04}}, "seed": seed, "robot_seed": 5, "effects": effects
     });
-    let drive = json!({"kind": "rich", "duration_s": 600, "seed": seed});
     std::fs::write(folder.join("world.json"), world.to_string()).unwrap();
     std::fs::write(folder.join("drive.json"), drive.to_string()).unwrap();
     let out = format!("{name}.csv");
@@ -136,7 +140,6 @@ fn a_load_lowers_the_held_out_error_once_it_is_found() {
     assert!(rmse("corrected") < 0.8 * rmse("baseline"), "{report}");
 }
 
-/// Swaps two columns of a table by renaming them.
 #[test]
 fn a_healthy_drive_is_consistent_without_healthy_drives_beside_it_too() {
     let folder = folder(&json!([]));
@@ -172,6 +175,26 @@ fn a_payload_that_is_taken_up_on_the_way_is_named_with_its_mass_and_time() {
     }
 }
 
+#[test]
+fn what_is_strong_is_told_to_the_second_and_makes_no_second_mechanism_by_setting_in_between_two_looks() {
+    let folder = tempfile::tempdir().unwrap();
+    let drive = |seed: u64| json!({"kind": "rich", "duration_s": 900, "seed": seed});
+    record_on(folder.path(), "healthy", 1, &json!([]), &drive(7));
+    let load = json!([{"effect": "payload", "strength": 25, "onset_s": 400}]);
+    record_on(folder.path(), "suspect", 2, &load, &drive(8));
+    let arguments =
+        ["diagnose", "--recording", "suspect.csv", "--reference", "healthy.csv", "--out", "out", "--json"];
+    let made = joulepath(folder.path(), &arguments);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    let found: Vec<&Value> = report["findings"].as_array().unwrap().iter().map(|f| &f["mechanism"]).collect();
+    assert_eq!(found, ["payload"], "{}", report["sentence"]);
+    let parameters = report["findings"][0]["parameters"].as_array().unwrap();
+    let from_s = parameters.iter().find(|p| p["name"] == "from_s").unwrap();
+    assert!((from_s["value"].as_f64().unwrap() - 400.0).abs() < 1.5, "{from_s}");
+}
+
+/// Swaps two columns of a table by renaming them.
 fn swap_columns(folder: &Path, name: &str, out: &str, [a, b]: [&str; 2]) {
     let table = std::fs::read_to_string(folder.join(name)).unwrap();
     let (head, rows) = table.split_once('\n').unwrap();

@@ -2,6 +2,7 @@
 
 use model::Robot;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::{
     Error,
@@ -13,6 +14,7 @@ use crate::{
     misfit::misfit,
     needed::drop_one,
     null::Null,
+    onset,
     search::{AS_GOOD, Found, State, decide},
     series::{Applied, Series},
     undoing::{last_undoes, undo_in_all},
@@ -93,7 +95,10 @@ fn pair(
     weighed.retain(|one| one.evidence.own.nrows() == left.len());
     let is_found = |one: &Weighed| found.iter().any(|f| f.mechanism.name() == one.name());
     let weighed = weighed.into_iter().enumerate().filter(|(i, one)| *i < TRIED || is_found(one));
-    let weighed: Vec<Open> = weighed.map(|(_, one)| Open::of(one, series, before, &beside)).collect();
+    let common = null.common_discount(blocks);
+    let weighed: Vec<Weighed> = weighed.map(|(_, one)| one).collect();
+    let open = |one: Weighed| Ok(Open::of(in_time(series, before, one, common)?, series, before, &beside));
+    let weighed: Vec<Open> = weighed.into_par_iter().map(open).collect::<Result<_, Error>>()?;
     let score = |set: &[&Open]| -> Option<(f64, Vec<f64>)> {
         let (explained, values) = explained(set, left)?;
         let count: usize = set.iter().map(|one| one.weighed.candidate.numbers()).sum();
@@ -125,6 +130,14 @@ fn pair(
         pair.iter().any(|one| found.iter().all(|f| f.mechanism.name() != one.mechanism.name()))
     };
     Ok(most.map(|(_, pair)| pair).filter(is_new))
+}
+
+/// A candidate from when it seems to set in by itself: what is left of it where its first guess lies beside that is no second one.
+fn in_time(series: &Series, before: &Baseline, one: Weighed, discount: f64) -> Result<Weighed, Error> {
+    if one.is_in_place() {
+        return Ok(one);
+    }
+    Ok(onset::refine(series, before, &[], &one, discount)?.map_or(one, |bounded| bounded.weighed))
 }
 
 /// A mechanism with what its form leaves open.
