@@ -102,7 +102,7 @@ fn pair(
     let score = |set: &[&Open]| -> Option<(f64, Vec<f64>)> {
         let (explained, values) = explained(set, left)?;
         let count: usize = set.iter().map(|one| one.weighed.candidate.numbers()).sum();
-        Some((explained / null.common_discount(blocks) - count as f64 * (blocks as f64).ln(), values))
+        Some((explained / common - count as f64 * (blocks as f64).ln(), values))
     };
     let so_far: Vec<&Open> = weighed.iter().filter(|one| is_found(&one.weighed)).collect();
     let single = weighed.iter().filter_map(|one| score(&[one])).map(|(score, _)| score).fold(0.0, f64::max);
@@ -200,10 +200,70 @@ fn revise(series: &Series, file: &Robot, pair: &[Applied], null: &Null) -> Resul
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use model::mechanism;
+    use recording::{Channel, Recording, Run, unwatched};
 
     use super::*;
-    use crate::{candidates::Candidate, evidence::Evidence, span::Span};
+    use crate::{candidates::Candidate, evidence::Evidence, imitate, span::Span};
+
+    /// A quarter of an hour over hills at changing speeds and turns, with power that the model would show and 2 W of noise.
+    fn drive(robot: &Robot, phase_rad: f64, applied: &[Applied]) -> Recording {
+        let rows = 9000;
+        let wave = |period_s: f64| {
+            move |i: usize| (0.1 * i as f64 * std::f64::consts::TAU / period_s + phase_rad).sin()
+        };
+        let (speed, turn, slope) = (wave(47.0), wave(31.0), wave(73.0));
+        let column = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows).map(value).collect() };
+        let side = |sign: f64| column(&|i| 0.5 + 0.25 * speed(i) + sign * 0.15 * turn(i));
+        let channels = BTreeMap::from([
+            (Channel::LeftSpeed, side(-1.0)),
+            (Channel::RightSpeed, side(1.0)),
+            (Channel::Pitch, column(&|i| 0.06 * slope(i))),
+            (Channel::LeftPower, vec![50.0; rows]),
+            (Channel::RightPower, vec![50.0; rows]),
+        ]);
+        let t_s = column(&|i| 0.1 * i as f64);
+        let runs = vec![Run { name: "hills".into(), rows: 0..rows, gap_s: 0.5, start_unix_s: None }];
+        let mut made =
+            imitate(robot, &Recording { t_s, channels, runs, ..Recording::default() }, applied).unwrap();
+        let mut state = 88_172_645_463_325_252_u64 ^ phase_rad.to_bits();
+        for channel in [Channel::LeftPower, Channel::RightPower] {
+            for power_w in made.channels.get_mut(&channel).unwrap() {
+                // Xorshift (Marsaglia, "Xorshift RNGs", J. Stat. Softw. 8(14), 2003), uniform with a deviation of 2 W.
+                state ^= state << 13;
+                state ^= state >> 7;
+                state ^= state << 17;
+                *power_w += 2.0 * 12.0_f64.sqrt() * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
+            }
+        }
+        made
+    }
+
+    #[test]
+    fn what_sets_in_between_the_times_that_are_tried_is_weighed_from_when_it_does() {
+        let robot = model::builtin::husky_a200();
+        let span = Span::From { run: 0, t_s: 401.3 };
+        let load = Applied { mechanism: mechanism::by_name("payload").unwrap(), values: vec![25.0], span };
+        let [suspect, healthy] = [drive(&robot, 0.0, &[load]), drive(&robot, 1.0, &[])];
+        let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
+        let null = Null::of(&robot, Some(&healthy), &unwatched()).unwrap();
+        let before = Baseline::fit(&series, &robot, &[]).unwrap();
+        let Foremost { closest, blocks, .. } = Foremost::of(&series, &before, &[], &null).unwrap();
+        let load = closest.into_iter().find(|one| one.name() == "payload").unwrap();
+        let line = series.timeline();
+        let from_s = |one: &Weighed| line.driven_s(one.candidate.applied.span);
+        assert!((from_s(&load) - 401.3).abs() > 10.0, "{} s is looked at", from_s(&load));
+        let rank = load.rank;
+        let load = in_time(&series, &before, load, null.common_discount(blocks)).unwrap();
+        assert!((from_s(&load) - 401.3).abs() < 5.0, "{} s", from_s(&load));
+        assert!(
+            load.rank > rank + SECOND,
+            "what it left over, {}, would pass for a second one",
+            load.rank - rank
+        );
+    }
 
     /// A mechanism that changes rows by so much, in sigma, with what its form leaves open.
     fn open(name: &str, own: DVector<f64>, forms: DMatrix<f64>) -> Open {
