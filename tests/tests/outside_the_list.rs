@@ -60,6 +60,17 @@ fn what_a_robot_in_order_does_as_well_is_nothing_that_is_missing() {
 }
 
 #[test]
+fn grease_that_sets_at_rest_and_is_worked_loose_by_driving_is_no_other_ground() {
+    // Driven steadily it holds wheels back the less the faster they turn, on the inner side of a turn for nearly nothing.
+    let robot = model::builtin::husky_a200();
+    let sticky = Effect::new(EffectName::StickyStart, 30.0);
+    let found = said(&robot, &record(32, vec![sticky]), &record(31, vec![]));
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
+    assert!(found.sentence.contains("goes with slowness"), "{}", found.sentence);
+}
+
+#[test]
 fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
     // In the first drive what else would be found beside it hides that it fades, until that is left out.
     let robot = model::builtin::husky_a200();

@@ -11,6 +11,7 @@ use crate::{
     average::{Average, Quantity},
     candidates, channel,
     discrepancy::{Discrepancy, Ground, Whitened},
+    driven::Driven,
     everywhere, form,
     knobs::Knob,
     noise::{Noise, Whitening},
@@ -44,6 +45,9 @@ pub(crate) struct Baseline {
     /// Change of climbs with slopes that were read too steep, per one sigma: in all drives, and in those under suspicion, as an inclinometer is
     /// from one day to the next. One that is askew by more, or from some time on, is.
     pub(crate) tilts: Vec<Vec<f64>>,
+    /// Change of predictions with one newton that holds the wheels of the left and of the right side back, in all drives: what a force at
+    /// the rim costs beyond the motors.
+    pub(crate) rims_w_per_n: [Vec<f64>; 2],
     /// What the forms of mechanisms that act leave open, per one sigma.
     pub(crate) forms: Vec<Vec<f64>>,
     /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
@@ -119,6 +123,7 @@ impl Baseline {
         let sizes = candidates::of_sizes(series, &robot, applied, &predicted_w)?;
         let sags = sags(series, &predicted_w);
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
+        let rims_w_per_n = rims_w_per_n(series, &robot, applied, &predicted_w)?;
         series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
         // How far forms are open hangs on what was learnt.
         let forms = form::forms(series, &robot, applied, &predicted_w)?;
@@ -138,6 +143,7 @@ impl Baseline {
             delays,
             sags,
             tilts,
+            rims_w_per_n,
             forms,
             noise,
             missed: Default::default(),
@@ -181,6 +187,16 @@ impl Baseline {
         Arc::clone(self.missed[ground as usize].get_or_init(make))
     }
 
+    /// What terms are made of in each average.
+    pub(crate) fn driven<'a>(&'a self, series: &'a Series) -> Driven<'a> {
+        Driven {
+            robot: &self.robot,
+            averages: &series.averages,
+            predicted_w: &self.predicted_w,
+            rims_w_per_n: &self.rims_w_per_n,
+        }
+    }
+
     /// What makes errors about the fit independent and of one sigma 1.
     pub(crate) fn whitening(&self, series: &Series) -> Whitening {
         self.noise.whitening(&self.predicted_w, &series.averages)
@@ -211,6 +227,22 @@ fn delays(
     let [suspect, healthy] = seen.map(|seen| differences(&seen, predicted_w));
     let all = suspect.iter().zip(&healthy).map(|(a, b)| a + b).collect();
     Ok([suspect, all])
+}
+
+/// See [`Baseline::rims_w_per_n`].
+fn rims_w_per_n(
+    series: &Series,
+    robot: &Robot,
+    applied: &[Applied],
+    predicted_w: &[f64],
+) -> Result<[Vec<f64>; 2], Error> {
+    let Some(mechanism) = mechanism::by_name("drivetrain_drag") else { return Ok([Vec::new(), Vec::new()]) };
+    let held_back = |values: Vec<f64>| -> Result<Vec<f64>, Error> {
+        let drag = Applied { mechanism, values, span: Span::ALL };
+        let suspect = [applied, std::slice::from_ref(&drag)].concat();
+        Ok(differences(&series.predict_with(robot, &suspect, &[drag])?, predicted_w))
+    };
+    Ok([held_back(vec![1.0, 0.0])?, held_back(vec![0.0, 1.0])?])
 }
 
 /// See [`Baseline::sags`].

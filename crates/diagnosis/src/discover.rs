@@ -212,7 +212,7 @@ impl<'a> Beside<'a> {
     }
 
     fn column_w(&self, term: &Term) -> Vec<f64> {
-        term.column(&self.base.robot, &self.series.averages, &self.base.predicted_w)
+        term.column(&self.base.driven(self.series))
     }
 
     /// The gain on held-out blocks, if it passes and is spread over some: of what one block holds there is nothing to compare it with.

@@ -55,13 +55,13 @@ fn numbers(mechanism: &'static dyn Mechanism) -> Vec<(&'static dyn Mechanism, us
 /// way: a robot in order does it as well, and there only what suspect drives have beyond that is missing. The latter is nothing without
 /// healthy drives, and of what sets in at some time of the suspect ones.
 pub(crate) fn of_term(series: &Series, base: &Baseline, term: &Term) -> [Vec<f64>; 2] {
-    let (robot, averages) = (&base.robot, &series.averages);
-    let suspect = term.column(robot, averages, &base.predicted_w);
+    let driven = base.driven(series);
+    let suspect = term.column(&driven);
     let everywhere = (series.has_healthy() && term.span.is_all()).then(|| {
-        let means = means(averages, &base.predicted_w);
-        scaled(series, &means, &term.of_driving().everywhere(robot, averages, &base.predicted_w))
+        let means = means(&series.averages, &base.predicted_w);
+        scaled(series, &means, &term.of_driving().everywhere(&driven))
     });
-    [suspect, everywhere.flatten().unwrap_or_else(|| vec![0.0; averages.len()])]
+    [suspect, everywhere.flatten().unwrap_or_else(|| vec![0.0; series.averages.len()])]
 }
 
 /// A change scaled to the share of power that models may miss; `None` if it changes no power. What other meters show of it goes along.

@@ -83,7 +83,7 @@ const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f6
 /// heading, t time since the drive began or it set in, s since the robot stood still, h way driven of
 /// which less and less counts the longer ago it was, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 38] = [
+pub(crate) static GROUPS: [Group; 39] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -98,6 +98,9 @@ pub(crate) static GROUPS: [Group; 38] = [
     group("(v/u_max)²", "the square of speed", SPEED, |a, fastest| (a.input.speed_mps / fastest).powi(2)),
     group("e^(−|u|/0.2 u_max)", "creeping", SPEED, |a, fastest| {
         (-a.input.rim_mps.abs() / (0.2 * fastest)).exp()
+    }),
+    group("1/(1 + |u|/0.1 u_max)", "slowness", SPEED, |a, fastest| {
+        1.0 / (1.0 + a.input.rim_mps.abs() / (0.1 * fastest))
     }),
     group("|Δ|/u_max", "turning", TURN, |a, fastest| a.input.difference_mps.abs() / fastest),
     group("(Δ)₊/u_max", "turning left", TURN, |a, fastest| a.input.difference_mps.max(0.0) / fastest),

@@ -21,6 +21,7 @@ mod discover;
 mod discovered;
 mod discrepancy;
 mod doubts;
+mod driven;
 mod edges;
 mod error;
 mod event;

@@ -9,7 +9,7 @@ use crate::{
     misfit::least_misfit,
     null::Null,
     ranked::ranked,
-    search::{State, openness},
+    search::{Found, State, openness},
     series::{Applied, Series},
     term::{self, Term},
     weigh::{Sizes, system, system_at},
@@ -28,7 +28,8 @@ const GREATER: f64 = 1.0;
 /// Share of what the mechanism explains by itself that it may explain beside the term, if that stands for the same.
 const SAME: f64 = 0.5;
 
-/// The term that explains far more than one of several mechanisms, beside the others, and leaves it little, or more than it does beside it.
+/// The term that explains far more than one of several mechanisms, beside the others, and leaves it little, or more than it does beside it;
+/// or as much as all of them together.
 ///
 /// # Errors
 /// A surface that the robot does not know.
@@ -44,13 +45,17 @@ pub(crate) fn doubt(
         // Delays up to half a row are fitted anyway, so that what it explains does not show.
         return Ok(None);
     }
+    // The first stands for all of them.
+    if which == 0
+        && let Some(why) = instead_of_all(series, file, state, null)?
+    {
+        return Ok(Some(why));
+    }
     let mut others: Vec<Applied> = state.applied();
     others.remove(which);
     let without = Baseline::fit(series, file, &others)?;
     let alone = system_at(series, &without, Sizes::Free, &[]);
-    let whole = least_misfit(series, &without, &without) - least_misfit(series, &state.fit, &without);
-    let choices = found.numbers() as f64 * (alone.blocks() as f64).ln();
-    let explained = whole / null.common_discount(alone.blocks()) - choices;
+    let explained = explained(series, state, std::slice::from_ref(found), (&without, &alone, null));
     let terms = term::of_drives(series, file, std::iter::once(found.applied.span));
     let terms: Vec<&Term> = terms.iter().collect();
     let best = ranked(series, &without, (&alone, null), &terms).into_iter().next();
@@ -66,6 +71,41 @@ pub(crate) fn doubt(
     let Some((_, term)) = best.filter(|(most, _)| is_better(*most, explained, open)) else { return Ok(None) };
     let stands_for_it = leaves_little(series, state, (&without, &alone), term)?;
     Ok(stands_for_it.then(|| format!("{} explains it better", term.words())))
+}
+
+/// The one term that explains as much as several mechanisms together: where grease holds wheels back the more the slower they turn, other
+/// ground and a heavier drive share it out between them.
+fn instead_of_all(
+    series: &Series,
+    file: &Robot,
+    state: &State,
+    null: &Null,
+) -> Result<Option<String>, Error> {
+    let is_delay = |found: &Found| found.applied.mechanism.name() == "clock_offset";
+    if state.found.len() < 2 || state.found.iter().any(is_delay) {
+        return Ok(None);
+    }
+    let without = Baseline::fit(series, file, &[])?;
+    let alone = system_at(series, &without, Sizes::Free, &[]);
+    let explained = explained(series, state, &state.found, (&without, &alone, null));
+    let terms = term::of_drives(series, file, state.found.iter().map(|found| found.applied.span));
+    let terms: Vec<&Term> = terms.iter().collect();
+    let best = ranked(series, &without, (&alone, null), &terms).into_iter().next();
+    let best = best.filter(|(most, _)| *most > explained);
+    Ok(best.map(|(_, term)| format!("{} explains as much as all that was found together", term.words())))
+}
+
+/// What some of what was found explain beside the rest, in squared errors over their variance less what choices cost, from a fit without
+/// them.
+fn explained(
+    series: &Series,
+    state: &State,
+    some: &[Found],
+    (without, system, null): (&Baseline, &System, &Null),
+) -> f64 {
+    let whole = least_misfit(series, without, without) - least_misfit(series, &state.fit, without);
+    let numbers: usize = some.iter().map(Found::numbers).sum();
+    whole / null.common_discount(system.blocks()) - numbers as f64 * (system.blocks() as f64).ln()
 }
 
 /// Whether what is missing beside all that was found is greater than what one mechanism of it explains, both in squared errors over their
@@ -88,7 +128,7 @@ fn leaves_little(
     term: &Term,
 ) -> Result<bool, Error> {
     let white = without.whitening(series);
-    let column = term.column(&without.robot, &series.averages, &without.predicted_w);
+    let column = term.column(&without.driven(series));
     let with_w = series.predict(&without.robot, &state.applied())?;
     let effect = [vec![white.of(&differences(&with_w, &without.predicted_w))]];
     let alone = system_without.explained(&effect)[0];

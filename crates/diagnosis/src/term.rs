@@ -3,8 +3,9 @@
 use model::{Robot, STANDARD_GRAVITY_MPS2};
 
 use crate::{
-    average::{Average, Input},
+    average::Average,
     candidates::moments,
+    driven::Driven,
     group::{GROUPS, Group},
     series::Series,
     span::Span,
@@ -13,12 +14,12 @@ use crate::{
 /// A power that a term is measured in; it brings the unit, so that all else has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
-    /// m g |u|: a force in weights of the robot, at the side's rim.
+    /// m g ∂P/∂F: a force in weights of the robot that holds the side's wheels back, and what it costs beyond the motors.
     Force,
     /// P: what the model predicts.
     Power,
-    /// m g |Δ| tanh(|Δ|/0.05 u_max): a moment against turning, in weights of the robot times its track, which turns round with the turn;
-    /// of each side its own rim's part.
+    /// m g ∂P/∂F tanh(Δ/0.05 u_max): a moment against turning, in weights of the robot times its track, which turns round with the turn: it
+    /// holds back the side that runs ahead and drives on the other; of each side its own part.
     Moment,
     /// One watt.
     Watt,
@@ -87,26 +88,10 @@ pub(crate) fn of_drives(
     terms
 }
 
-/// Difference of rim speeds over which a moment against turning turns round with the turn, as a share of the highest speed: wheels that
-/// hardly turn against each other slide hardly.
-const TURNS_ROUND: f64 = 0.05;
-
-/// Rim speed of a side towards the turn that the robot makes, by how much it turns at all; of both sides together the difference of rim
-/// speeds.
-fn towards_turn_mps(average: &Average, fastest_mps: f64, is_both: bool) -> f64 {
-    let Input { difference_mps, rim_mps, .. } = average.input;
-    let turn = (difference_mps / (TURNS_ROUND * fastest_mps)).tanh();
-    match average.channel {
-        _ if is_both => difference_mps * turn,
-        0 => -rim_mps * turn,
-        _ => rim_mps * turn,
-    }
-}
-
 impl Term {
-    /// Its value in every average of power under suspicion, 0 in the others; `predicted_w` is what the model says \[W\].
-    pub(crate) fn column(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
-        let all = self.everywhere(robot, averages, predicted_w).into_iter().zip(averages);
+    /// Its value in every average of power under suspicion, 0 in the others \[W\].
+    pub(crate) fn column(&self, driven: &Driven<'_>) -> Vec<f64> {
+        let all = self.everywhere(driven).into_iter().zip(driven.averages);
         all.map(|(value, a)| if a.suspect { value } else { 0.0 }).collect()
     }
 
@@ -122,30 +107,30 @@ impl Term {
     }
 
     /// Its value in every average of power, under suspicion or not \[W\].
-    pub(crate) fn everywhere(&self, robot: &Robot, averages: &[Average], predicted_w: &[f64]) -> Vec<f64> {
-        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
-        let fastest_mps = robot.max_wheel_speed_mps;
+    pub(crate) fn everywhere(&self, driven: &Driven<'_>) -> Vec<f64> {
+        let weight_n = driven.robot.mass_kg * STANDARD_GRAVITY_MPS2;
+        let fastest_mps = driven.robot.max_wheel_speed_mps;
         let side = |a: &Average| match (self.on, a.channel) {
             (On::Both, 0 | 1) | (On::Left | On::Apart, 0) | (On::Right, 1) => 1.0,
             (On::Apart, 1) => -1.0,
             _ => 0.0,
         };
-        let is_both = averages.iter().all(|a| a.channel != 1);
-        let scale_w = |a: &Average, predicted_w: f64| match self.scale {
-            Scale::Force => weight_n * a.input.rim_mps.abs(),
-            Scale::Moment => weight_n * towards_turn_mps(a, fastest_mps, is_both),
-            Scale::Power => predicted_w,
+        let is_both = driven.averages.iter().all(|a| a.channel != 1);
+        let scale_w = |i: usize| match self.scale {
+            Scale::Force => weight_n * driven.held_back_w_per_n(i, is_both),
+            Scale::Moment => weight_n * driven.turned_w_per_n(i, is_both),
+            Scale::Power => driven.predicted_w[i],
             Scale::Watt => 1.0,
         };
-        let value = |(a, predicted_w): (&Average, &f64)| {
+        let value = |(i, a): (usize, &Average)| {
             if !a.is_in(self.span) || side(a) == 0.0 {
                 return 0.0;
             }
             let since = a.since(self.span);
             let groups = self.groups.iter().map(|group| (group.value)(&since, fastest_mps));
-            side(a) * scale_w(a, *predicted_w) * groups.product::<f64>()
+            side(a) * scale_w(i) * groups.product::<f64>()
         };
-        averages.iter().zip(predicted_w).map(value).collect()
+        driven.averages.iter().enumerate().map(value).collect()
     }
 
     /// Whether drives under suspicion tell anything of it.
@@ -180,11 +165,11 @@ impl Term {
             && self.groups.iter().all(|group| group.is_turn())
     }
 
-    /// Its right-hand side, as `c · m g |u| · |tan φ|`.
+    /// Its right-hand side, as `c · m g ∂P/∂F · |tan φ|`, with what stands in it.
     pub(crate) fn equation(&self) -> String {
         let scale = match self.scale {
-            Scale::Force => "m g |u|",
-            Scale::Moment => "m g |Δ| tanh(|Δ|/0.05 u_max)",
+            Scale::Force => "m g ∂P/∂F",
+            Scale::Moment => "m g ∂P/∂F tanh(|Δ|/0.05 u_max)",
             Scale::Power => "P",
             Scale::Watt => "1 W",
         };
@@ -193,11 +178,15 @@ impl Term {
             text += " · ";
             text += group.symbol;
         }
-        match self.on {
-            On::Both => text,
-            On::Left => text + " on the left side",
-            On::Right => text + " on the right side",
-            On::Apart => text + " on the left side, as much less on the right side",
+        text += match self.on {
+            On::Both => "",
+            On::Left => " on the left side",
+            On::Right => " on the right side",
+            On::Apart => " on the left side, as much less on the right side",
+        };
+        match self.scale {
+            Scale::Force | Scale::Moment => text + ", ∂P/∂F the power that one newton at the rim costs",
+            Scale::Power | Scale::Watt => text,
         }
     }
 
@@ -226,51 +215,42 @@ impl Term {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::average::Input;
 
     fn average(channel: usize, roll_rad: f64) -> Average {
         let input = Input { rim_mps: -0.5, speed_mps: 0.4, roll_rad, height_m: f64::NAN, ..Input::default() };
         Average { channel, run: 0, suspect: true, t_s: 60.0, input }
     }
 
+    /// A term's column where 50 W are predicted and motors lose nothing.
+    fn column(term: &Term, averages: &[Average]) -> Vec<f64> {
+        let robot = model::builtin::husky_a200();
+        let rim = |channel: usize| {
+            move |a: &Average| if a.channel == channel { a.input.rim_mps.abs() } else { 0.0 }
+        };
+        let rims_w_per_n = [0, 1].map(|channel| averages.iter().map(rim(channel)).collect());
+        let predicted_w = vec![50.0; averages.len()];
+        term.column(&Driven {
+            robot: &robot,
+            averages,
+            predicted_w: &predicted_w,
+            rims_w_per_n: &rims_w_per_n,
+        })
+    }
+
     #[test]
     fn a_force_on_side_slopes_has_its_weight_its_speed_and_its_side() {
         let across = GROUPS.iter().find(|group| group.symbol == "|tan φ|").unwrap();
         let term = Term { scale: Scale::Force, groups: vec![across], on: On::Left, span: Span::ALL };
-        let robot = model::builtin::husky_a200();
-        let column = term.column(&robot, &[average(0, -0.1), average(1, -0.1)], &[50.0, 50.0]);
+        let column = column(&term, &[average(0, -0.1), average(1, -0.1)]);
         assert!(
             (column[0] - 90.0 * STANDARD_GRAVITY_MPS2 * 0.5 * 0.1f64.tan()).abs() < 1e-9 && column[1] == 0.0
         );
-        assert_eq!(term.equation(), "c · m g |u| · |tan φ| on the left side");
-        assert!(term.words().contains("slope across the way"));
-    }
-
-    #[test]
-    fn a_moment_takes_of_the_outer_side_what_it_gives_the_inner_one_and_the_difference_of_their_speeds_in_all()
-     {
-        let term = Term { scale: Scale::Moment, groups: Vec::new(), on: On::Both, span: Span::ALL };
-        let side = |channel: usize, rim_mps: f64, difference_mps: f64| {
-            let input = Input { rim_mps, difference_mps, ..Input::default() };
-            Average { input, ..average(channel, 0.0) }
-        };
-        let robot = model::builtin::husky_a200();
-        let weight_n = robot.mass_kg * STANDARD_GRAVITY_MPS2;
-        for turn_mps in [0.4, -0.4] {
-            let column = term.column(
-                &robot,
-                &[side(0, 0.5 - 0.5 * turn_mps, turn_mps), side(1, 0.5 + 0.5 * turn_mps, turn_mps)],
-                &[0.0; 2],
-            );
-            assert!((column[0] + column[1] - weight_n * 0.4).abs() < 1e-3 * weight_n, "{column:?}");
-            assert!(column[0] * column[1] < 0.0, "the inner side is pushed on: {column:?}");
-            let by_one_meter = term.column(&robot, &[side(0, 0.5, turn_mps)], &[0.0]);
-            assert!((by_one_meter[0] - column[0] - column[1]).abs() < 1e-9 * weight_n);
-        }
         assert_eq!(
-            term.column(&robot, &[side(0, 0.5, 0.0), side(1, 0.5, 0.0)], &[0.0; 2]),
-            [0.0, 0.0],
-            "straight on"
+            term.equation(),
+            "c · m g ∂P/∂F · |tan φ| on the left side, ∂P/∂F the power that one newton at the rim costs"
         );
+        assert!(term.words().contains("slope across the way"));
     }
 
     #[test]
@@ -280,7 +260,7 @@ mod tests {
         let term = Term { scale: Scale::Watt, groups: vec![fading], on: On::Apart, span };
         let mut averages = [average(0, 0.0), average(1, 0.0), average(0, 0.0)];
         averages[2].t_s = 39.0;
-        let column = term.column(&model::builtin::husky_a200(), &averages, &[50.0; 3]);
+        let column = column(&term, &averages);
         let faded = (-20.0f64 / 60.0).exp();
         assert_eq!(column, [faded, -faded, 0.0]);
     }
@@ -290,7 +270,7 @@ mod tests {
         let unknown =
             Average { input: Input { heading_rad: f64::NAN, ..average(0, 0.1).input }, ..average(0, 0.1) };
         for term in all(2, &[Span::EachDrive(30.0)]) {
-            let column = term.column(&model::builtin::husky_a200(), &[unknown], &[80.0]);
+            let column = column(&term, &[unknown]);
             assert!(column[0].is_finite(), "{}", term.equation());
         }
     }
