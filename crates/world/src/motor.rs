@@ -12,9 +12,6 @@ const INDUCED_AT_TOP: f64 = 0.375;
 const ELECTRIC_TIME_S: f64 = 0.003;
 /// Voltage that switches and diodes of the driver take from every ampere [V].
 const DRIVER_DROP_V: f64 = 0.05;
-/// Rim speed over which dry friction turns round [m/s].
-pub(crate) const TURNAROUND_MPS: f64 = 0.008;
-
 /// What belongs to one side's drive train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DriveTrain {
@@ -84,11 +81,11 @@ impl DriveTrain {
             / (1.0 + step_s * resistance / inductance)
     }
 
-    /// Force at the rim before and after the gears' friction [N].
-    pub(crate) fn force_n(&self, current_a: f64, rim_mps: f64, winding_c: f64) -> (f64, f64) {
+    /// Force of the magnets at the rim and the dry friction that it presses into the gears [N].
+    pub(crate) fn force_n(&self, current_a: f64, winding_c: f64) -> (f64, f64) {
         let (_, magnets) = self.warm(winding_c);
         let force_n = magnets * current_a;
-        (force_n, force_n - GEAR_FRICTION * force_n.abs() * (rim_mps / TURNAROUND_MPS).tanh())
+        (force_n, GEAR_FRICTION * force_n.abs())
     }
 
     /// Power at the driver; `returned` is the fraction of back-driven power that an effect lets through.
@@ -127,7 +124,8 @@ mod tests {
     /// Power and rim force in steady state at a current.
     fn steady(current_a: f64, rim_mps: f64, winding_c: f64) -> (f64, f64) {
         let train = DriveTrain::new(&example_robot(), true);
-        let (_, force_n) = train.force_n(current_a, rim_mps, winding_c);
+        let (magnets_n, gears_n) = train.force_n(current_a, winding_c);
+        let force_n = magnets_n - gears_n * rim_mps.signum();
         (train.power(current_a, rim_mps, winding_c, 1.0).drawn_w, force_n)
     }
 
@@ -165,7 +163,8 @@ mod tests {
             current_a in -60.0f64..60.0, rim_mps in -1.5f64..1.5, winding_c in -20.0f64..150.0, returned in 0.0f64..=1.0,
         ) {
             let train = DriveTrain::new(&example_robot(), true);
-            let (_, force_n) = train.force_n(current_a, rim_mps, winding_c);
+            let (magnets_n, gears_n) = train.force_n(current_a, winding_c);
+            let force_n = magnets_n - gears_n * rim_mps.signum();
             let drawn_w = train.power(current_a, rim_mps, winding_c, returned).drawn_w;
             prop_assert!(drawn_w >= force_n * rim_mps - 1e-9, "{} W drawn, {} W delivered", drawn_w, force_n * rim_mps);
         }

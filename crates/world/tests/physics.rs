@@ -159,6 +159,23 @@ fn robots_from_ten_to_six_hundred_kilograms_drive() {
 }
 
 #[test]
+fn a_finer_step_changes_nothing_where_a_light_robot_starts_and_stops() {
+    let mut robot = RobotFile { mass_kg: 17.0, yaw_inertia_kgm2: Some(0.45), ..example_robot() };
+    let soft = robot.surfaces.values_mut();
+    soft.for_each(|surface| surface.mu_roll = 0.10);
+    let power_w = |step_s: f64| -> Vec<f64> {
+        let world = World { step_s, ..world(r#""level""#) };
+        let rows = simulate(&world, &robot, &Drive::new(DriveKind::StopAndGo, 120.0, 5)).unwrap().rows;
+        rows.iter().map(|row| row.side_w[0] + row.side_w[1]).collect()
+    };
+    let (coarse_w, fine_w) = (power_w(0.001), power_w(0.0002));
+    let square = |values: &mut dyn Iterator<Item = f64>| values.map(|w| w * w).sum::<f64>();
+    let between = square(&mut coarse_w.iter().zip(&fine_w).map(|(a, b)| a - b));
+    let share = (between / square(&mut fine_w.iter().copied())).sqrt();
+    assert!(share < 0.03, "{share}");
+}
+
+#[test]
 fn wheels_go_where_they_roll() {
     let robot = example_robot();
     let log = simulate(&world(r#""level""#), &robot, &along(60.0)).unwrap();

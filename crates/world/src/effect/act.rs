@@ -41,7 +41,7 @@ pub(crate) struct Conditions {
     pub(crate) sinkage: f64,
     /// Slip per pull over load on top.
     pub(crate) compliance: f64,
-    /// Force against the turning of each side's wheels [N].
+    /// Dry friction against the turning of each side's wheels, whichever way they turn [N].
     pub(crate) drag_n: [f64; 2],
     /// Mass that is drawn along but carried by no wheel of the robot [kg].
     pub(crate) towed_kg: f64,

@@ -1,6 +1,6 @@
 //! Motors, gears and rotors.
 
-use super::{Act, Conditions, Surroundings, act::direction};
+use super::{Act, Conditions, Surroundings};
 
 /// Motors that warm up.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ pub(super) struct Drag {
 }
 
 impl Act for Drag {
-    fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
-        out.drag_n[self.side] += self.force_n * direction(seen.rim_mps[self.side]);
+    fn act(&mut self, _: &Surroundings, out: &mut Conditions) {
+        out.drag_n[self.side] += self.force_n;
     }
 }

@@ -26,7 +26,7 @@ impl Act for Brake {
         let force_n = self.force_n * (-(self.warmth_k / OPENS_K).powi(2)).exp();
         let heat_w = force_n * seen.rim_mps[self.side].abs() - COOLING_W_PER_K * self.warmth_k;
         self.warmth_k += seen.step_s * heat_w / DRUM_J_PER_K;
-        out.drag_n[self.side] += force_n * direction(seen.rim_mps[self.side]);
+        out.drag_n[self.side] += force_n;
     }
 }
 
@@ -79,7 +79,7 @@ impl Act for Bump {
     fn act(&mut self, seen: &Surroundings, out: &mut Conditions) {
         let turned_rad = seen.rim_m[self.side] / seen.wheel_radius_m;
         let bump = ((1.0 + turned_rad.cos()) / 2.0).powi(4);
-        out.drag_n[self.side] += self.force_n * bump * direction(seen.rim_mps[self.side]);
+        out.drag_n[self.side] += self.force_n * bump;
     }
 }
 
@@ -132,8 +132,8 @@ impl Act for Sticky {
         const LOOSENS_M: f64 = 0.7;
         let speed_mps = (seen.rim_mps[0].abs() + seen.rim_mps[1].abs()) / 2.0;
         self.set += seen.step_s * ((1.0 - self.set) / SETS_S - self.set * speed_mps / LOOSENS_M);
-        for side in 0..2 {
-            out.drag_n[side] += self.force_n / 2.0 * self.set * direction(seen.rim_mps[side]);
+        for drag_n in &mut out.drag_n {
+            *drag_n += self.force_n / 2.0 * self.set;
         }
     }
 }

@@ -12,13 +12,13 @@ const BRAKE_HOLDS_MPS: f64 = 0.01;
 const AWAKE_MPS: f64 = 0.004;
 
 impl Plant<'_> {
-    /// Controller, winding and gears of one side; returns the force at the rim [N].
-    pub(super) fn drive(&mut self, side: usize, command_mps: f64) -> f64 {
+    /// Controller and winding of one side; returns the force of its magnets at the rim and the gears' dry friction [N].
+    pub(super) fn drive(&mut self, side: usize, command_mps: f64) -> (f64, f64) {
         let s = &mut self.sides[side];
         s.braked = command_mps == 0.0 && s.rim_mps.abs() < BRAKE_HOLDS_MPS;
         if s.braked {
             (s.current_a, s.integral_v, s.duty) = (0.0, 0.0, 0.0);
-            return 0.0;
+            return (0.0, 0.0);
         }
         let error_mps = command_mps - s.rim_mps;
         let wanted_v = s.train.open_voltage_v(command_mps + PROPORTIONAL * error_mps) + s.integral_v;
@@ -30,9 +30,7 @@ impl Plant<'_> {
         s.duty = applied_v / limit_v;
         let winding_c = warmed(s, &self.conditions, self.robot);
         s.current_a = s.train.current_a(s.current_a, applied_v, s.rim_mps, winding_c, self.step_s);
-        let (motor_n, rim_n) = s.train.force_n(s.current_a, s.rim_mps, winding_c);
-        self.ledger.gears_j += (motor_n - rim_n) * s.rim_mps * self.step_s;
-        rim_n
+        s.train.force_n(s.current_a, winding_c)
     }
 
     /// What motors, electronics and battery draw and how they warm.

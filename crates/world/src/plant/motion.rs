@@ -1,8 +1,9 @@
 //! Newton's law for the body and its wheels.
 
 use super::{BEARING_SHARE, GRAVITY_MPS2, Plant};
-use crate::motor::TURNAROUND_MPS;
 
+/// Rim speed over which dry friction turns round [m/s].
+const TURNAROUND_MPS: f64 = 0.008;
 /// How long loads take to follow accelerations [s].
 const LOAD_FOLLOWS_S: f64 = 0.05;
 
@@ -54,7 +55,7 @@ impl Plant<'_> {
     }
 
     /// Newton's law for the wheels of each side; dry friction is taken implicitly, since it stops what it brakes.
-    pub(super) fn turn_wheels(&mut self, drive_n: [f64; 2], held_n: [f64; 2]) {
+    pub(super) fn turn_wheels(&mut self, drive_n: [(f64, f64); 2], held_n: [f64; 2]) {
         let bearing_n = BEARING_SHARE * self.nominal_rolling() * self.robot.mass_kg * GRAVITY_MPS2 / 2.0;
         let rim_kg = self.rim_kg();
         for i in 0..2 {
@@ -66,14 +67,16 @@ impl Plant<'_> {
                 s.rim_mps = 0.0;
                 continue;
             }
-            let direction = (before_mps / TURNAROUND_MPS).tanh();
-            let gear_n = bearing_n * direction + self.conditions.drag_n[i];
-            let rolling_n = s.rolling_n * direction;
-            s.rim_mps += self.step_s * (drive_n[i] - held_n[i] - gear_n - rolling_n) / rim_kg;
+            let (magnets_n, pressed_n) = drive_n[i];
+            let gear_n = pressed_n + bearing_n + self.conditions.drag_n[i];
+            let per_n = self.step_s / rim_kg;
+            let free_mps = before_mps + per_n * (magnets_n - held_n[i]);
+            s.rim_mps = slowed_mps(free_mps, per_n * (gear_n + s.rolling_n));
             let mean_mps = (before_mps + s.rim_mps) / 2.0;
+            let slid_m = (s.rim_mps / TURNAROUND_MPS).tanh() * mean_mps * self.step_s;
             s.rim_m += mean_mps * self.step_s;
-            self.ledger.gears_j += gear_n * mean_mps * self.step_s;
-            self.ledger.rolling_j += rolling_n * mean_mps * self.step_s;
+            self.ledger.gears_j += gear_n * slid_m;
+            self.ledger.rolling_j += s.rolling_n * slid_m;
         }
     }
 
@@ -91,5 +94,52 @@ impl Plant<'_> {
         self.place_m[0] += self.step_s * (forward * cos - left * sin);
         self.place_m[1] += self.step_s * (forward * sin + left * cos);
         self.heading_rad += self.step_s * self.speed[2];
+    }
+}
+
+/// The speed that dry friction leaves of `free_mps`, where it can take `most_mps` at most in a step [m/s]:
+///
+/// ```text
+/// v + most tanh(v/T) = free
+/// ```
+///
+/// Taken by the speed before the step, friction of a light wheel would throw it back and forth about standstill.
+fn slowed_mps(free_mps: f64, most_mps: f64) -> f64 {
+    /// Speeds over T from which on friction is whole.
+    const WHOLE: f64 = 10.0;
+    /// Far below what a sensor tells [m/s].
+    const CLOSE_MPS: f64 = 1e-12;
+    let free = free_mps.abs();
+    let mut v = (free - most_mps).max(0.0);
+    if v > WHOLE * TURNAROUND_MPS {
+        return v.copysign(free_mps);
+    }
+    // Friction bends downwards with speed, so that Newton's steps from below never go too far.
+    for _ in 0..50 {
+        let share = (v / TURNAROUND_MPS).tanh();
+        let slope = 1.0 + most_mps * (1.0 - share * share) / TURNAROUND_MPS;
+        let step = (free - v - most_mps * share) / slope;
+        v += step;
+        if step.abs() < CLOSE_MPS {
+            break;
+        }
+    }
+    v.copysign(free_mps)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn friction_slows_and_never_turns_round(free_mps in -2.0..2.0f64, most_mps in 0.0..1.0f64) {
+            let v = slowed_mps(free_mps, most_mps);
+            prop_assert!(v * free_mps >= 0.0 && v.abs() <= free_mps.abs());
+            let whole = v + most_mps * (v / TURNAROUND_MPS).tanh();
+            prop_assert!((whole - free_mps).abs() < 1e-8, "{whole} for {free_mps}");
+        }
     }
 }
