@@ -42,6 +42,16 @@ fn with_noisy_wheels(mut drives: Recording, sigma_mps: f64) -> Recording {
 }
 
 #[test]
+fn a_heavy_robot_that_turns_fast_draws_what_is_predicted() {
+    // 280 kg that turn from lane to lane at 1.6 rad/s: what pulls them outwards takes as much as the skid.
+    let large = robot("large");
+    let lanes = drive_of(&large, &Drive::new(DriveKind::LawnMower, 300.0, 71), vec![]);
+    let total = calibration::predict(&large, &lanes).unwrap().prediction.total;
+    assert!(total.r2.unwrap() > 0.95, "{total:?}");
+    assert!((total.predicted_j / total.recorded_j - 1.0).abs() < 0.05, "{total:?}");
+}
+
+#[test]
 fn wheels_whose_speeds_are_noise_while_they_stand_stand() {
     let small = robot("small");
     let drive = |kind, seed| drive_of(&small, &Drive::new(kind, 600.0, seed), vec![]);

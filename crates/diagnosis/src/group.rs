@@ -33,7 +33,7 @@ impl Group {
 
     /// Whether it is of what the model's power follows: models miss nothing that goes with where a robot is, where it heads and when.
     pub(crate) fn is_of_driving(&self) -> bool {
-        let of_driving = [MOVING, PITCH, ROLL, STEEPNESS, SPEED, TURN, ACCELERATION, OF_LATE];
+        let of_driving = [MOVING, PITCH, ROLL, STEEPNESS, SPEED, FORWARDS, TURN, ACCELERATION, OF_LATE];
         of_driving.iter().any(|(name, ..)| *name == self.quantity.0)
     }
 
@@ -59,6 +59,7 @@ const ROLL: Quantity = ("roll", |a| a.input.roll_rad, "rad");
 const STEEPNESS: Quantity =
     ("steepness", |a| a.input.pitch_rad.sin().hypot(a.input.roll_rad.sin()).asin(), "rad");
 const SPEED: Quantity = ("speed", |a| a.input.speed_mps.abs(), "m/s");
+const FORWARDS: Quantity = ("speed forwards", |a| a.input.speed_mps, "m/s");
 const TURN: Quantity = ("difference of rim speeds", |a| a.input.difference_mps, "m/s");
 const ACCELERATION: Quantity = ("acceleration", |a| a.input.accel_mps2, "m/s²");
 const HEADING: Quantity = ("heading", |a| a.input.heading_rad, "rad");
@@ -83,7 +84,7 @@ const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f6
 /// heading, t time since the drive began or it set in, s since the robot stood still, h way driven of
 /// which less and less counts the longer ago it was, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 39] = [
+pub(crate) static GROUPS: [Group; 40] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -101,6 +102,9 @@ pub(crate) static GROUPS: [Group; 39] = [
     }),
     group("1/(1 + |u|/0.1 u_max)", "slowness", SPEED, |a, fastest| {
         1.0 / (1.0 + a.input.rim_mps.abs() / (0.1 * fastest))
+    }),
+    group("tanh(v/0.05 u_max)", "driving forwards, and less backwards", FORWARDS, |a, fastest| {
+        (a.input.speed_mps / (0.05 * fastest)).tanh()
     }),
     group("|Δ|/u_max", "turning", TURN, |a, fastest| a.input.difference_mps.abs() / fastest),
     group("(Δ)₊/u_max", "turning left", TURN, |a, fastest| a.input.difference_mps.max(0.0) / fastest),

@@ -73,7 +73,7 @@ impl SidewaysPull<f64> {
         ahead: 0.0,
         per_along: 0.0,
         slack_squared: 1.0,
-        called_up: 0.0,
+        called_up: 4.0 * LEAST_CALLED_UP,
         per_called_up: 0.0,
         at_no_root: 1.0,
     };
@@ -97,6 +97,24 @@ impl SidewaysPull<f64> {
     pub(crate) fn shifted(self, [load_forward, load_forward_per_along]: [f64; 2], skid: &Skid) -> Self {
         let per_load = 2.0 * skid.mobilized * skid.level_share * skid.arm_m.signum();
         SidewaysPull { ahead: per_load * load_forward, per_along: per_load * load_forward_per_along, ..self }
+    }
+
+    /// How far along the robot sideways pull moves the centre of turning, over half the wheelbase, where tyres push to the left forwards [-].
+    ///
+    /// ```text
+    /// d/a = atanh t / atanh m,   t = 2 ρ / (1 − m² + √((1 − m²)² + 4 m² ρ²)),   t = σ(d)
+    /// ```
+    ///
+    /// from the first of the two equations above, with slip angles in proportion to the distance from the centre of turning. Against a search
+    /// for that centre it comes out the same to a fifth of itself, and where the inner wheels hardly turn to a third.
+    pub(crate) fn drift(&self, tilt: f64) -> f64 {
+        /// Shares beyond which tyres slide freely, and slip angles have no end.
+        const HELD: f64 = 0.99;
+        let share = (self.per_tilt * tilt).clamp(-1.0, 1.0);
+        let mobilized = self.called_up.sqrt() / 2.0;
+        let root = (share * share).mul_add(self.called_up, self.slack_squared).sqrt();
+        let drifting = 2.0 * share / (self.slack_squared.sqrt() + root).max(f64::MIN_POSITIVE);
+        drifting.clamp(-HELD, HELD).atanh() / mobilized.min(HELD).atanh()
     }
 
     /// The same in single precision.
@@ -240,6 +258,47 @@ mod tests {
             let (off, off_without) = ((share - expected).abs(), (unshifted - expected).abs());
             assert!(tilt == 0.0 || off < 0.15 * off_without, "{tilt}, {ahead}: {off} of {off_without}");
         }
+    }
+
+    /// How far ahead the centre of turning lies over half the wheelbase, by moving it until the four tyres push to the left by a share of
+    /// the load, in a turn to the left of a radius; wheels roll as fast as they would about the middle.
+    fn drift_by_search(robot: &Robot, scale_rad: f64, radius_m: f64, wanted: f64) -> f64 {
+        let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
+        let pushed = |ahead_m: f64| -> f64 {
+            let corners = [(half_a, half_b), (half_a, -half_b), (-half_a, half_b), (-half_a, -half_b)];
+            let tyre = |(x_m, y_m): (f64, f64)| {
+                -(((x_m - ahead_m) / (radius_m - y_m).abs()).atan() / scale_rad).tanh()
+            };
+            corners.into_iter().map(tyre).sum::<f64>() / 4.0
+        };
+        let (mut low, mut high) = (0.0, 20.0);
+        for _ in 0..100 {
+            let middle = (low + high) / 2.0;
+            if pushed(middle) < wanted { low = middle } else { high = middle }
+        }
+        low / half_a
+    }
+
+    #[test]
+    fn tyres_that_hold_a_robot_on_its_circle_drift_as_far_as_a_search_says() {
+        let robot = builtin::husky_a200();
+        let (mu_skid, scale_rad) = (0.3, 0.30);
+        for (radius_m, close) in [(0.3, 0.33), (0.8, 0.2), (1.5, 0.05), (3.0, 0.03), (8.0, 0.03)] {
+            let law = |angle: f64| (angle / scale_rad).tanh();
+            let mobilized = skid::mobilized_arm_m(&robot, radius_m, 1.0, law)
+                / skid::mobilized_arm_m(&robot, 0.0, 1.0, |_| 1.0);
+            for share in [0.05, 0.2, 0.4, 0.6] {
+                let drift = pull(mobilized).drift(share * mu_skid);
+                assert_relative_eq!(drift, -pull(mobilized).drift(-share * mu_skid), epsilon = 1e-12);
+                let searched = drift_by_search(&robot, scale_rad, radius_m, share);
+                assert!(
+                    (drift / searched - 1.0).abs() < close,
+                    "{radius_m} m, {share}: {drift} for {searched}"
+                );
+            }
+        }
+        // No grip at all is more than any tyre holds, and Coulomb's tyres hold up to half a wheelbase.
+        assert!(pull(1.0).drift(0.29) <= 1.0 && SidewaysPull::NONE.drift(0.3) == 0.0);
     }
 
     #[test]

@@ -44,6 +44,8 @@ pub struct Manoeuvre {
     motion: Motion,
     kernel: PowerKernel<f64>,
     mass_kg: f64,
+    /// m a/2: half of it acts on each side where the centre of turning lies half a wheelbase off [kg m].
+    drifting_kg_m: f64,
     /// I / b: force difference per yaw acceleration, halved between the sides [N s²].
     turning_n_per_radps2: f64,
 }
@@ -140,7 +142,13 @@ impl Manoeuvre {
             standing_w: robot.hotel_power_w + electronics.sum() + adjustment.standing_w,
             ..PowerKernel::of_sides(motors.map(|m| m.k1_w_per_n2), per_force_mps)
         };
-        Manoeuvre { motion, kernel, mass_kg, turning_n_per_radps2: robot.yaw_inertia_kgm2 / robot.track_m }
+        Manoeuvre {
+            motion,
+            kernel,
+            mass_kg,
+            drifting_kg_m: mass_kg * robot.wheelbase_m / 2.0,
+            turning_n_per_radps2: robot.yaw_inertia_kgm2 / robot.track_m,
+        }
     }
 
     /// The motion this was prepared for.
@@ -164,6 +172,13 @@ impl Manoeuvre {
     }
 
     /// Side forces on a grade where tyres hold the robot on a circle as well [N].
+    ///
+    /// ```text
+    /// F_l + F_r = … + m ω |ω| d
+    /// ```
+    ///
+    /// Tyres that push inwards slip outwards: the robot turns about a place d ahead of its middle, and what pulls it there has to be driven
+    /// against. It grows with the fourth power of speed on the same circle, so that slow robots hardly feel it.
     fn steady_n(&self, grade: Grade<f64>, left_mps2: f64) -> Sides<f64> {
         if left_mps2 == 0.0 {
             return self.kernel.forces_n(grade);
@@ -171,7 +186,11 @@ impl Manoeuvre {
         // Ground that rises to the left has to be held against as a turn to the left has.
         let held = grade.tilt + left_mps2 / (STANDARD_GRAVITY_MPS2 * grade.normal);
         let skid_n = self.kernel.skid_left_n(held, grade.along);
-        self.kernel.forces_of_n(grade, self.kernel.steepened(grade.normal), skid_n)
+        let steady_n = self.kernel.forces_of_n(grade, self.kernel.steepened(grade.normal), skid_n);
+        let yaw_rate_radps = self.motion.yaw_rate_radps;
+        let drifting_n =
+            self.drifting_kg_m * yaw_rate_radps * yaw_rate_radps.abs() * self.kernel.pull.drift(held) / 2.0;
+        steady_n.map(|force_n| force_n + drifting_n)
     }
 
     /// Power where it is known how the ground carries the weight.
