@@ -67,7 +67,7 @@ const LEAST_CHANGE: f64 = 0.35;
 /// changed clearly, and what grease or a fan does passed for soft soil that changed by 0.26 and 0.34.
 const LEAST_CHANGE_OF_RESISTANCE: f64 = 0.25;
 /// Mechanisms that hold back whatever rolls, and stand in for other things that do.
-const RESISTANCES: [&str; 5] =
+pub(crate) const RESISTANCES: [&str; 5] =
     ["soft_soil", "speed_dependent_friction", "drivetrain_drag", "towed_load", "payload"];
 /// Chance, over all quantities, of as clear a change where there is none.
 const LEVEL: f64 = 1e-3;
