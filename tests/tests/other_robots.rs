@@ -43,7 +43,7 @@ fn with_noisy_wheels(mut drives: Recording, sigma_mps: f64) -> Recording {
 
 #[test]
 fn a_heavy_robot_that_turns_fast_draws_what_is_predicted() {
-    // 280 kg that turn from lane to lane at 1.6 rad/s: what pulls them outwards takes a third of the power there.
+    // 280 kg that turn from lane to lane at 1.6 rad/s: what pulls them outwards has to be driven against.
     let large = robot("large");
     let lanes = drive_of(&large, &Drive::new(DriveKind::LawnMower, 300.0, 71), vec![]);
     let total = calibration::predict(&large, &lanes).unwrap().prediction.total;

@@ -297,7 +297,7 @@ mod tests {
                 );
             }
         }
-        // No grip at all is more than any tyre holds, and Coulomb's tyres hold up to half a wheelbase.
+        // Coulomb's tyres let it go up to half a wheelbase, and where nothing skids nothing drifts.
         assert!(pull(1.0).drift(0.29) <= 1.0 && SidewaysPull::NONE.drift(0.3) == 0.0);
     }
 

@@ -54,8 +54,7 @@ pub struct Acceleration {
     /// dω/dt [rad/s²].
     pub yaw_radps2: f64,
     /// v ω, to the left [m/s²]: what keeps a turning robot on its circle, and tyres have to hold beside the skid. The paper's quasi-static
-    /// balance leaves it out like the others: with it, the outer side's mean of Table II would be 0.126, without it it is 0.133, and
-    /// 0.134 was measured.
+    /// balance leaves it out like the others: without it the outer side's mean of Table II is 0.133, and 0.134 was measured.
     pub left_mps2: f64,
 }
 

@@ -12,6 +12,7 @@ const INDUCED_AT_TOP: f64 = 0.375;
 const ELECTRIC_TIME_S: f64 = 0.003;
 /// Voltage that switches and diodes of the driver take from every ampere [V].
 const DRIVER_DROP_V: f64 = 0.05;
+
 /// What belongs to one side's drive train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DriveTrain {
