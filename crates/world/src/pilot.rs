@@ -139,7 +139,7 @@ impl<'a> Pilot<'a> {
             self.leg = self.legs.next(self.place_m, self.heading_rad);
             (self.since_s, self.driven_m, self.turned_rad) = (0.0, 0.0, 0.0);
         }
-        self.leg.speeds(self.heading_rad)
+        self.leg.speeds(self.command[0], self.heading_rad)
     }
 
     /// Aims at a point ahead on the path.

@@ -176,6 +176,24 @@ fn a_finer_step_changes_nothing_where_a_light_robot_starts_and_stops() {
 }
 
 #[test]
+fn a_fast_robot_slows_down_before_it_turns_into_the_next_lane() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/robots/large.json"));
+    let robot = RobotFile::from_json(&text.unwrap()).unwrap();
+    let lanes = Drive::new(DriveKind::LawnMower, 240.0, 5);
+    let log =
+        simulate(&World { sensors: Sensors::perfect(), ..world(r#""level""#) }, &robot, &lanes).unwrap();
+    let speed_mps = |row: &Row| (row.rim_mps[0] + row.rim_mps[1]) / 2.0;
+    let sideways_mps2 = log.rows.iter().map(|row| (speed_mps(row) * row.yaw_rate_radps).abs());
+    assert!(
+        log.rows.iter().any(|row| speed_mps(row) > 1.5)
+            && log.rows.iter().any(|row| row.yaw_rate_radps > 0.3)
+    );
+    // What brings it back to its lane comes on top of what its driver wants.
+    let most_mps2 = sideways_mps2.fold(0.0, f64::max);
+    assert!(most_mps2 < 0.3, "{most_mps2}");
+}
+
+#[test]
 fn wheels_go_where_they_roll() {
     let robot = example_robot();
     let log = simulate(&world(r#""level""#), &robot, &along(60.0)).unwrap();

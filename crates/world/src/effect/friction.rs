@@ -40,7 +40,7 @@ impl Act for WithGrade {
     }
 }
 
-/// Soil that is pressed together under the wheels: resistance grows faster than load (Bekker 1969).
+/// Soil that is pressed together under the wheels: resistance grows faster than load (Bekker 1969), and wheels that slip dig in.
 #[derive(Debug)]
 pub(super) struct Sinkage {
     pub(super) rolling: f64,

@@ -30,15 +30,18 @@ impl Leg {
             }
     }
 
-    /// Speed [m/s] and yaw rate [rad/s] that it wants now.
-    pub(super) fn speeds(&self, now_rad: f64) -> [f64; 2] {
+    /// Speed [m/s] and yaw rate [rad/s] that it wants at a speed and heading.
+    pub(super) fn speeds(&self, now_mps: f64, now_rad: f64) -> [f64; 2] {
         /// Gain of the held heading [1/s] and the fastest correction [rad/s].
         const HOLD_PER_S: f64 = 0.8;
         const CORRECTION_RADPS: f64 = 0.25;
         match *self {
             Leg::Stand { .. } => [0.0; 2],
-            Leg::Arc { speed_mps, yaw_radps, .. } | Leg::Turn { speed_mps, yaw_radps, .. } => {
-                [speed_mps, yaw_radps]
+            Leg::Arc { speed_mps, yaw_radps, .. } => [speed_mps, yaw_radps],
+            // Who still goes too fast for the turn takes it wider.
+            Leg::Turn { speed_mps, yaw_radps, .. } => {
+                let most_radps = SIDEWAYS_MPS2[1] / now_mps.abs();
+                [speed_mps, yaw_radps.clamp(-most_radps, most_radps)]
             }
             Leg::Straight { speed_mps, heading_rad, .. } => {
                 let off_rad = wrapped(heading_rad - now_rad);
@@ -165,7 +168,7 @@ impl Legs {
         Leg::Straight { speed_mps, heading_rad: now_rad, for_m: self.random.between(0.5, 3.0) }
     }
 
-    /// Lanes of one length, joined by half circles of the lanes' spacing to alternate sides.
+    /// Lanes of one length, joined by half circles of the lanes' spacing to alternate sides, no faster than drivers take such curves.
     fn lane(&mut self) -> Leg {
         /// Distance between lanes [m].
         const SPACING_M: f64 = 1.6;
@@ -183,8 +186,9 @@ impl Legs {
         let back = if (lane / lanes).is_multiple_of(2) { 1.0 } else { -1.0 };
         let side = back * if lane.is_multiple_of(2) { 1.0 } else { -1.0 };
         self.heading_rad += PI;
-        let speed_mps = 0.45 * self.top_mps;
-        Leg::Turn { speed_mps, yaw_radps: side * speed_mps / (SPACING_M / 2.0), by_rad: PI }
+        let radius_m = SPACING_M / 2.0;
+        let speed_mps = (0.45 * self.top_mps).min((SIDEWAYS_MPS2[1] * radius_m).sqrt());
+        Leg::Turn { speed_mps, yaw_radps: side * speed_mps / radius_m, by_rad: PI }
     }
 
     fn hill(&mut self) -> Leg {

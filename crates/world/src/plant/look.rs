@@ -103,6 +103,7 @@ impl Plant<'_> {
         let left = (center_m[1] - height_m * self.carried_n[1] / normal_n) / self.robot.track_m;
         let nominal_n = self.robot.mass_kg * GRAVITY_MPS2 / 4.0;
         let track_ratio = self.robot.slip_track_m() / self.robot.track_m;
+        let dug_in = [0, 1, 2, 3].map(|i| dug_in(self.slide_mps(i), self.sides[i % 2].rim_mps));
         self.sides.iter_mut().for_each(|side| side.rolling_n = 0.0);
         for (i, wheel) in self.wheels.iter_mut().enumerate() {
             let (ahead, beside) = (wheel.at_m[0].signum(), wheel.at_m[1].signum());
@@ -113,8 +114,38 @@ impl Plant<'_> {
             wheel.brush =
                 Brush::new(law.mu_skid * c.skid_factor, law.slip_angle_scale_rad, track_ratio, c.compliance);
             let carcass = law.mu_roll * c.roll_factor * (1.0 - BEARING_SHARE);
-            let coefficient = carcass + c.sinkage * (wheel.load_n / nominal_n).cbrt();
+            let coefficient = carcass + c.sinkage * dug_in[i] * (wheel.load_n / nominal_n).cbrt();
             self.sides[i % 2].rolling_n += coefficient * wheel.load_n;
         }
+    }
+}
+
+/// How many times as deep as one that rolls a wheel sinks that slips:
+///
+/// ```text
+/// (1 + S) / (1 - S/2)
+/// ```
+///
+/// S from 0 to 1 the share of sliding in the tread's motion (Lyasko, Slip sinkage effect in soil-vehicle mechanics, 2010).
+fn dug_in(slide_mps: [f64; 2], rim_mps: f64) -> f64 {
+    /// Slower than this nothing digs [m/s].
+    const CREEP_MPS: f64 = 0.01;
+    let slides_mps = slide_mps[0].hypot(slide_mps[1]);
+    let slip = slides_mps / slides_mps.hypot(rim_mps).hypot(CREEP_MPS);
+    (1.0 + slip) / (1.0 - slip / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wheel_that_rolls_sinks_as_deep_as_the_soil_lets_it_and_one_that_skids_up_to_four_times_as_deep() {
+        assert_eq!(dug_in([0.0; 2], 0.5), 1.0);
+        assert_eq!(dug_in([0.0; 2], 0.0), 1.0, "at rest");
+        // Half its motion is sliding: 1.5 / 0.75.
+        assert!((dug_in([0.0, 0.5], 0.75f64.sqrt()) - 2.0).abs() < 1e-3);
+        let skidding = dug_in([0.3, 0.4], 0.0);
+        assert!((3.9..4.0).contains(&skidding), "{skidding}");
     }
 }

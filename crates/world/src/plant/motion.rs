@@ -12,11 +12,10 @@ impl Plant<'_> {
     pub(super) fn tyres(&mut self) -> ([f64; 2], f64, [f64; 2]) {
         let center_m = self.center_m();
         let (mut force_n, mut moment_nm, mut held_n) = ([0.0; 2], 0.0, [0.0; 2]);
-        let [forward, left, yaw] = self.speed;
-        for (i, wheel) in self.wheels.iter_mut().enumerate() {
+        for i in 0..self.wheels.len() {
+            let (slide_mps, rim_mps) = (self.slide_mps(i), self.sides[i % 2].rim_mps);
+            let wheel = &mut self.wheels[i];
             let (x, y) = (wheel.at_m[0] - center_m[0], wheel.at_m[1] - center_m[1]);
-            let rim_mps = self.sides[i % 2].rim_mps;
-            let slide_mps = [rim_mps - (forward - yaw * y), -(left + yaw * x)];
             let contact =
                 wheel.brush.advance(wheel.load_n, wheel.deflection_m, slide_mps, rim_mps, self.step_s);
             wheel.deflection_m = contact.deflection_m;
@@ -28,6 +27,14 @@ impl Plant<'_> {
             self.ledger.sliding_j += (along_n * slide_mps[0] + across_n * slide_mps[1]) * self.step_s;
         }
         (force_n, moment_nm, held_n)
+    }
+
+    /// How fast a wheel's tread slides over the ground, along and across [m/s].
+    pub(super) fn slide_mps(&self, wheel: usize) -> [f64; 2] {
+        let (at_m, center_m) = (self.wheels[wheel].at_m, self.center_m());
+        let (x, y) = (at_m[0] - center_m[0], at_m[1] - center_m[1]);
+        let [forward, left, yaw] = self.speed;
+        [self.sides[wheel % 2].rim_mps - (forward - yaw * y), -(left + yaw * x)]
     }
 
     /// Newton's law for the body, in its own turning frame.
