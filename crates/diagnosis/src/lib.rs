@@ -67,6 +67,7 @@ mod refused;
 mod regime;
 mod region;
 pub mod report;
+mod ridge;
 mod sag;
 mod search;
 mod secant;

@@ -20,7 +20,7 @@ use crate::{
     outside, pairs,
     polish::{Polished, form_sigma, polish, settle},
     refused::{Doubt, Refused, refuse},
-    second_ground,
+    ridge, second_ground,
     series::{Applied, Series},
     undoing::last_undoes,
     unshown,
@@ -189,6 +189,7 @@ pub fn search(
     let unshown = |state: &State, which: usize, _: bool| Ok(unshown::doubt(series, state, which));
     let doubts: [&Doubt<'_>; 5] = [&too_much, &unshown, &of_many_sizes, &told_better, &takes_little];
     let refused = refuse(series, file, &mut state, &doubts, &null)?;
+    ridge::widen(series, file, &mut state, &null)?;
     let State { mut found, fit: after } = state;
     tell_apart(&mut found);
     let left = [left_before, left(series, &after)];
