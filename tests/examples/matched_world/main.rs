@@ -90,7 +90,11 @@ fn kinds(asked: &Asked) -> Vec<Kind> {
 fn line(case: &Case, found: &Diagnosis) -> String {
     let truths: Vec<String> = case.truths.iter().map(|truth| format!("{truth:?}")).collect();
     let named = |f: &diagnosis::report::Finding| {
-        let values: Vec<String> = f.parameters.iter().map(|p| format!("{:.3}", p.value)).collect();
+        let sure = |[low, high]: [f64; 2]| format!(" ({low:.3} to {high:.3})");
+        let value = |p: &diagnosis::report::FoundParameter| {
+            format!("{:.3}{}", p.value, p.interval_95.map_or(String::new(), sure))
+        };
+        let values: Vec<String> = f.parameters.iter().map(value).collect();
         format!("{} [{}] or {:?}", f.mechanism, values.join(", "), f.indistinguishable_from)
     };
     let findings: Vec<String> = found.findings.iter().map(named).collect();
