@@ -24,7 +24,7 @@ pub(crate) fn positions_m(recording: &Recording) -> Vec<[f64; 2]> {
 }
 
 /// Headings by row: recorded, or from the yaw rate or the wheels, counted from east where positions tell it and else from where
-/// each run begins [rad].
+/// each run begins [rad]. Positions also tell by how much a gyroscope drifts: a thousandth of a radian per second is half a turn in an hour.
 pub(crate) fn headings(recording: &Recording, drives: &Drives) -> Vec<f64> {
     if let Some(recorded) = recording.channel(Channel::Heading) {
         return recorded.to_vec();
@@ -45,27 +45,37 @@ pub(crate) fn headings(recording: &Recording, drives: &Drives) -> Vec<f64> {
         }
     }
     for run in &recording.runs {
-        let from_east_rad = began_rad(recording, drives, &headings, run.rows.clone()).unwrap_or(0.0);
-        headings[run.rows.clone()].iter_mut().for_each(|heading_rad| *heading_rad += from_east_rad);
+        let steps = steps(recording, drives, &headings, run.rows.clone());
+        let off_rad = off_rad(&steps, &recording.t_s[run.rows.clone()]);
+        headings[run.rows.clone()].iter_mut().zip(off_rad).for_each(|(heading_rad, off)| *heading_rad += off);
     }
     headings
 }
 
 /// Steps along which positions tell a direction [m].
 const STEP_M: f64 = 0.5;
-/// Steps that a beginning is told from.
+/// Steps that a direction is told from at least.
 const LEAST_STEPS: usize = 10;
+/// Steps up to so long before or after tell a direction [s]: a gyroscope is off by the same for that long.
+const NEAR_S: f64 = 60.0;
 
-/// Heading at the beginning of a run: by how much the directions in which positions went are turned against headings that
-/// count from there. `None` where there are no positions, or too few apart.
-fn began_rad(
+/// A step of a run: when it was, and by how much the direction in which positions went is turned against the heading.
+struct Step {
+    t_s: f64,
+    turned_rad: f64,
+}
+
+/// The steps of a run, in order.
+fn steps(
     recording: &Recording,
     drives: &Drives,
     headings_rad: &[f64],
     rows: std::ops::Range<usize>,
-) -> Option<f64> {
-    let (x_m, y_m) = (recording.channel(Channel::X)?, recording.channel(Channel::Y)?);
-    let (mut sin, mut cos, mut steps) = (0.0, 0.0, 0);
+) -> Vec<Step> {
+    let (Some(x_m), Some(y_m)) = (recording.channel(Channel::X), recording.channel(Channel::Y)) else {
+        return Vec::new();
+    };
+    let mut steps = Vec::new();
     let mut last: Option<usize> = None;
     for i in rows.filter(|i| x_m[*i].is_finite() && y_m[*i].is_finite()) {
         let start = *last.get_or_insert(i);
@@ -79,10 +89,39 @@ fn began_rad(
         let sign = drives.rows[between].speed_mps().signum();
         let turned_rad = (sign * up_m).atan2(sign * along_m) - headings_rad[between];
         if turned_rad.is_finite() {
-            (sin, cos, steps) = (sin + turned_rad.sin(), cos + turned_rad.cos(), steps + 1);
+            steps.push(Step { t_s: recording.t_s[between], turned_rad });
         }
     }
-    (steps >= LEAST_STEPS).then(|| sin.atan2(cos))
+    steps
+}
+
+/// By how much headings are off at some times, which are in order, by the steps that were near; nothing where there are too few in all.
+fn off_rad(steps: &[Step], t_s: &[f64]) -> Vec<f64> {
+    if steps.len() < LEAST_STEPS {
+        return vec![0.0; t_s.len()];
+    }
+    // Sums up to each step.
+    let mut sums = vec![[0.0; 2]];
+    for step in steps {
+        let (sin, cos) = step.turned_rad.sin_cos();
+        let [sum_sin, sum_cos] = sums[sums.len() - 1];
+        sums.push([sum_sin + sin, sum_cos + cos]);
+    }
+    let near = |t_s: f64| {
+        let mut from = steps.partition_point(|step| step.t_s < t_s - NEAR_S);
+        let mut to = steps.partition_point(|step| step.t_s <= t_s + NEAR_S);
+        while to - from < LEAST_STEPS {
+            let is_before_nearer =
+                from > 0 && (to == steps.len() || t_s - steps[from - 1].t_s < steps[to].t_s - t_s);
+            if is_before_nearer { from -= 1 } else { to += 1 }
+        }
+        (from, to)
+    };
+    let off = |t_s: &f64| {
+        let (from, to) = near(*t_s);
+        (sums[to][0] - sums[from][0]).atan2(sums[to][1] - sums[from][1])
+    };
+    t_s.iter().map(off).collect()
 }
 
 /// Speeds over ground by average, from the positions at its ends; NaN where there are none, or where they jump [m/s].
@@ -143,5 +182,27 @@ mod tests {
         let headings = headings(&recording, &drives);
         assert!((headings[0] - began_rad).abs() < 0.02, "{}", headings[0]);
         assert!((headings[300] - began_rad - turn_radps * 30.0).abs() < 0.02, "{}", headings[300]);
+    }
+
+    #[test]
+    fn a_gyroscope_that_drifts_by_a_radian_leaves_headings_by_positions_as_they_are() {
+        // Headings that run away by a milliradian a second, and a stand of five minutes with no steps.
+        let drift_rad = |t_s: f64| 0.3 - 1e-3 * t_s;
+        let moves = |t_s: f64| !(300.0..600.0).contains(&t_s);
+        let steps: Vec<Step> = (0..900)
+            .map(f64::from)
+            .filter(|t_s| moves(*t_s))
+            .map(|t_s| Step {
+                t_s,
+                turned_rad: drift_rad(t_s) + if t_s as i64 % 2 == 0 { 0.1 } else { -0.1 },
+            })
+            .collect();
+        let t_s: Vec<f64> = (0..9000).map(|i| 0.1 * f64::from(i)).collect();
+        for (t_s, off) in t_s.iter().zip(off_rad(&steps, &t_s)) {
+            // Ends are told from one side.
+            let most_rad = if moves(*t_s) { 0.035 } else { 0.16 };
+            assert!((off - drift_rad(*t_s)).abs() < most_rad, "{t_s} s: {off}");
+        }
+        assert_eq!(off_rad(&steps[..9], &[0.0, 1.0]), [0.0, 0.0], "too few");
     }
 }

@@ -50,12 +50,13 @@ pub(crate) fn draw(seed: u64, kind: &Kind, z: f64) -> Case {
     let noise = if is_decoy { random.random_range(1.0..4.0) } else { 1.0 };
     let suspect = read(&simulate(&case.world.without_effects(), &world_file, &case.drive).unwrap());
     let healthy = read(&case.reference(&world_file).unwrap());
+    // The way that the model goes, which its headings belong to.
     let plain = imitate(&robot, &suspect, &[]).unwrap();
     let truths: Vec<Applied> =
-        names.iter().map(|one| of_strength(*one, &robot, &suspect, &plain, z, &mut random)).collect();
+        names.iter().map(|one| of_strength(*one, &robot, &plain, z, &mut random)).collect();
     Case {
         name: format!("{seed} {:?}", case.drive.kind),
-        suspect: noisy(imitate(&robot, &suspect, &truths).unwrap(), noise, &mut random),
+        suspect: noisy(imitate(&robot, &plain, &truths).unwrap(), noise, &mut random),
         healthy: noisy(imitate(&robot, &healthy, &[]).unwrap(), noise, &mut random),
         truths,
         robot: file,
@@ -92,14 +93,13 @@ fn scattered(file: &Robot, scatter: f64, random: &mut Pcg64Mcg) -> Robot {
 fn of_strength(
     mechanism: &'static dyn Mechanism,
     robot: &Robot,
-    suspect: &Recording,
     plain: &Recording,
     z: f64,
     random: &mut Pcg64Mcg,
 ) -> Applied {
     let (direction, fixed) = direction(mechanism, random);
     let is_late = random.random_bool(0.4) && sets_in(mechanism.name());
-    let longest_s = suspect.t_s.last().unwrap() - suspect.t_s[0];
+    let longest_s = plain.t_s.last().unwrap() - plain.t_s[0];
     let from_s = if is_late { (longest_s * random.random_range(0.2..0.6)).round() } else { 0.0 };
     let at = |size: f64| {
         let value = |(i, by): (usize, &f64)| {
@@ -117,7 +117,7 @@ fn of_strength(
         if direction.len() == fixed.len() {
             break;
         }
-        let seen = imitate(robot, suspect, &[at(size)]).unwrap();
+        let seen = imitate(robot, plain, &[at(size)]).unwrap();
         let found = strength(&seen, plain).max(1e-9);
         // A mechanism on a slope of strengths: wind by its square, most in proportion.
         let step = (z / found).clamp(0.05, 20.0);
