@@ -123,7 +123,7 @@ fn what_happened_once_is_no_evidence_but_is_said() {
 #[test]
 fn water_in_hollows_is_described_though_it_is_less_than_what_models_often_miss() {
     let robot = model::builtin::husky_a200();
-    let puddles = Effect::new(EffectName::Puddles, 120.0);
+    let puddles = Effect::new(EffectName::Puddles, 150.0);
     let found = said(&robot, &record(32, vec![puddles]), &record(31, vec![]));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(found.sentence.contains("low ground"), "{}", found.sentence);
