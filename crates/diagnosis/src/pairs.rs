@@ -57,11 +57,9 @@ pub(crate) fn tried(
     null: &Null,
 ) -> Result<State, Error> {
     let is_delayed = state.found.iter().any(|f| f.applied.mechanism.name() == "clock_offset");
-    if state.found.len() < 3
-        && !is_delayed
-        && let Some(pair) = pair(series, before, &state.applied(), null)?
-    {
-        let other = revise(series, file, &pair, null)?;
+    if !is_delayed && let Some(pair) = pair(series, before, &state.applied(), null)? {
+        let swapped = || revise(series, file, &[pair[1].clone(), pair[0].clone()], null);
+        let other = revise(series, file, &pair, null)?.map_or_else(swapped, |state| Ok(Some(state)))?;
         state = better(series, before, state, other, null);
     }
     Ok(state)

@@ -12,7 +12,7 @@ use crate::{
     misfit::misfit,
     needed::{drop_idle, drop_one},
     null::Null,
-    search::{Found, MOST, State, decide},
+    search::{Found, MOST, State, decide, is_told},
     series::{Applied, Series},
     span::Span,
     undoing::last_undoes,
@@ -68,9 +68,15 @@ pub(crate) fn refuse(
         let mechanism = mechanism.name();
         tried.push(mechanism);
         let is_shown = unshown::doubt(series, state, which).is_none();
-        let stand_in = if is_shown { stand_in(series, file, (state, which), &tried, doubts)? } else { None };
+        let may_stand_in = is_shown || is_told(series);
+        let stand_in =
+            if may_stand_in { stand_in(series, file, (state, which), &tried, doubts)? } else { None };
         if let Some(next) = stand_in {
             *state = next;
+            if !is_shown {
+                // What drives do not show they do not rule out.
+                state.found[which].indistinguishable_from.push(mechanism.to_owned());
+            }
         } else if let Some(next) = beside(series, file, state, doubts, null)? {
             *state = next;
         } else {
