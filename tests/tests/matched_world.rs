@@ -1,6 +1,6 @@
 //! A few of the concealed cases that `--example matched_world` scores in full: drives in a world that is the model's own.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 #[path = "../examples/matched_world/case.rs"]
 mod case;
@@ -54,6 +54,26 @@ fn one_per_cent_of_power_is_named_with_its_size() {
 fn a_centre_of_mass_ahead_is_not_taken_for_drag() {
     let (case, found) = concealing(1016, &["center_of_mass"]);
     assert_eq!(found.findings[0].mechanism, "center_of_mass", "{:?}: {}", case.truths, found.sentence);
+}
+
+/// Lanes are of one speed: what always acts on them is told from friction that grows with speed by their ends alone.
+#[test]
+fn what_lanes_do_not_show_is_one_name_of_two() {
+    let (case, found) = concealing(98_524, &["pitch_bias"]);
+    assert!(case.name.ends_with("LawnMower"), "{}", case.name);
+    assert_eq!(found.verdict, Verdict::Ambiguous, "{:?}: {}", case.truths, found.sentence);
+    let [finding] = &found.findings[..] else { panic!("{:?}: {}", case.truths, found.sentence) };
+    let names = [&[finding.mechanism.clone()][..], &finding.indistinguishable_from].concat();
+    assert_eq!(names, ["pitch_bias", "speed_dependent_friction"], "{:?}: {}", case.truths, found.sentence);
+}
+
+/// Beside friction that grows with the grade, other ground explains a little more than a load, and beside other ground such friction is not
+/// sure: weighed in that order only, nothing but other ground was found.
+#[test]
+fn of_two_at_once_either_may_be_weighed_first() {
+    let names = ["payload", "grade_dependent_friction"];
+    let (case, found) = concealing(98_622, &names);
+    assert!(names.iter().all(|name| is_in_two(name, &found)), "{:?}: {}", case.truths, found.sentence);
 }
 
 #[test]

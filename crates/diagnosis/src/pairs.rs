@@ -45,7 +45,8 @@ pub(crate) fn revised(
     Ok(better(series, before, state, revised, null))
 }
 
-/// What was found, or two mechanisms that explain more together.
+/// What was found, or two mechanisms that explain more together: the one that explains more as it was found, and the other weighed beside
+/// it; or the other way round, where beside that one a third takes the place of the first.
 ///
 /// # Errors
 /// A surface that the robot does not know.

@@ -47,8 +47,8 @@ pub(crate) type Doubt<'a> = dyn Fn(&State, usize, bool) -> Result<Option<String>
 
 /// Leaves out what is doubted, one by one, and fits the rest again each time, whose doubts may have been hidden by what was left out.
 /// What explains as much and is not doubted takes its place, or one more is taken up beside which it is not, and nothing is missing then;
-/// names that are doubted are no other names of what stays. Later doubts come up only where earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a
-/// reason.
+/// names that are doubted are no other names of what stays, but for those that drives only do not show. Later doubts come up only where
+/// earlier ones do not. Without healthy drives nothing is: the model's own error would pass for a reason.
 ///
 /// # Errors
 /// A surface that the robot does not know.

@@ -9,8 +9,8 @@ const LEAST_DIFFERENCE: f64 = 0.2;
 const STANDING_MPS: f64 = 0.05;
 
 /// That drives do not show what one of several mechanisms says, in words. The fit tells it from others then by how curves differ from
-/// straight lines only, in which furrows, fans and resonances do as well. Nothing that explains as much is in its place: what the curves
-/// show is neither.
+/// straight lines only, in which furrows, fans and resonances do as well. Nothing that explains as much is in its place where the model
+/// errs: what the curves show is neither. Where healthy drives show the model to be right, it is one name of several.
 pub(crate) fn doubt(series: &Series, state: &State, which: usize) -> Option<String> {
     let name = state.found[which].applied.mechanism.name();
     (name == "speed_dependent_friction" && difference(&series.averages) < LEAST_DIFFERENCE)
