@@ -45,8 +45,8 @@ pub(crate) fn revised(
     Ok(better(series, before, state, revised, null))
 }
 
-/// What was found, or two mechanisms that explain more together: the one that explains more as it was found, and the other weighed beside
-/// it; or the other way round, where beside that one a third takes the place of the first.
+/// What was found, or two mechanisms that explain more together, each weighed again beside the other: the first beside the second to begin
+/// with, or the other way round where that leaves one that is not needed, as where a third takes the place of the first.
 ///
 /// # Errors
 /// A surface that the robot does not know.
