@@ -1,6 +1,9 @@
 //! What might be missing: every mechanism, at some of the values that its power does not follow in proportion, from some times on.
 
-use model::{Robot, mechanism};
+use model::{
+    Robot,
+    mechanism::{self, Kind},
+};
 use rayon::prelude::*;
 
 use crate::{
@@ -185,10 +188,11 @@ pub(crate) fn of_more(
     Ok(columns)
 }
 
-/// Whether a load that shifts during a drive would, beside something else, stand in for drag on one side, as other ground and such a
-/// load do together.
+/// Whether a load that shifts during a drive would, beside other forces, stand in for drag on one side, as other ground and such a load
+/// do together. Beside what is wrong with the measurement alone there is nothing that it could make up for.
 fn stands_in(probe: &Applied, span: &Span, beside: &[Applied]) -> bool {
-    probe.mechanism.name() == "center_of_mass" && !span.is_all() && !beside.is_empty()
+    let acts = |one: &Applied| one.mechanism.kind() == Kind::Physics;
+    probe.mechanism.name() == "center_of_mass" && !span.is_all() && beside.iter().any(acts)
 }
 
 /// Parameters of a mechanism that acts which power follows in proportion.

@@ -7,29 +7,29 @@ use crate::search::{AS_GOOD, Found};
 /// was 78 and 5, as more sets were larger.
 const AS_GOOD_A_NAME: f64 = 2.0;
 
-/// Names beside that of the winner: of all that explain as much, or else of the next, if it falls short by too little to leave the winner
-/// alone.
-pub(crate) fn as_good_names(rivals: &[&str], costs: &[f64], winner: usize) -> Vec<String> {
-    let within = |least: f64| (0..costs.len()).filter(move |i| costs[*i] < costs[winner] + least);
-    let own = rivals[winner];
-    let names = others(own, within(AS_GOOD_A_NAME).map(|i| rivals[i]));
-    if !names.is_empty() {
-        return names;
-    }
-    let others = within(AS_GOOD).filter(|i| rivals[*i] != own);
-    let next = others.min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
-    next.map(|i| rivals[i].to_owned()).into_iter().collect()
+/// Names beside that of the winner.
+pub(crate) struct Names {
+    /// Of all that explain as much, or else of the next, if it falls short by too little to leave the winner alone.
+    pub(crate) as_good: Vec<String>,
+    /// Of the others that fall short by as little, best first: each of them is the next if those before it turn out to be none.
+    pub(crate) next: Vec<String>,
 }
 
-/// Names but one, each once: a mechanism may be a rival all over the ground and in a part of it.
-fn others<'a>(own: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut others: Vec<String> = Vec::new();
-    for name in names.filter(|name| *name != own) {
-        if !others.iter().any(|other| other == name) {
-            others.push(name.to_owned());
+/// What stands beside the winner.
+pub(crate) fn names(rivals: &[&str], costs: &[f64], winner: usize) -> Names {
+    let mut order: Vec<usize> = (0..costs.len()).filter(|i| costs[*i] < costs[winner] + AS_GOOD).collect();
+    order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+    let mut as_good: Vec<String> = Vec::new();
+    let (mut near, own) = (0, rivals[winner]);
+    // A mechanism may be a rival all over the ground and in a part of it.
+    for i in order.into_iter().filter(|i| rivals[*i] != own) {
+        if as_good.iter().all(|other| other != rivals[i]) {
+            near += usize::from(costs[i] < costs[winner] + AS_GOOD_A_NAME);
+            as_good.push(rivals[i].to_owned());
         }
     }
-    others
+    let next = as_good.split_off(near.max(1).min(as_good.len()));
+    Names { as_good, next }
 }
 
 /// What was found itself is no other name of what was found beside it.
@@ -49,18 +49,23 @@ mod tests {
 
     #[test]
     fn a_rival_is_another_name_once_and_never_its_own() {
-        let names = ["payload", "surface_change", "payload", "power_scale", "surface_change"];
-        assert_eq!(others("surface_change", names.into_iter()), ["payload", "power_scale"]);
+        let rivals = ["surface_change", "payload", "power_scale", "payload", "surface_change"];
+        let names = names(&rivals, &[10.0, 10.5, 11.0, 10.2, 10.1], 0);
+        assert_eq!(names.as_good, ["payload", "power_scale"]);
     }
 
     #[test]
     fn the_next_name_stands_beside_one_that_is_alone_if_it_is_near_and_others_do_only_if_they_explain_as_much()
      {
         let rivals = ["payload", "towed_load", "soft_soil", "payload"];
-        let beside = |costs: [f64; 4]| as_good_names(&rivals, &costs, 0);
-        assert_eq!(beside([10.0, 15.0, 14.0, 11.0]), ["soft_soil"]);
-        assert_eq!(beside([10.0, 11.5, 14.0, 10.5]), ["towed_load"]);
-        assert!(beside([10.0, 16.5, 17.0, 10.5]).is_empty());
+        let beside = |costs: [f64; 4]| {
+            let Names { as_good, next } = names(&rivals, &costs, 0);
+            [as_good.join(" "), next.join(" ")]
+        };
+        assert_eq!(beside([10.0, 15.0, 14.0, 11.0]), ["soft_soil", "towed_load"]);
+        assert_eq!(beside([10.0, 11.5, 14.0, 10.5]), ["towed_load", "soft_soil"]);
+        assert_eq!(beside([10.0, 11.5, 11.0, 10.5]), ["soft_soil towed_load", ""]);
+        assert_eq!(beside([10.0, 16.5, 17.0, 10.5]), ["", ""]);
     }
 
     #[test]
@@ -77,6 +82,7 @@ mod tests {
             delta_bic: 0.0,
             held_out_gain: 0.0,
             indistinguishable_from: others.iter().map(|other| (*other).to_owned()).collect(),
+            next_names: Vec::new(),
         };
         let mut found = [one("surface_change", &["center_of_mass", "soft_soil"]), one("center_of_mass", &[])];
         tell_apart(&mut found);

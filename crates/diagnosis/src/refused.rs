@@ -91,18 +91,35 @@ pub(crate) fn refuse(
     for which in 0..state.found.len() {
         let mut possible = Vec::new();
         for name in state.found[which].indistinguishable_from.clone() {
-            // What drives do not show they do not rule out.
-            let is_doubted = match instead(series, file, state, (which, &name))? {
-                Some(instead) if unshown::doubt(series, &instead, which).is_none() => {
-                    doubted(&instead, which, doubts, false)?.is_some()
-                }
-                _ => false,
-            };
-            possible.extend((!is_doubted).then_some(name));
+            possible.extend(is_possible(series, file, state, (which, &name), doubts)?.then_some(name));
+        }
+        let mut next = state.found[which].next_names.clone().into_iter();
+        // Where those that explain as much are none, the next is too near to leave one name alone.
+        while possible.is_empty()
+            && let Some(name) = next.next()
+        {
+            possible.extend(is_possible(series, file, state, (which, &name), doubts)?.then_some(name));
         }
         state.found[which].indistinguishable_from = possible;
     }
     Ok(refused)
+}
+
+/// Whether another mechanism may be what one of several stands for.
+fn is_possible(
+    series: &Series,
+    file: &Robot,
+    state: &State,
+    (which, name): (usize, &str),
+    doubts: &[&Doubt<'_>],
+) -> Result<bool, Error> {
+    match instead(series, file, state, (which, name))? {
+        // What drives do not show they do not rule out.
+        Some(instead) if unshown::doubt(series, &instead, which).is_none() => {
+            Ok(doubted(&instead, which, doubts, false)?.is_none())
+        }
+        _ => Ok(true),
+    }
 }
 
 /// What was found with what explains most of that which explains as much as one that is doubted, and is not doubted itself, in its place;

@@ -12,7 +12,7 @@ use crate::{
     limit,
     misfit::{self, Squares},
     missed,
-    names::{as_good_names, tell_apart},
+    names::{Names, names, tell_apart},
     needed::drop_one,
     null::Null,
     off_middle,
@@ -52,6 +52,8 @@ pub struct Found {
     pub held_out_gain: f64,
     /// Mechanisms that explain it as well or cannot be told from it.
     pub indistinguishable_from: Vec<String>,
+    /// Mechanisms that fall short of it by too little to leave it alone, best first, should those turn out to be none.
+    pub(crate) next_names: Vec<String>,
 }
 
 impl Found {
@@ -237,8 +239,8 @@ pub(crate) fn decide(
     // Squares alone make nobody the winner: few blocks may hold all that a rival takes of them.
     let sure = (0..fits.len()).filter(|i| at_best(*i).score > 0.0).min_by(least);
     let winner = sure.or_else(|| (0..fits.len()).min_by(least)).unwrap_or(0);
-    let names: Vec<&str> = rivals.iter().map(Weighed::name).collect();
-    let indistinguishable_from = as_good_names(&names, &costs, winner);
+    let of_rivals: Vec<&str> = rivals.iter().map(Weighed::name).collect();
+    let Names { as_good, next } = names(&of_rivals, &costs, winner);
     let (rival, fit) = (at_best(winner), fits.into_iter().nth(winner));
     let limits_95 = bounded[winner].as_ref().map_or(Vec::new(), |bounded| bounded.limits_95.clone());
     let Some(fit) = fit.map(as_hard::in_both) else { unreachable!("the winner is one of the fits") };
@@ -249,7 +251,8 @@ pub(crate) fn decide(
         p_value: rival.p_value,
         delta_bic: rival.score,
         held_out_gain,
-        indistinguishable_from,
+        indistinguishable_from: as_good,
+        next_names: next,
     };
     Ok((found, fit))
 }
