@@ -10,7 +10,7 @@ use crate::{
     event::{Event, event},
     explainable::explained_share,
     locate,
-    missed::{MISFIT, Missed, REMAINS, floor_w, usual_w},
+    missed::{MISFIT, Missed, REMAINS, floor_w, open_w, usual_w},
     refitted::{Refitted, bias_w, rmse_w},
     report::{
         BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
@@ -35,6 +35,8 @@ pub(crate) struct Judged {
     mean_w: f64,
     /// What is left of errors held out beyond noise in healthy drives [W].
     usual_w: f64,
+    /// One sigma of what healthy drives show the model to miss [W].
+    open_w: f64,
     filed_w: Vec<f64>,
     /// Terms outside the list, which the last steps have.
     pub(crate) discovered: Vec<Discovered>,
@@ -82,6 +84,7 @@ impl Judged {
             explainable,
             mean_w,
             usual_w,
+            open_w: open_w(series, mean_w),
             filed_w,
             discovered,
         })
@@ -125,7 +128,7 @@ impl Judged {
             true if is_little(before) && self.discovered.is_empty() => Verdict::Consistent,
             true => Verdict::Unexplained,
             false
-                if is_missed
+                if missed.is_most_beside_a_name()
                     || !self.discovered.is_empty()
                     || !is_little(after) && after > REMAINS * before =>
             {
@@ -150,6 +153,7 @@ impl Judged {
             after_w: self.corrected.held_out_rmse_w,
             floor_w: self.baseline.noise_floor_w,
             usual_w: self.usual_w.max(MISFIT * self.mean_w),
+            open_w: self.open_w,
         }
     }
 
