@@ -88,6 +88,19 @@ fn motors_of_a_small_robot_warm_by_more_for_each_watt_than_a_husky_s_can() {
     assert!(rise_k_per_w.is_some_and(|rise| (8.0..30.0).contains(&rise)), "{}", found.sentence);
 }
 
+#[test]
+fn a_trailer_that_folds_at_the_ends_of_lanes_is_a_trailer() {
+    // Were it pulled as hard in turns as it is straight on, something outside the list would be found.
+    let small = robot("small");
+    let trailer = vec![Effect { onset_s: 252.0, ..Effect::new(EffectName::TowedLoad, 1.4) }];
+    let suspect = drive_of(&small, &Drive::new(DriveKind::LawnMower, 900.0, 73), trailer);
+    let healthy = drive_of(&small, &Drive::new(DriveKind::Rich, 600.0, 72), vec![]);
+    let found = said(&small, &suspect, Some(&healthy));
+    let rolling_n = value(&found, "towed_load", "rolling_n");
+    assert!(rolling_n.is_some_and(|n| (n / 1.4 - 1.0).abs() < 0.1), "{}", found.sentence);
+    assert_eq!((found.verdict, found.findings.len()), (Verdict::Explained, 1), "{}", found.sentence);
+}
+
 /// A drive in which meters read what the model says that mechanisms make them read beyond what they read.
 fn reading_more(robot: &Robot, plain: &Recording, truths: &[Applied]) -> Recording {
     let [without, with] = [&[], truths].map(|applied| imitate(robot, plain, applied).unwrap());

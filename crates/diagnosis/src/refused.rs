@@ -89,20 +89,31 @@ pub(crate) fn refuse(
         drop_idle(series, file, state, null)?;
     }
     for which in 0..state.found.len() {
-        let mut possible = Vec::new();
-        for name in state.found[which].indistinguishable_from.clone() {
-            possible.extend(is_possible(series, file, state, (which, &name), doubts)?.then_some(name));
-        }
-        let mut next = state.found[which].next_names.clone().into_iter();
-        // Where those that explain as much are none, the next is too near to leave one name alone.
-        while possible.is_empty()
-            && let Some(name) = next.next()
-        {
-            possible.extend(is_possible(series, file, state, (which, &name), doubts)?.then_some(name));
-        }
-        state.found[which].indistinguishable_from = possible;
+        let Found { indistinguishable_from, next_names, .. } = &state.found[which];
+        let is_possible = |name: &str| is_possible(series, file, state, (which, name), doubts);
+        let others = not_ruled_out(indistinguishable_from, next_names, is_possible)?;
+        state.found[which].indistinguishable_from = others;
     }
     Ok(refused)
+}
+
+/// Of names that explain as much those that are possible, or else the first that is of the next, which are too near to leave one name alone.
+fn not_ruled_out(
+    as_good: &[String],
+    next: &[String],
+    is_possible: impl Fn(&str) -> Result<bool, Error>,
+) -> Result<Vec<String>, Error> {
+    let mut possible = Vec::new();
+    for name in as_good {
+        possible.extend(is_possible(name)?.then(|| name.clone()));
+    }
+    let mut next = next.iter();
+    while possible.is_empty()
+        && let Some(name) = next.next()
+    {
+        possible.extend(is_possible(name)?.then(|| name.clone()));
+    }
+    Ok(possible)
 }
 
 /// Whether another mechanism may be what one of several stands for.
@@ -218,6 +229,21 @@ fn first_doubted(state: &State, doubts: &[&Doubt<'_>]) -> Result<Option<(usize, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn where_the_second_name_is_ruled_out_the_next_takes_its_place_and_nobody_asks_for_it_where_it_is_not() {
+        let names = |names: &str| names.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let left = |as_good: &str, next: &str, ruled_out: &str| {
+            let is_possible = |name: &str| Ok(!ruled_out.contains(name));
+            not_ruled_out(&names(as_good), &names(next), is_possible).unwrap().join(" ")
+        };
+        // A load that is towed explains a little less than soft soil, and only that is ruled out.
+        assert_eq!(left("soft_soil", "towed_load surface_change", "soft_soil"), "towed_load");
+        assert_eq!(left("soft_soil", "towed_load surface_change", "soft_soil towed_load"), "surface_change");
+        assert_eq!(left("soft_soil", "towed_load", ""), "soft_soil");
+        assert_eq!(left("soft_soil payload", "towed_load", "payload"), "soft_soil");
+        assert_eq!(left("", "", ""), "");
+    }
 
     #[test]
     fn what_was_never_sure_is_no_reason_to_doubt_once_its_name_is_refused() {
