@@ -294,3 +294,24 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_load_that_shifts_stands_in_beside_forces_only_and_one_that_lies_still_never_does() {
+        let applied = |name: &str, span: Span| {
+            let mechanism = mechanism::by_name(name).unwrap();
+            Applied { mechanism, values: vec![0.0; mechanism.parameters().len()], span }
+        };
+        let shifts = Span::EachDrive(300.0);
+        let told = |span: Span, beside: &[&str]| {
+            let beside: Vec<Applied> = beside.iter().map(|name| applied(name, Span::ALL)).collect();
+            stands_in(&applied("center_of_mass", span), &span, &beside)
+        };
+        assert!(told(shifts, &["surface_change"]) && told(shifts, &["power_scale", "payload"]));
+        assert!(!told(shifts, &["power_scale"]) && !told(shifts, &[]));
+        assert!(!told(Span::ALL, &["surface_change"]));
+    }
+}

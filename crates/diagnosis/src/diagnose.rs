@@ -106,6 +106,7 @@ pub fn diagnose_watched(
     let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
     let mut doubts = doubts(robot, suspect, &series, &found.after, &mistakes)?;
     doubts.append(&mut notes);
+    doubts.extend(judged.left_beside_names(&found));
     let is_outside = !judged.discovered.is_empty();
     let said = [(healthy.is_none(), ALONE), (by_current, BY_CURRENT), (is_outside, OUTSIDE)];
     doubts.extend(said.into_iter().filter(|(is_so, _)| *is_so).map(|(_, note)| note.to_owned()));

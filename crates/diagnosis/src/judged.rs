@@ -139,6 +139,20 @@ impl Judged {
         }
     }
 
+    /// What is left beside names that stand though it is more than usual, in words.
+    pub(crate) fn left_beside_names(&self, found: &Search) -> Option<String> {
+        let missed = self.missed();
+        let is_left = !found.found.is_empty() && self.discovered.is_empty() && missed.is_most();
+        (is_left && !missed.is_most_beside_a_name()).then(|| {
+            format!(
+                "beside what was found {:.1} W are left beyond noise; healthy drives show the model to be off by up to {:.1} W as well, so \
+                 that it is no sign of anything more. Healthy drives on the same ground would tell",
+                missed.left_w(),
+                self.open_w
+            )
+        })
+    }
+
     /// What happened a few times only, where far more is left than usual.
     pub(crate) fn event(&self, series: &Series) -> Option<Event> {
         let errors_w = &self.steps.last()?.held_out_w;

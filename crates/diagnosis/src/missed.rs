@@ -9,7 +9,7 @@ use crate::{
     needed::shown_in,
     polish::settle,
     refitted::{Refitted, bias_w, rmse_w},
-    search::{Found, State},
+    search::{Found, State, missed_share},
     series::Series,
 };
 
@@ -45,16 +45,20 @@ impl Missed {
     /// Whether more than usual is left, and much of what was there: mechanisms that take the place of what is missing follow it here and
     /// there, but not all through the drives.
     pub(crate) fn is_most(&self) -> bool {
-        let left_w2 = self.beyond_noise_w2(self.after_w);
         let before_w2 = (self.before_w.powi(2) - self.floor_w.powi(2)).max(1e-12);
-        left_w2 / before_w2 > REMAINS && !self.is_usual(left_w2.sqrt())
+        self.left_w().powi(2) / before_w2 > REMAINS && !self.is_usual(self.left_w())
     }
 
     /// Whether more is left beside a name than healthy drives show the model to miss where it is at a loss: where they do show that, as on ground
     /// that differs from place to place, what is left is no reason to doubt a name. Of drives on such ground in a world that others wrote, after
     /// the one effect in them was named, 3.7 to 4.6 % of power was left beyond noise where healthy drives told 8 %.
     pub(crate) fn is_most_beside_a_name(&self) -> bool {
-        self.is_most() && self.beyond_noise_w2(self.after_w).sqrt() > self.open_w
+        self.is_most() && self.left_w() > self.open_w
+    }
+
+    /// What is left beyond noise [W].
+    pub(crate) fn left_w(&self) -> f64 {
+        self.beyond_noise_w2(self.after_w).sqrt()
     }
 
     /// Why one mechanism is none, in words, of which the error without it is known \[W\]; `None` if it may be one.
@@ -138,8 +142,7 @@ pub(crate) fn floor_w(series: &Series, base: &Baseline) -> f64 {
 
 /// One sigma of what healthy drives show the model to miss of a mean power [W]; none without them.
 pub(crate) fn open_w(series: &Series, mean_w: f64) -> f64 {
-    let learnt = series.discrepancy.get().filter(|_| series.has_healthy());
-    mean_w * learnt.map_or(0.0, |learnt| learnt.share(series.channels()))
+    if series.has_healthy() { mean_w * missed_share(series) } else { 0.0 }
 }
 
 /// What is left of the errors of healthy drives beyond noise [W].

@@ -19,8 +19,7 @@ use crate::{
 
 /// Speeds of winds along the ridge [m/s], each in sixteen directions.
 const SPEEDS_MPS: [f64; 11] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 13.0, 17.0];
-/// Time constants of heat along the ridge [s], and how many, so that each is less than a tenth more than the last.
-const TIMES_S: [f64; 2] = [60.0, 3600.0];
+/// Time constants of heat along the ridge, over the range of those that are tried: each is less than a tenth more than the last.
 const TIMES: u32 = 48;
 /// 95 % quantile of χ² with one degree of freedom: what explains less than the best by no more is within the interval of each of its values
 /// (profile likelihood; Venzon and Moolgavkar, Appl. Stat. 37, 1988).
@@ -32,7 +31,7 @@ const CHI_SQUARE_95: f64 = 3.841;
 /// A surface that the robot does not know.
 pub(crate) fn widen(series: &Series, file: &Robot, state: &mut State, null: &Null) -> Result<(), Error> {
     for which in 0..state.found.len() {
-        let along = along(&state.found[which].applied);
+        let along = along(&state.found[which].applied, file);
         if along.is_empty() {
             continue;
         }
@@ -74,7 +73,7 @@ fn reach(
 }
 
 /// Values that may explain as much, the first of which is a size that follows from the others; none of what lies on no ridge.
-fn along(applied: &Applied) -> Vec<Vec<f64>> {
+fn along(applied: &Applied, robot: &Robot) -> Vec<Vec<f64>> {
     let size = applied.values[0];
     match applied.mechanism.name() {
         "wind" => {
@@ -86,7 +85,7 @@ fn along(applied: &Applied) -> Vec<Vec<f64>> {
             all.flat_map(|mps| (0..16).map(move |sixteenth| towards(*mps, sixteenth))).collect()
         }
         "motor_heating" => {
-            let [least_s, most_s] = TIMES_S;
+            let [least_s, most_s] = candidates::range(applied, robot, 1);
             let time_s = |i: u32| least_s * (most_s / least_s).powf(f64::from(i) / f64::from(TIMES));
             (0..=TIMES).map(|i| vec![size, time_s(i)]).collect()
         }
@@ -107,15 +106,19 @@ fn farthest(from: &[f64], told: impl Iterator<Item = (f64, Vec<f64>)> + Clone) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::span::Span;
 
     #[test]
     fn time_constants_lie_close_from_the_least_to_the_most_and_what_has_one_size_lies_on_no_ridge() {
         let of = |name: &str, values: Vec<f64>| {
             let mechanism = model::mechanism::by_name(name).unwrap();
-            along(&Applied { mechanism, values, span: crate::span::Span::ALL })
+            along(&Applied { mechanism, values, span: Span::ALL }, &model::builtin::husky_a200())
         };
         let times_s: Vec<f64> = of("motor_heating", vec![0.5, 900.0]).iter().map(|one| one[1]).collect();
-        assert_eq!((times_s[0], times_s[TIMES as usize]), (TIMES_S[0], TIMES_S[1]));
+        assert!(
+            (times_s[0] - 60.0).abs() < 1e-9 && (times_s[TIMES as usize] - 3600.0).abs() < 1e-9,
+            "{times_s:?}"
+        );
         assert!(times_s.windows(2).all(|pair| (1.0..1.1).contains(&(pair[1] / pair[0]))), "{times_s:?}");
         assert!(of("payload", vec![5.0]).is_empty());
     }

@@ -264,6 +264,10 @@ pub(crate) fn is_told(series: &Series) -> bool {
 
 /// What the model misses of healthy drives over what it may miss where it can be relied on; without healthy drives it may miss anything.
 pub(crate) fn openness(series: &Series) -> f64 {
-    let missed = series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()));
-    if series.has_healthy() { missed / TOLD } else { f64::INFINITY }
+    if series.has_healthy() { missed_share(series) / TOLD } else { f64::INFINITY }
+}
+
+/// One sigma of what the model misses, as learnt of healthy drives where there are any, as a share of power.
+pub(crate) fn missed_share(series: &Series) -> f64 {
+    series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()))
 }

@@ -53,8 +53,8 @@ impl Mechanism for TowedLoad {
     }
 }
 
-/// How far behind the robot's middle the trailer's axle lies, in track widths \[-\]: with a drawbar that lets it fold beside the robot, and the
-/// hitch at the back. Nobody records it; where wheels follow one another in a bend depends little on it.
+/// How far behind the robot's middle the trailer's axle lies, in track widths \[-\]. Nobody records it: assumed is a hitch at the back and a
+/// drawbar that lets a trailer as wide as the robot fold beside it.
 const BEHIND_TRACKS: f64 = 2.0;
 
 /// cos φ, of the angle at which a trailer follows in a steady turn: its axle is pulled towards the hitch, and what pulls it across only turns
