@@ -131,6 +131,25 @@ fn what_happened_once_is_no_evidence_but_is_said() {
 }
 
 #[test]
+fn what_comes_again_and_again_is_missing_though_nothing_recorded_tells_when() {
+    // A bearing that seizes for seven seconds, at times that follow nothing.
+    let robot = model::builtin::husky_a200();
+    let mut suspect = record(32, vec![]);
+    for channel in [Channel::LeftPower, Channel::Power] {
+        let Some(power_w) = suspect.channels.get_mut(&channel) else { continue };
+        for from_s in [41, 66, 131, 158, 217, 284, 303, 381, 419, 457, 512, 568] {
+            power_w[10 * from_s..10 * from_s + 70].iter_mut().for_each(|w| *w += 40.0);
+        }
+    }
+    let found = said(&robot, &suspect, &record(31, vec![]));
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert!(found.findings.is_empty(), "{}", found.sentence);
+    assert!(found.sentence.contains("again and again"), "{}", found.sentence);
+    assert!(found.sentence.contains("the power of the left side"), "{}", found.sentence);
+    assert!(found.places.iter().all(|place| place.kind == "time") && found.places.len() == 5);
+}
+
+#[test]
 fn water_in_hollows_is_described_though_it_is_less_than_what_models_often_miss() {
     let robot = model::builtin::husky_a200();
     let puddles = Effect::new(EffectName::Puddles, 150.0);

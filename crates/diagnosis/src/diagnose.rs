@@ -131,7 +131,7 @@ pub fn diagnose_watched(
             diagnosis.verdict = Verdict::Unexplained;
             words::mistaken(mistake)
         }
-        None => words::sentence(&diagnosis, &found.refused, judged.event(&series).map(|event| event.words)),
+        None => words::sentence(&diagnosis, &found.refused, judged.event()),
     };
     progress("done", 1.0);
     Ok(diagnosis)
@@ -144,7 +144,8 @@ fn look_outside(
     applied: &[Applied],
     judged: &mut Judged,
 ) -> Result<(), Error> {
-    let sure = match judged.verdict(found) {
+    // That something comes again and again says nothing of what it would follow.
+    let sure = match judged.verdict_by_inputs(found) {
         Verdict::Unexplained if series.has_healthy() => Sure::AsUsual,
         Verdict::Consistent if series.has_healthy() => Sure::Very,
         _ if series.turning.is_some() => Sure::AsUsual,

@@ -7,7 +7,7 @@ use crate::{
     Error,
     baseline::{Baseline, differences},
     discovered::Discovered,
-    event::{Event, event},
+    event::Event,
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, open_w, usual_w},
@@ -38,6 +38,8 @@ pub(crate) struct Judged {
     /// One sigma of what healthy drives show the model to miss [W].
     open_w: f64,
     filed_w: Vec<f64>,
+    /// What happened in some stretches, where nothing was found and far more is left than usual.
+    event: Option<Event>,
     /// Terms outside the list, which the last steps have.
     pub(crate) discovered: Vec<Discovered>,
 }
@@ -76,7 +78,7 @@ impl Judged {
         let sizes: Vec<f64> = series.recorded.iter().map(|w| w.abs()).collect();
         let mean_w = bias_w(series, &sizes);
         let usual_w = usual_w(series, &found.after, &steps[last].held_out_w);
-        Ok(Judged {
+        let mut judged = Judged {
             baseline,
             corrected,
             steps,
@@ -86,11 +88,17 @@ impl Judged {
             usual_w,
             open_w: open_w(series, mean_w),
             filed_w,
+            event: None,
             discovered,
-        })
+        };
+        if found.found.is_empty() && judged.missed().is_most() {
+            judged.event = Event::of(series, &found.after, &judged.steps[0].held_out_w);
+        }
+        Ok(judged)
     }
 
-    /// Adds terms outside the list, one after the other.
+    /// Adds terms outside the list, one after the other. Where something comes again and again, terms that leave most of it, as often as before,
+    /// are not what is missing: they are left out.
     pub(crate) fn take_up(
         &mut self,
         series: &Series,
@@ -98,20 +106,38 @@ impl Judged {
         discovered: Vec<Discovered>,
     ) -> Result<(), Error> {
         let mechanisms: Vec<&Found> = found.found.iter().collect();
-        for count in 1..=discovered.len() {
-            let step = Refitted::new(series, &found.after, &mechanisms, &discovered[..count])?;
-            self.corrected = CorrectedFit {
-                rmse_w: rmse_w(series, &step.errors_w),
-                held_out_rmse_w: rmse_w(series, &step.held_out_w),
-            };
-            self.held_out_rmse_w.push(self.corrected.held_out_rmse_w);
-            self.steps.push(step);
+        let more = (1..=discovered.len())
+            .map(|count| Refitted::new(series, &found.after, &mechanisms, &discovered[..count]));
+        let more = more.collect::<Result<Vec<Refitted>, Error>>()?;
+        let Some(last) = more.last() else { return Ok(()) };
+        let corrected = CorrectedFit {
+            rmse_w: rmse_w(series, &last.errors_w),
+            held_out_rmse_w: rmse_w(series, &last.held_out_w),
+        };
+        let missed = Missed { after_w: corrected.held_out_rmse_w, ..self.missed() };
+        let recurs = |event: &Event| event.recurs.is_some();
+        let recurs_still = || Event::of(series, &found.after, &last.held_out_w).is_some_and(|e| recurs(&e));
+        if self.event.as_ref().is_some_and(recurs) && missed.is_most() && recurs_still() {
+            return Ok(());
         }
+        self.corrected = corrected;
+        self.held_out_rmse_w.extend(more.iter().map(|step| rmse_w(series, &step.held_out_w)));
+        self.steps.extend(more);
         self.discovered = discovered;
         Ok(())
     }
 
     pub(crate) fn verdict(&self, found: &Search) -> Verdict {
+        match self.verdict_by_inputs(found) {
+            Verdict::Consistent if self.event.as_ref().is_some_and(|event| event.recurs.is_some()) => {
+                Verdict::Unexplained
+            }
+            verdict => verdict,
+        }
+    }
+
+    /// The verdict if nothing counted but what follows what was recorded.
+    pub(crate) fn verdict_by_inputs(&self, found: &Search) -> Verdict {
         let [before, after] = self.explainable;
         let missed = self.missed();
         let is_little = |explainable: f64| {
@@ -153,11 +179,9 @@ impl Judged {
         })
     }
 
-    /// What happened a few times only, where far more is left than usual.
-    pub(crate) fn event(&self, series: &Series) -> Option<Event> {
-        let errors_w = &self.steps.last()?.held_out_w;
-        let is_event = self.missed().is_most();
-        is_event.then(|| event(series, errors_w, self.baseline.noise_floor_w)).flatten()
+    /// What happened in some stretches and follows nothing that was recorded, where nothing else is missing.
+    pub(crate) fn event(&self) -> Option<&Event> {
+        self.event.as_ref().filter(|_| self.discovered.is_empty())
     }
 
     /// What is left of the difference.
@@ -183,13 +207,10 @@ impl Judged {
         findings
     }
 
-    /// Where the errors are that the findings take away; where nothing was found, what happened once, or else those beyond noise.
+    /// Where the errors are that the findings take away; where nothing was found, what follows nothing, or else those beyond noise.
     pub(crate) fn places(&self, series: &Series, robot: &Robot, found: &Search) -> Result<Vec<Place>, Error> {
-        if found.found.is_empty()
-            && self.discovered.is_empty()
-            && let Some(event) = self.event(series)
-        {
-            return Ok(vec![event.place]);
+        if let Some(event) = self.event() {
+            return Ok(event.places.clone());
         }
         if self.verdict(found) == Verdict::Consistent {
             return Ok(Vec::new());

@@ -76,6 +76,7 @@ mod series;
 mod shapes;
 mod shared;
 mod span;
+mod stretches;
 mod term;
 mod turning;
 mod undoing;

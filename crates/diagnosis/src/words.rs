@@ -2,34 +2,66 @@
 
 use crate::{
     discovered::UNKNOWN,
+    event::Event,
     refused::Refused,
     report::{Diagnosis, Finding, Verdict},
+    weigh::BLOCK_S,
 };
 
 /// Percents of an error that follow from what was recorded and are not worth a word.
 const LITTLE_LEFT: f64 = 6.0;
 
-/// The verdict in a sentence, and what comes closest without being it; `event` is what happened too seldom to be evidence.
-pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<String>) -> String {
-    let once = event.map(|event| {
-        format!(
-            "{event}, where {:.1} W are noise; once is no evidence of what it was: drive the same again.",
-            found.baseline.noise_floor_w
-        )
-    });
-    let mut text = match (&once, found.verdict) {
-        (Some(once), Verdict::Consistent) => format!("Nothing that comes again is missing, but {once}"),
-        (Some(once), Verdict::Unexplained) if found.findings.is_empty() => {
-            format!("{} Most of it came once: {once}", verdict(found, !refused.is_empty()))
+/// The verdict in a sentence, and what comes closest without being it; `event` is what happened here and there and follows nothing.
+pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<&Event>) -> String {
+    let mut text = match (event, found.verdict) {
+        (Some(event), Verdict::Consistent) if event.places.len() == 1 => {
+            format!("Nothing that comes again is missing, but {}", seldom(found, event))
         }
-        _ => verdict(found, !refused.is_empty()),
+        (Some(event), Verdict::Consistent) => {
+            let [often, seldom] = [often(event), seldom(found, event)];
+            format!("Nothing that comes often is missing, but most of what is left came {often}: {seldom}")
+        }
+        (Some(event), _) => match event.recurs {
+            Some(stretches) => again(found, event, stretches),
+            None => {
+                let verdict = verdict(found, !refused.is_empty());
+                format!("{verdict} Most of it came {}: {}", often(event), seldom(found, event))
+            }
+        },
+        (None, _) => verdict(found, !refused.is_empty()),
     };
     // What is not sure enough to be missing is not worth a reason.
-    let told = if found.verdict == Verdict::Consistent { &[] } else { refused };
+    let is_else = event.is_some_and(|event| event.recurs.is_some());
+    let told = if found.verdict == Verdict::Consistent || is_else { &[] } else { refused };
     for Refused { mechanism, why, .. } in told {
         text += &format!(" {} would explain part of it, but {why}.", capital(plain(mechanism)));
     }
     text
+}
+
+/// How often that was.
+fn often(event: &Event) -> String {
+    match event.places.len() {
+        1 => "once".to_owned(),
+        few => format!("in {few} stretches of {BLOCK_S:.0} s, the most of it in one"),
+    }
+}
+
+/// What happened too seldom to be evidence.
+fn seldom(found: &Diagnosis, event: &Event) -> String {
+    format!(
+        "{}, where {:.1} W are noise; so seldom is no evidence of what it was: drive the same again.",
+        event.words, found.baseline.noise_floor_w
+    )
+}
+
+/// What comes again and again though nothing recorded tells when, in some of all stretches.
+fn again(found: &Diagnosis, event: &Event, [far, all]: [usize; 2]) -> String {
+    format!(
+        "Something is missing that comes again and again, and nothing that was recorded tells when: in {far} of {all} stretches of \
+         {BLOCK_S:.0} s power is further off than in healthy drives, most where {}, where {:.1} W are noise.",
+        event.words, found.baseline.noise_floor_w
+    )
 }
 
 /// That drives are not what they seem, in a sentence.
