@@ -64,7 +64,7 @@ pub(crate) fn fitted(
 ) -> Result<Option<Applied>, Error> {
     let system = system(series, base);
     let mut best: Option<(f64, Applied)> = None;
-    for (values, linear) in candidates::grids(mechanism) {
+    for (values, linear) in candidates::told_grids(series, mechanism) {
         let probe = Applied { mechanism, values, span };
         let at = candidates::of(series, &base.robot, others, &base.predicted_w, probe, linear)?;
         let Some(evidence) = system.weigh(&whitened(series, base, &at.columns)) else { continue };
@@ -119,7 +119,7 @@ fn least_size(
     let parameter = &mechanism.parameters()[0];
     let [_, most] = mechanism.bounds(&base.robot, 0);
     let mut least = most;
-    for (values, _) in candidates::grids(mechanism) {
+    for (values, _) in candidates::told_grids(series, mechanism) {
         let probe = Applied { mechanism, values, span: Span::ALL };
         let at = candidates::of(series, &base.robot, applied, &base.predicted_w, probe, vec![0])?;
         let of_one = system.weigh(&whitened(series, base, &at.columns)).and_then(|evidence| {

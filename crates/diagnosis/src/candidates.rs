@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::{
     Error,
     as_hard::AsHard,
+    meter::Meter,
     off_middle,
     region::regions,
     second_ground::{self, GROUND},
@@ -132,8 +133,7 @@ pub(crate) fn all(
         .chain(second_ground::second(series, applied))
         .chain(grounds)
         .flat_map(|mechanism| {
-            grids(mechanism)
-                .into_iter()
+            told_grids(series, mechanism)
                 .map(move |(values, linear)| (Applied { mechanism, values, span: Span::ALL }, linear))
         })
         .collect();
@@ -193,6 +193,15 @@ pub(crate) fn of_more(
 fn stands_in(probe: &Applied, span: &Span, beside: &[Applied]) -> bool {
     let acts = |one: &Applied| one.mechanism.kind() == Kind::Physics;
     probe.mechanism.name() == "center_of_mass" && !span.is_all() && beside.iter().any(acts)
+}
+
+/// Points of a mechanism's grid that drives may tell from each other: what another meter does shows where both are recorded.
+pub(crate) fn told_grids(
+    series: &Series,
+    mechanism: &'static dyn mechanism::Mechanism,
+) -> impl Iterator<Item = (Vec<f64>, Vec<usize>)> {
+    let is_all = mechanism.name() != "power_offset" || series.meters.contains(&Meter::Rest);
+    grids(mechanism).into_iter().filter(move |(values, _)| is_all || values[1] == 0.0)
 }
 
 /// Parameters of a mechanism that acts which power follows in proportion.
@@ -286,6 +295,8 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
         ],
         // What spins carries the robot less far and turns it less; what gives way under pull shows in turns, where wheels pull hardest.
         "wheel_slip" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1]), (vec![0.0; 2], vec![0, 1])],
+        // Meters of the sides that are off leave open what the battery's does: as each of them, as both, or nothing.
+        "power_offset" => [0.0, 1.0, -1.0].map(|more| (vec![0.0, more], vec![0])).into(),
         // One side drags; what holds both back alike is the ground.
         "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {

@@ -17,6 +17,13 @@ const MOST: f64 = 0.5;
 /// where a bearing seized for some seconds every minute to 5 and 7 times.
 const FAR: f64 = 3.0;
 
+/// Squared errors over noise in the middle one of stretches, in times of those of healthy drives, up to which most are as they are in
+/// healthy drives: 1.05 and 1.6 times where the bearing seized.
+const ALIKE: f64 = 2.0;
+
+/// Share of stretches that are far off in which power is off one way.
+const ONE_WAY: f64 = 0.9;
+
 /// Stretches that are told one by one.
 const TOLD: usize = 5;
 
@@ -54,19 +61,25 @@ impl Event {
 }
 
 /// In how many stretches of drives under suspicion power is further off than it is in healthy ones; in none, as far as one can tell, without
-/// healthy drives.
+/// healthy drives, where most others are not as they are in healthy drives, or where power is more here and less there: then it is not
+/// something that comes and goes.
 fn far_off(all: &[Stretch]) -> usize {
     let sorted = |suspect: bool| {
         let whole = all.iter().filter(|stretch| stretch.suspect == suspect && stretch.is_whole());
-        let mut times: Vec<f64> = whole.map(Stretch::times_noise).collect();
-        times.sort_by(|a, b| b.total_cmp(a));
-        times
+        let mut sorted: Vec<&Stretch> = whole.collect();
+        sorted.sort_by(|a, b| b.times_noise().total_cmp(&a.times_noise()));
+        sorted
     };
     let [suspect, healthy] = [true, false].map(sorted);
+    let median = |all: &[&Stretch]| all.get(all.len() / 2).map_or(0.0, |stretch| stretch.times_noise());
     // The same share of the healthy drives' stretches as is evidence of the others.
     let same = (visits::LEAST * healthy.len() as f64 / suspect.len().max(1) as f64).floor();
     let Some(usual) = healthy.get((same as usize).max(1) - 1) else { return 0 };
-    suspect.iter().filter(|times| **times > FAR * usual.max(1.0)).count()
+    let far = suspect.iter().filter(|stretch| stretch.times_noise() > FAR * usual.times_noise().max(1.0));
+    let far: Vec<f64> = far.map(|stretch| stretch.mean_w()).collect();
+    let is_alike = median(&suspect) <= ALIKE * median(&healthy).max(1.0);
+    let more = far.iter().filter(|mean_w| **mean_w > 0.0).count() as f64 / far.len().max(1) as f64;
+    if is_alike && more.max(1.0 - more) >= ONE_WAY { far.len() } else { 0 }
 }
 
 #[cfg(test)]
@@ -75,7 +88,7 @@ mod tests {
 
     /// Stretches of suspect and of healthy drives.
     fn drives(suspect: &[f64], healthy: &[f64]) -> Vec<Stretch> {
-        let of = |suspect: bool| move |times: &f64| Stretch::of(suspect, *times);
+        let of = |suspect: bool| move |times: &f64| Stretch::of(suspect, times.abs(), times.signum());
         suspect.iter().map(of(true)).chain(healthy.iter().map(of(false))).collect()
     }
 
@@ -102,6 +115,18 @@ mod tests {
         assert_eq!(far_off(&drives(&suspect, &healthy)), 8);
         healthy[1] = 20.0;
         assert_eq!(far_off(&drives(&suspect, &healthy)), 0);
+    }
+
+    #[test]
+    fn what_is_dealt_over_all_stretches_or_adds_here_and_takes_there_does_not_come_and_go() {
+        let healthy = vec![1.0; 40];
+        assert_eq!(far_off(&drives(&[9.0; 40], &healthy)), 0);
+        let mut suspect = vec![1.0; 40];
+        suspect[..8].fill(9.0);
+        suspect[..2].fill(-9.0);
+        assert_eq!(far_off(&drives(&suspect, &healthy)), 0);
+        suspect[..8].fill(-9.0);
+        assert_eq!(far_off(&drives(&suspect, &healthy)), 8);
     }
 
     #[test]

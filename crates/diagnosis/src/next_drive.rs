@@ -5,7 +5,7 @@ use model::{
     robot::Surface,
 };
 
-use crate::{alternatives::Explanation, average::Input, noise::Noise};
+use crate::{alternatives::Explanation, average::Input, noise::Noise, series::Applied};
 
 /// A manoeuvre that anyone can drive.
 struct Figure {
@@ -170,7 +170,11 @@ fn power_w(
     );
     let power = manoeuvre.power_accelerating(moment.attitude, moment.acceleration);
     let true_w = if by_side { [power.side_w.left, power.side_w.right] } else { [power.bus_w, power.bus_w] };
-    let seen_w = true_w.map(|w| applied.iter().fold(w, |w, one| one.mechanism.reading_w(&one.values, w)));
+    let read = |w: f64, one: &Applied| match by_side {
+        true => one.mechanism.reading_w(&one.values, w),
+        false => one.mechanism.battery_reading_w(&one.values, w),
+    };
+    let seen_w = true_w.map(|w| applied.iter().fold(w, read));
     let k1 = manoeuvre.kernel().k1_w_per_n2;
     Some(Seen { seen_w, loss_w: power.force_n.zip(k1).map(|(f, k1)| k1 * f * f) })
 }
@@ -178,7 +182,6 @@ fn power_w(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Applied;
     use model::{builtin, mechanism};
 
     fn explanation(name: &str, values: Vec<f64>) -> Explanation {

@@ -44,7 +44,7 @@ impl std::fmt::Debug for Applied {
 /// All drives.
 pub struct Series {
     parts: Vec<Part>,
-    meters: Vec<Meter>,
+    pub(crate) meters: Vec<Meter>,
     /// What was recorded, average by average; see [`Series::averages`].
     pub recorded: Vec<f64>,
     /// What each value is of, in the same order.

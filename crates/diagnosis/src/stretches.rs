@@ -15,6 +15,7 @@ pub(crate) struct Stretch {
     /// Whether it is of a drive under suspicion.
     pub(crate) suspect: bool,
     count: f64,
+    sum_w: f64,
     squares_w2: f64,
     noise_w2: f64,
     /// Squared errors of the left and of the right side.
@@ -30,6 +31,11 @@ impl Stretch {
     /// Squared errors over those that noise makes.
     pub(crate) fn times_noise(&self) -> f64 {
         self.squares_w2 / self.noise_w2.max(f64::MIN_POSITIVE)
+    }
+
+    /// Mean error, whose sign tells whether power was more or less than it should be [W].
+    pub(crate) fn mean_w(&self) -> f64 {
+        self.sum_w / self.count.max(1.0)
     }
 
     /// Whether it is long enough to be held against others.
@@ -77,6 +83,7 @@ pub(crate) fn stretches(series: &Series, base: &Baseline, errors_w: &[f64]) -> V
         stretch.from_s = BLOCK_S * (average.t_s.max(0.0) / BLOCK_S).floor();
         stretch.suspect = average.suspect;
         stretch.count += 1.0;
+        stretch.sum_w += errors_w[i];
         stretch.squares_w2 += errors_w[i].powi(2);
         stretch.noise_w2 += base.noise.fresh_sigma(average, base.predicted_w[i]).powi(2);
         if let Some(own_w2) = stretch.by_side_w2.get_mut(average.channel) {
@@ -101,11 +108,12 @@ fn of_side([left_w2, right_w2]: [f64; 2]) -> &'static str {
 
 #[cfg(test)]
 impl Stretch {
-    /// One with so many times the squared errors that noise makes.
-    pub(crate) fn of(suspect: bool, times_noise: f64) -> Self {
+    /// One with so many times the squared errors that noise makes, of a mean with a sign.
+    pub(crate) fn of(suspect: bool, times_noise: f64, sign: f64) -> Self {
         Stretch {
             suspect,
             count: BLOCK_S,
+            sum_w: sign * times_noise.sqrt() * BLOCK_S,
             squares_w2: times_noise * BLOCK_S,
             noise_w2: BLOCK_S,
             ..Stretch::default()
@@ -127,7 +135,7 @@ mod tests {
 
     #[test]
     fn what_noise_makes_is_not_beyond_it() {
-        let stretch = Stretch::of(true, 3.0);
+        let stretch = Stretch::of(true, 3.0, 1.0);
         assert_eq!([stretch.times_noise(), stretch.beyond_w2()], [3.0, 2.0 * BLOCK_S]);
         assert!(stretch.is_whole());
     }

@@ -149,8 +149,10 @@ impl Part {
         let manoeuvre = Manoeuvre::adjusted(robot, friction, moment.motion, &shape, row.motor_c, &adjustment);
         let power = manoeuvre.power_on_grade(grade, moment.acceleration);
         let read = |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
+        let read_battery =
+            |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.battery_reading_w(&a.values, w));
         let sides_w = || seen_w(robot, PowerForm::Sides, row, &power).map(read);
-        let battery_w = || read(seen_w(robot, PowerForm::Battery, row, &power)[0]);
+        let battery_w = || read_battery(seen_w(robot, PowerForm::Battery, row, &power)[0]);
         let [first_w, second_w] = match meters.first() {
             Some(Meter::Battery) => [battery_w(), 0.0],
             _ => sides_w(),
@@ -164,7 +166,7 @@ impl Part {
             [0.0; 2]
         };
         let current_a = match (&self.sag, meters.contains(&Meter::Sag)) {
-            (Some(sag), true) => sag.current_a(i, read),
+            (Some(sag), true) => sag.current_a(i, read_battery),
             _ => 0.0,
         };
         [

@@ -203,6 +203,11 @@ pub trait Mechanism: Sync {
         true_w
     }
 
+    /// What the power meter of the battery reads beside those of the sides, or alone [W].
+    fn battery_reading_w(&self, values: &[f64], true_w: f64) -> f64 {
+        self.reading_w(values, true_w)
+    }
+
     /// Time over which losses are averaged for [`Moment::loss_w`], if it asks for them [s].
     fn memory_s(&self, _values: &[f64]) -> Option<f64> {
         None
