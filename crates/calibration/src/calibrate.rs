@@ -12,6 +12,7 @@ use crate::{
     power::{by_row, seen_w},
     power_fit::{PowerFit, fit_power, fit_thinned},
     score::{Score, median},
+    slopes::slopes_note,
     stuck,
 };
 
@@ -74,12 +75,20 @@ pub struct Calibration {
     pub robot: Robot,
 }
 
+impl Calibration {
+    fn with_note(mut self, note: Option<&str>) -> Self {
+        self.notes.extend(note.map(str::to_owned));
+        self
+    }
+}
+
 /// Fits a robot to recordings: its priors are the robot file's, runs are kept apart, and every other run judges the fit of the rest.
 ///
 /// # Errors
 /// [`Error::NothingToFit`], or [`Error::Robot`] where the result is no robot.
 pub fn calibrate(robot: &Robot, recording: &Recording, options: &Options) -> Result<Calibration, Error> {
-    calibrate_drives(robot, &Drives::new(robot, recording)?, options)
+    let drives = Drives::new(robot, &recording.thinned())?;
+    Ok(calibrate_drives(robot, &drives, options)?.with_note(slopes_note(recording)))
 }
 
 /// Fits a robot as [`calibrate()`] does, followed by a watch.
@@ -92,7 +101,8 @@ pub fn calibrate_watched(
     options: &Options,
     watch: &Watch,
 ) -> Result<Calibration, Error> {
-    calibrate_drives(robot, &Drives::watched(robot, recording, watch)?, options)
+    let drives = Drives::watched(robot, &recording.thinned(), watch)?;
+    Ok(calibrate_drives(robot, &drives, options)?.with_note(slopes_note(recording)))
 }
 
 fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result<Calibration, Error> {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
 use crate::{
-    Error, average::Average, copies::copies, losses, row, row::Row, standstill, stuck, watch::Watched,
+    Error, average::Average, copies::copies, losses, row, row::Row, slopes, standstill, stuck, watch::Watched,
 };
 
 /// Rows of one run on one surface without a gap.
@@ -81,6 +81,7 @@ impl Drives {
         }
         drives.watch.go_on()?;
         standstill::settle(&mut drives);
+        drives.slopes_by_heights(robot, recording);
         drives.each_stretch(row::accelerations);
         stuck::flag(&mut drives, robot);
         drives.remember_losses(robot);
@@ -91,6 +92,16 @@ impl Drives {
             });
         }
         Ok(drives)
+    }
+
+    /// Fills in slopes where none were recorded and heights were.
+    fn slopes_by_heights(&mut self, robot: &Robot, recording: &Recording) {
+        let Some(heights_m) = recording.channel(Channel::Z) else { return };
+        if recording.channel(Channel::Pitch).is_none() {
+            for stretch in &self.stretches {
+                slopes::fill(robot, &mut self.rows[stretch.rows.clone()], &heights_m[stretch.rows.clone()]);
+            }
+        }
     }
 
     /// Fills in what the robot's own `motor_heating` asks for.

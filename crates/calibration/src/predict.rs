@@ -74,7 +74,7 @@ pub struct PredictedDrives {
 /// # Errors
 /// [`Error::NothingToFit`], [`Error::UnknownSurface`] or [`Error::NoForcePerAmpere`].
 pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, Error> {
-    predict_drives(robot, Drives::new(robot, recording)?)
+    predict_drives(robot, Drives::new(robot, &recording.thinned())?)
 }
 
 /// Predicts as [`predict()`] does, followed by a watch.
@@ -86,7 +86,7 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    predict_drives(robot, Drives::watched(robot, recording, watch)?)
+    predict_drives(robot, Drives::watched(robot, &recording.thinned(), watch)?)
 }
 
 fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {

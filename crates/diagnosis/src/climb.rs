@@ -27,8 +27,9 @@ pub(crate) struct Climb {
 }
 
 impl Climb {
-    /// The climbs of a recording, where it has heights.
+    /// The climbs of a recording, where it has heights, and slopes that were not told by them.
     pub(crate) fn of(recording: &Recording, drives: &Drives) -> Option<Climb> {
+        recording.channel(Channel::Pitch)?;
         let height_m = drives.averaged(recording.channel(Channel::Z)?);
         let t_s: Vec<f64> = drives.averages.iter().map(|average| average.t_s).collect();
         let run: Vec<usize> = drives.averages.iter().map(|average| average.run).collect();

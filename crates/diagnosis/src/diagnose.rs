@@ -1,12 +1,16 @@
 //! A diagnosis from beginning to end.
 
 use calibration::with_powers;
-use model::{Robot, mechanism::Mechanism};
-use recording::{PowerForm, Recording, Watch, unwatched};
+use model::{
+    Robot,
+    mechanism::{self, Mechanism},
+};
+use recording::{Channel, PowerForm, Recording, Watch, unwatched};
 
 use crate::{
     Error, admissible,
     alternatives::{Explanation, alternatives, detectable},
+    caveats::caveats,
     corrected::corrected,
     discover::{Sure, discover},
     doubts::{doubts, mistakes},
@@ -21,17 +25,6 @@ use crate::{
 
 /// Driving that a diagnosis needs [s]: six blocks, the visits that evidence takes.
 pub(crate) const NEEDED_S: usize = 6 * BLOCK_S as usize;
-
-/// What a diagnosis without healthy drives has to say of itself.
-const ALONE: &str = "without drives known to be healthy (`--reference`) only what sets in during a drive or grows with time can be \
-     told; what acts all the time looks like what the model itself misses";
-
-/// What a diagnosis of motor currents has to say of itself.
-const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
-
-/// What a finding outside the list has to say of itself.
-const OUTSIDE: &str = "what is outside the list is described, not understood: no robot's file can hold it, and the corrected \
-     robot is without it";
 
 /// Drives that a robot's model may not describe, and what is known of them.
 #[derive(Clone, Copy)]
@@ -76,10 +69,11 @@ pub fn diagnose_watched(
     progress("preparing the drives", 0.0);
     admissible::check(suspect, healthy)?;
     let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
-    let suspect = &with_powers(robot, suspect, watch)?;
-    let healthy = healthy.map(|healthy| with_powers(robot, healthy, watch)).transpose()?;
+    let suspect = &with_powers(robot, &suspect.thinned(), watch)?;
+    let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
     let healthy = healthy.as_ref();
-    let series = Series::watched(robot, suspect, healthy, watch)?.without(ruled_out).with_turns(robot)?;
+    let series = Series::watched(robot, suspect, healthy, watch)?;
+    let series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
@@ -108,8 +102,7 @@ pub fn diagnose_watched(
     doubts.append(&mut notes);
     doubts.extend(judged.left_beside_names(&found));
     let is_outside = !judged.discovered.is_empty();
-    let said = [(healthy.is_none(), ALONE), (by_current, BY_CURRENT), (is_outside, OUTSIDE)];
-    doubts.extend(said.into_iter().filter(|(is_so, _)| *is_so).map(|(_, note)| note.to_owned()));
+    doubts.extend(caveats(suspect, healthy.is_none(), by_current, is_outside).map(str::to_owned));
     let findings = judged.findings(&series, robot, &found);
     let mut diagnosis = Diagnosis {
         verdict: judged.verdict(&found),
@@ -135,6 +128,12 @@ pub fn diagnose_watched(
     };
     progress("done", 1.0);
     Ok(diagnosis)
+}
+
+/// Mechanisms that cannot act in drives: an inclinometer that is askew where none was read.
+fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
+    let is_read = suspect.channel(Channel::Pitch).is_some();
+    mechanism::by_name("pitch_bias").filter(|_| !is_read).into_iter().collect()
 }
 
 /// Takes up terms outside the list, if what was found leaves it open whether something else acts.

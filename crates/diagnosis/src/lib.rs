@@ -11,6 +11,7 @@ mod as_hard;
 mod average;
 mod baseline;
 mod candidates;
+mod caveats;
 mod channel;
 mod chart;
 mod climb;

@@ -85,7 +85,8 @@ pub(crate) fn next_drive(
             let differ = |c: usize| {
                 (own_w[c] - other_w[c]).abs() / noise.sigma_of(c, &figure.input(&best.robot), own_w[c])
             };
-            let channel = if differ(1) > differ(0) { 1 } else { 0 };
+            // What comes behind the one power of a battery is no power.
+            let channel = if by_side && differ(1) > differ(0) { 1 } else { 0 };
             Some((differ(channel), own_w[channel] - other_w[channel], channel, other.name))
         };
         let all: Option<Vec<_>> = alternatives.iter().map(apart).collect();
@@ -191,6 +192,11 @@ mod tests {
     }
 
     fn one_watt() -> Noise {
+        watts([1.0, 1.0])
+    }
+
+    /// Noise of two channels.
+    fn watts(sigma_w: [f64; 2]) -> Noise {
         let average = |i: u8| crate::Average {
             channel: usize::from(i % 2),
             run: 0,
@@ -200,7 +206,8 @@ mod tests {
         };
         let averages: Vec<crate::Average> = (0..40).map(average).collect();
         // The median size of what is normal is 0.6745 of its width.
-        let errors: Vec<f64> = (0..40).map(|i| if i % 4 < 2 { 0.6745 } else { -0.6745 }).collect();
+        let sign = |i: usize| if i % 4 < 2 { 0.6745 } else { -0.6745 };
+        let errors: Vec<f64> = (0..40).map(|i| sign(i) * sigma_w[i % 2]).collect();
         Noise::of(&errors, &[10.0; 40], &averages, &[true; 40])
     }
 
@@ -210,6 +217,21 @@ mod tests {
         let said = next_drive(&load, &[fan], &one_watt(), "marble", false).unwrap_or_default();
         assert!(said.contains("uphill") || said.contains("spin"), "{said}");
         assert!(said.contains("payload") && said.contains("hotel_load"), "{said}");
+    }
+
+    #[test]
+    fn of_the_power_of_a_battery_the_scatter_of_another_channel_says_nothing() {
+        let (load, fan) = (explanation("payload", vec![10.0]), explanation("hotel_load", vec![5.0]));
+        let said = |by_side: bool| {
+            next_drive(&load, std::slice::from_ref(&fan), &watts([1.0, 1e-3]), "marble", by_side)
+                .unwrap_or_default()
+        };
+        let times = |said: &str| {
+            let words: Vec<&str> = said.split(' ').collect();
+            let at = words.iter().position(|word| *word == "times").unwrap();
+            words[at - 1].parse::<f64>().unwrap()
+        };
+        assert!(times(&said(false)) < 1e3 && times(&said(true)) > 1e3, "{} {}", said(false), said(true));
     }
 
     #[test]

@@ -47,7 +47,8 @@ impl Stretch {
     pub(crate) fn words(&self, series: &Series) -> String {
         let power = if series.channels() == 2 { of_side(self.by_side_w2) } else { "power" };
         let off_w = (self.squares_w2 / self.count.max(1.0)).sqrt();
-        format!("{} {power} was off by {off_w:.0} W, root mean square", self.when(series))
+        let digits = if off_w < 10.0 { 1 } else { 0 };
+        format!("{} {power} was off by {off_w:.digits$} W, root mean square", self.when(series))
     }
 
     /// It as a place, with its share of squared errors beyond noise.

@@ -35,6 +35,7 @@ mod room;
 mod stream;
 mod suspicion;
 mod table;
+mod thinned;
 mod topic;
 mod units;
 mod walk;

@@ -38,7 +38,7 @@ impl Mechanism for PowerOffset {
         };
         let [offset_w, battery_w] = [values[0], (1.0 + values[1]) * values[0]];
         match values[1] {
-            more if more.abs() < ALIKE => format!("each power meter {}", told(offset_w)),
+            more if more.abs() < ALIKE => format!("every power meter {}", told(offset_w)),
             more if more + 1.0 < ALIKE => {
                 format!("the power meter of each side {}, and the battery's is right", told(offset_w))
             }
@@ -69,7 +69,7 @@ mod tests {
             let values = [-2.0, battery_more];
             (PowerOffset.battery_reading_w(&values, 50.0), PowerOffset.statement(&values))
         };
-        assert_eq!(told(0.0), (48.0, "each power meter reads 2.0 W too little".to_owned()));
+        assert_eq!(told(0.0), (48.0, "every power meter reads 2.0 W too little".to_owned()));
         let side = "the power meter of each side reads 2.0 W too little, and the battery's";
         assert_eq!(told(-1.0), (50.0, format!("{side} is right")));
         assert_eq!(told(1.0), (46.0, format!("{side} reads 4.0 W too little")));
