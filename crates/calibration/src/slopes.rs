@@ -188,7 +188,7 @@ mod tests {
             let level_rad = off_rad(&rows, &pitch_rad);
             fill(&builtin::husky_a200(), &mut rows, &heights_m);
             let off = off_rad(&rows, &pitch_rad);
-            assert!(off < most_rad && level_rad > 0.05, "{speed_mps} {noise_m}: {off} of {level_rad}");
+            assert!(off < most_rad && level_rad > 0.04, "{speed_mps} {noise_m}: {off} of {level_rad}");
         }
     }
 

@@ -22,7 +22,7 @@ const FAR: f64 = 3.0;
 const ALIKE: f64 = 2.0;
 
 /// Share of stretches that are far off in which power is off one way.
-const ONE_WAY: f64 = 0.9;
+const ONE_WAY: f64 = 0.8;
 
 /// Stretches that are told one by one.
 const TOLD: usize = 5;

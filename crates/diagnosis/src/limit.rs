@@ -8,12 +8,15 @@ use crate::{
     series::{Applied, Series},
 };
 
+/// Share from which what has fallen to its least has mostly gone.
+const GONE: f64 = -0.5;
+
 /// Whether a mechanism has a value at its limit. A share that has fallen to its least, such as of power returned, is gone, which may be.
 pub(crate) fn is_reached(applied: &Applied, robot: &Robot) -> bool {
     let is_at_limit = |(parameter, value): (usize, &f64)| {
         let [low, high] = applied.mechanism.bounds(robot, parameter);
-        let is_share = applied.mechanism.parameters()[parameter].unit == "1";
-        *value != 0.0 && (*value == high || *value == low && !is_share)
+        let is_gone = applied.mechanism.parameters()[parameter].unit == "1" && low <= GONE;
+        *value != 0.0 && (*value == high || *value == low && !is_gone)
     };
     applied.values.iter().enumerate().any(is_at_limit)
 }
@@ -95,6 +98,7 @@ mod tests {
         );
         assert!(!is_reached("load_transfer", &[2.9]) && !is_reached("soft_soil", &[0.0]));
         assert!(!is_reached("regeneration", &[-1.0]), "nothing is returned");
+        assert!(is_reached("wheel_slip", &[-0.02, 0.0]), "no robot goes farther than its wheels");
         assert!(!is_reached("surface_change", &[0.2, -0.9]) && is_reached("surface_change", &[10.0, 0.0]));
     }
 }

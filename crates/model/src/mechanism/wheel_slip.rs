@@ -10,6 +10,10 @@ use crate::mechanism::{Kind, Mechanism, Moment, Parameter};
 /// more than its wheels would have it is on ground that holds it less: on ice wheels that hardly skid hardly slip.
 pub(super) struct WheelSlip;
 
+/// Most by which a robot may move farther than its wheels turn: slip that healthy drives had and others have not, and radii that are off. What
+/// drives itself cannot do more; with half a length more, a mass ahead of the middle passed for wheels that carry a robot 11 % farther.
+const MOST_FARTHER: f64 = 0.02;
+
 /// Below this a share is not worth a word.
 const WORTH_A_WORD: f64 = 5e-4;
 
@@ -24,7 +28,7 @@ impl Mechanism for WheelSlip {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[
-            Parameter { name: "slip", unit: "1", bounds: [-0.5, 0.9], probe: 0.02 },
+            Parameter { name: "slip", unit: "1", bounds: [-MOST_FARTHER, 0.9], probe: 0.02 },
             Parameter { name: "turning", unit: "1", bounds: [0.0, 0.9], probe: 0.02 },
         ]
     }
