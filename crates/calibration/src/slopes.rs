@@ -11,8 +11,8 @@ use crate::row::Row;
 
 /// Half lengths of the way that a plane may be laid through, the shortest first [m].
 const REACHES_M: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
-/// One sigma of slopes by which a reach is long enough [rad]: of a weight it is a twentieth of what rolling takes.
-const ENOUGH_RAD: f64 = 0.0025;
+/// One sigma of slopes by which a reach is long enough [rad]: of a weight it is a fortieth of what rolling takes.
+const ENOUGH_RAD: f64 = 0.0012;
 /// One sigma of the slopes of ground that wheels can drive on [rad]; where the way tells none, the ground is level.
 const USUAL_RAD: f64 = 0.15;
 /// Longest part of a drive that a plane is laid through, before and behind [s].

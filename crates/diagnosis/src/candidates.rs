@@ -295,8 +295,9 @@ pub(crate) fn grids(mechanism: &'static dyn mechanism::Mechanism) -> Vec<(Vec<f6
         ],
         // What spins carries the robot less far and turns it less; what gives way under pull shows in turns, where wheels pull hardest.
         "wheel_slip" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1]), (vec![0.0; 2], vec![0, 1])],
-        // Meters of the sides that are off leave open what the battery's does: as each of them, as both, or nothing.
-        "power_offset" => [0.0, 1.0, -1.0].map(|more| (vec![0.0, more], vec![0])).into(),
+        // Where meters of the sides are off, the battery's is off as each of them or right. If it were off by their sum, they would be right as
+        // well, and drivers lose so much: of a loss at low duty it was the wrong name.
+        "power_offset" => [0.0, -1.0].map(|more| (vec![0.0, more], vec![0])).into(),
         // One side drags; what holds both back alike is the ground.
         "drivetrain_drag" => vec![(vec![0.0; 2], vec![0]), (vec![0.0; 2], vec![1])],
         _ => {

@@ -7,8 +7,8 @@ const ALIKE: f64 = 0.1;
 
 /// A power meter whose zero is off.
 ///
-/// What is recorded of the battery comes from a meter of its own, which is off as each side's is (m = 0) or right (m = -1), or it is the sum of
-/// what was metered of the sides and the rest (m = 1).
+/// What is recorded of the battery comes from a meter of its own, which is off as each side's is (m = 0) or right (m = -1), or by as much as
+/// both sides' together (m = 1).
 pub(super) struct PowerOffset;
 
 impl Mechanism for PowerOffset {
