@@ -59,7 +59,7 @@ fn seldom(found: &Diagnosis, event: &Event) -> String {
 fn again(found: &Diagnosis, event: &Event, [far, all]: [usize; 2]) -> String {
     format!(
         "Something is missing that comes again and again, and nothing that was recorded tells when: in {far} of {all} stretches of \
-         {BLOCK_S:.0} s power is further off than in healthy drives, most where {}, where {:.1} W are noise.",
+         {BLOCK_S:.0} s power is further off than in healthy drives. Most of all, {}, where {:.1} W are noise.",
         event.words, found.baseline.noise_floor_w
     )
 }
