@@ -43,7 +43,7 @@ struct Steady {
 /// one radius only.
 pub fn calibrate(robot: &Robot, recording: &Recording) -> Result<Calibration, Error> {
     const METHOD: &str = "the method dogru-marques";
-    let drives = Drives::new(robot, recording)?;
+    let drives = Drives::new(robot, &recording.thinned())?;
     if drives.form != Some(PowerForm::Sides) {
         return Err(Error::Needs { method: METHOD, needs: "power_left_w and power_right_w" });
     }
