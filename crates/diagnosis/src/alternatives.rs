@@ -127,6 +127,7 @@ fn least_size(
                 values: vec![1.0],
                 wald: 1.0 / evidence.covariance[(0, 0)],
                 discord: 1.0,
+                lasting: 1.0,
                 ..evidence
             };
             judged(&one, mechanism.name(), null, system.blocks())

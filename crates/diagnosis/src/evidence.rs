@@ -2,6 +2,7 @@
 
 mod beyond;
 mod held_out;
+mod lasting;
 
 use std::sync::Arc;
 
@@ -66,6 +67,10 @@ pub(crate) struct Evidence {
     /// Scatter of its size from regime to regime, over what chance makes of it, squared; 1 where they agree (Birge, Phys. Rev. 40,
     /// 1932).
     pub(crate) discord: f64,
+    /// Variance of its values, over that of blocks whose errors do not hang together.
+    pub(crate) lasting: f64,
+    /// Among how many blocks what it explains is spread.
+    pub(crate) spread: f64,
 }
 
 impl System {
@@ -174,8 +179,17 @@ impl System {
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| robust[(i, j)] * stretch[i] * stretch[j]);
         let wald = (values.transpose() * covariance.clone().try_inverse()? * &values)[(0, 0)];
         let rows = ((&self.block[..], self.blocks), (&self.regime[..], Regime::COUNT));
-        let discord = regime::discord(rows.0, rows.1, &(&own * &values), &after);
-        Some(Evidence { values: values.iter().copied().collect(), covariance, wald, explained, own, discord })
+        let effect = &own * &values;
+        let discord = regime::discord(rows.0, rows.1, &effect, &after);
+        let by_block = |other: &DVector<f64>| {
+            let mut sums = vec![0.0; self.blocks];
+            self.block.iter().enumerate().for_each(|(i, block)| sums[*block] += effect[i] * other[i]);
+            sums
+        };
+        let lasting = lasting::lasting(&by_block(&after));
+        let spread = lasting::spread(&by_block(&effect));
+        let values = values.iter().copied().collect();
+        Some(Evidence { values, covariance, wald, explained, own, discord, lasting, spread })
     }
 
     /// How far the size of what is in the fit already scatters from regime to regime on climbs, descents and level ground.

@@ -108,8 +108,16 @@ mod tests {
         let mechanism = mechanism::by_name(name).unwrap();
         let applied = Applied { mechanism, values: vec![0.0], span: Span::EachDrive(from_s) };
         let (covariance, own) = (DMatrix::identity(1, 1), DMatrix::zeros(0, 1));
-        let evidence =
-            Evidence { values: vec![1.0], covariance, wald: 1.0, explained: 1.0, own, discord: 1.0 };
+        let evidence = Evidence {
+            values: vec![1.0],
+            covariance,
+            wald: 1.0,
+            explained: 1.0,
+            own,
+            discord: 1.0,
+            lasting: 1.0,
+            spread: 100.0,
+        };
         Weighed {
             candidate: Candidate { applied, linear: vec![0], columns: Vec::new() },
             evidence,

@@ -271,7 +271,16 @@ mod tests {
         let candidate = Candidate { applied, linear: vec![0], columns: Vec::new() };
         let own = DMatrix::from_columns(&[own]);
         let (values, covariance) = (vec![1.0], DMatrix::identity(1, 1));
-        let evidence = Evidence { values, covariance, wald: 1.0, explained: 1.0, own, discord: 1.0 };
+        let evidence = Evidence {
+            values,
+            covariance,
+            wald: 1.0,
+            explained: 1.0,
+            own,
+            discord: 1.0,
+            lasting: 1.0,
+            spread: 100.0,
+        };
         let weighed =
             Weighed { candidate, evidence, tried: 1, score: 0.0, rank: 0.0, p_value: 0.0, is_strong: true };
         Open { weighed, forms }

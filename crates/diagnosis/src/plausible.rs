@@ -56,6 +56,8 @@ mod tests {
             explained: 0.0,
             own: DMatrix::zeros(0, 1),
             discord: 1.0,
+            lasting: 1.0,
+            spread: 100.0,
         };
         is_plausible(&builtin::husky_a200(), &candidate, &evidence, 0.1)
     }

@@ -200,15 +200,16 @@ impl<'a> Scales<'a> {
 /// Changes of power beyond this share of it are not what a model misses of a robot in order.
 const STRONG: f64 = 0.05;
 
-/// Evidence beyond what models miss of healthy drives, and the chance of as much.
+/// Evidence beyond what models miss of healthy drives, and the chance of as much: few blocks tell how far they scatter but roughly
+/// (Bell and McCaffrey, Survey Methodology 28, 2002).
 pub(crate) fn judged(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<(f64, f64)> {
     let parameters = evidence.values.len();
-    let freedom = (blocks as f64 - parameters as f64 - 1.0).max(2.0);
+    let freedom = f64::min(blocks as f64 - parameters as f64 - 1.0, evidence.spread).max(2.0);
     let wald = match null.variance(name, parameters) {
         Some(misfit_variance) => beyond(evidence, misfit_variance)?,
         None => evidence.wald / null.discount(name, blocks),
     };
-    let (wald, count) = (wald / evidence.discord, parameters as f64);
+    let (wald, count) = (wald / (evidence.discord * evidence.lasting), parameters as f64);
     Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
 }
 

@@ -1,0 +1,46 @@
+//! How far few or neighbouring blocks stand for many that are apart.
+
+/// Blocks over which errors may hang together: an inclinometer that wanders does over a minute.
+const BLOCKS: usize = 4;
+
+/// Variance of a sum over blocks, over that of as many that do not hang together; 1 where they do not, or speak against each other (Newey
+/// and West, Econometrica 55, 1987). `scores` are products of what is explained and what is left, block by block.
+pub(super) fn lasting(scores: &[f64]) -> f64 {
+    let lagged = |lag: usize| -> f64 {
+        let later = scores.get(lag..).unwrap_or_default();
+        scores.iter().zip(later).map(|(one, other)| one * other).sum()
+    };
+    let weight = |lag: usize| 2.0 * (1.0 - lag as f64 / (BLOCKS + 1) as f64);
+    let together: f64 = (1..=BLOCKS).map(|lag| weight(lag) * lagged(lag)).sum();
+    (1.0 + together / lagged(0).max(1e-300)).max(1.0)
+}
+
+/// Among how many blocks what is explained is spread: as many as there are if each has as much of it, one if one holds all.
+pub(super) fn spread(squares: &[f64]) -> f64 {
+    let of_squares: f64 = squares.iter().map(|square| square * square).sum();
+    squares.iter().sum::<f64>().powi(2) / of_squares.max(1e-300)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_that_hang_together_count_as_fewer() {
+        let alternating: Vec<f64> = (0..60).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert_eq!(lasting(&alternating), 1.0);
+        // Runs of six: of neighbours 4/6 more are alike than not, of second ones 2/6, of third none, of fourth -2/6.
+        let lasting_for_six: Vec<f64> = (0..600).map(|i| if i / 6 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let expected = 1.0 + 2.0 * (0.8 * 4.0 + 0.6 * 2.0 - 0.2 * 2.0) / 6.0;
+        assert!((lasting(&lasting_for_six) - expected).abs() < 0.05, "{}", lasting(&lasting_for_six));
+        assert_eq!(lasting(&[]), 1.0);
+        assert_eq!(lasting(&[2.0, 2.0]), 1.8);
+    }
+
+    #[test]
+    fn what_few_blocks_hold_is_spread_among_few() {
+        assert_eq!(spread(&[3.0; 40]), 40.0);
+        assert!((spread(&[1.0, 1.0, 1.0, 1e-9, 0.0]) - 3.0).abs() < 1e-6);
+        assert_eq!(spread(&[]), 0.0);
+    }
+}
