@@ -1,6 +1,6 @@
 //! Robots that are smaller and larger than a Husky, and recordings that are not as clean as a good robot's.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod worlds;
 
@@ -191,4 +191,24 @@ fn heights_stand_in_for_a_pitch_that_was_not_recorded() {
     let [without_w, with_w] = [&blind, &found].map(|found| found.corrected.held_out_rmse_w);
     assert!(without_w > 1.2 * with_w, "{without_w} {with_w}: {}", blind.sentence);
     assert!(blind.notes.iter().any(|note| note.contains("level")), "{:?}", blind.notes);
+}
+
+#[test]
+fn what_sets_in_is_told_by_the_battery_s_power_alone_and_without_healthy_drives() {
+    let husky = model::builtin::husky_a200();
+    for (effect, strength, mechanism, parameter) in [
+        (EffectName::SurfaceChange, 0.3, "surface_change", "roll_change"),
+        (EffectName::HotelLoad, 15.0, "hotel_load", "power_w"),
+    ] {
+        let effect = Effect { onset_s: 300.0, ..Effect::new(effect, strength) };
+        let mut drives = drive_of(&husky, &Drive::new(DriveKind::Rich, 600.0, 32), vec![effect]);
+        for side in [Channel::LeftPower, Channel::RightPower] {
+            assert!(drives.channels.remove(&side).is_some());
+        }
+        let found = said(&husky, &drives, None);
+        let size = value(&found, mechanism, parameter).unwrap_or_else(|| panic!("{}", found.sentence));
+        assert!((size / strength - 1.0).abs() < 0.15, "{}", found.sentence);
+        let from_s = value(&found, mechanism, "from_s").unwrap();
+        assert!((from_s - 300.0).abs() < 15.0, "{from_s}: {}", found.sentence);
+    }
 }

@@ -130,7 +130,7 @@ fn least_size(
                 lasting: 1.0,
                 ..evidence
             };
-            judged(&one, mechanism.name(), null, system.blocks())
+            judged(&one, mechanism.name(), null, (system.blocks(), system.blocks() as f64))
         });
         if let Some((wald, _)) = of_one {
             least = least.min(NOTICED_SIGMAS / wald.sqrt());

@@ -84,7 +84,7 @@ const fn about(symbol: &'static str, words: &'static str, value: fn(&Average, f6
 /// heading, t time since the drive began or it set in, s since the robot stood still, h way driven of
 /// which less and less counts the longer ago it was, z height, α the angle that the side's wheels have turned, all as
 /// recorded.
-pub(crate) static GROUPS: [Group; 40] = [
+pub(crate) static GROUPS: [Group; 41] = [
     group("|sin θ|", "the slope along the way, up or down", PITCH, |a, _| a.input.pitch_rad.sin().abs()),
     group("(sin θ)₊", "climbing", PITCH, |a, _| a.input.pitch_rad.sin().max(0.0)),
     group("(−sin θ)₊", "descending", PITCH, |a, _| (-a.input.pitch_rad.sin()).max(0.0)),
@@ -105,6 +105,9 @@ pub(crate) static GROUPS: [Group; 40] = [
     }),
     group("tanh(v/0.05 u_max)", "driving forwards, and less backwards", FORWARDS, |a, fastest| {
         (a.input.speed_mps / (0.05 * fastest)).tanh()
+    }),
+    group("tanh((−v)₊/0.05 u_max)", "driving backwards", FORWARDS, |a, fastest| {
+        ((-a.input.speed_mps).max(0.0) / (0.05 * fastest)).tanh()
     }),
     group("|Δ|/u_max", "turning", TURN, |a, fastest| a.input.difference_mps.abs() / fastest),
     group("(Δ)₊/u_max", "turning left", TURN, |a, fastest| a.input.difference_mps.max(0.0) / fastest),

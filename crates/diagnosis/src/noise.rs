@@ -1,5 +1,7 @@
 //! How far averages scatter about a model that is right, and how they hang together in time.
 
+use std::collections::HashMap;
+
 use crate::average::{Average, Input};
 
 /// Scatter of each channel.
@@ -39,14 +41,15 @@ impl Noise {
     /// Measures the noise of errors about predictions, channel by channel, on averages that are trusted.
     ///
     /// Others scatter as much, or more where they change more from one second to the next: their errors themselves may be what
-    /// is looked for.
+    /// is looked for. Of drives under suspicion that have to be trusted, so may be what lasts, so that it counts as no noise.
     pub(crate) fn of(errors: &[f64], predicted: &[f64], averages: &[Average], trusted: &[bool]) -> Self {
         let count = averages.iter().map(|a| a.channel + 1).max().unwrap_or(0);
         let of_channel =
             |channel: usize| (0..averages.len()).filter(move |i| averages[*i].channel == channel);
+        let passing = passing(errors, averages);
         let scatter = |channel: usize| {
             let places: Vec<usize> = of_channel(channel).filter(|i| trusted[*i]).collect();
-            Scatter::of(errors, predicted, averages, places)
+            Scatter::of(&passing, predicted, averages, places)
         };
         let channels: Vec<Scatter> = (0..count).map(scatter).collect();
         let jumps = |channel: usize, of_trusted: bool| {
@@ -190,6 +193,25 @@ fn not_negative<const N: usize>(rows: impl Iterator<Item = ([f64; N], f64, f64)>
         }
     }
     found
+}
+
+/// Length of stretches whose mean is what lasts [s]: several times as long as what sensors and models miss hangs together.
+const LASTING_S: f64 = 120.0;
+
+/// Errors, those of drives under suspicion less their means over long stretches.
+fn passing(errors: &[f64], averages: &[Average]) -> Vec<f64> {
+    let stretch = |a: &Average| (a.channel, a.run, (a.t_s / LASTING_S) as usize);
+    let mut sums: HashMap<(usize, usize, usize), (f64, f64)> = HashMap::new();
+    for (error, average) in errors.iter().zip(averages) {
+        let (sum, count) = sums.entry(stretch(average)).or_default();
+        *sum += error;
+        *count += 1.0;
+    }
+    let less_mean = |(error, average): (&f64, &Average)| {
+        let (sum, count) = sums[&stretch(average)];
+        if average.suspect { error - sum / count } else { *error }
+    };
+    errors.iter().zip(averages).map(less_mean).collect()
 }
 
 /// Whether an average comes right after the one before it.

@@ -167,7 +167,8 @@ impl<'a> Scales<'a> {
             return None;
         }
         let blocks = self.all_fitted.blocks();
-        let (wald, chance) = judged(&evidence, name(&candidate), self.null, blocks)?;
+        let speaking = speaking(&evidence, candidate.applied.span, blocks);
+        let (wald, chance) = judged(&evidence, name(&candidate), self.null, (blocks, speaking))?;
         let cost = candidate.numbers() as f64 * (blocks as f64).ln();
         let rank = evidence.explained / self.null.common_discount(blocks) - cost;
         let tried = self.tried.get(name(&candidate)).copied().unwrap_or_default();
@@ -200,11 +201,24 @@ impl<'a> Scales<'a> {
 /// Changes of power beyond this share of it are not what a model misses of a robot in order.
 const STRONG: f64 = 0.05;
 
-/// Evidence beyond what models miss of healthy drives, and the chance of as much: few blocks tell how far they scatter but roughly
-/// (Bell and McCaffrey, Survey Methodology 28, 2002).
-pub(crate) fn judged(evidence: &Evidence, name: &str, null: &Null, blocks: usize) -> Option<(f64, f64)> {
+/// How many blocks tell how far evidence scatters: of what acts in a part of the drives those among which it is spread, as few tell it but
+/// roughly (Bell and McCaffrey, Survey Methodology 28, 2002), and the part that looks best is one of many.
+pub(crate) fn speaking(evidence: &Evidence, span: Span, blocks: usize) -> f64 {
+    if span.is_all() { blocks as f64 } else { evidence.spread.max(LEAST_SPEAKING).min(blocks as f64) }
+}
+
+/// Blocks that speak at least: a brake that binds for half a minute is in two, ten times as far off as any other, and all others tell that.
+const LEAST_SPEAKING: f64 = 10.0;
+
+/// Evidence beyond what models miss of healthy drives, of which so many blocks speak, and the chance of as much.
+pub(crate) fn judged(
+    evidence: &Evidence,
+    name: &str,
+    null: &Null,
+    (blocks, speaking): (usize, f64),
+) -> Option<(f64, f64)> {
     let parameters = evidence.values.len();
-    let freedom = f64::min(blocks as f64 - parameters as f64 - 1.0, evidence.spread).max(2.0);
+    let freedom = (speaking - parameters as f64 - 1.0).max(2.0);
     let wald = match null.variance(name, parameters) {
         Some(misfit_variance) => beyond(evidence, misfit_variance)?,
         None => evidence.wald / null.discount(name, blocks),
@@ -243,5 +257,34 @@ mod tests {
         assert_eq!(shares[0], shares[1]);
         assert_eq!(shares[0], [0.125, 0.125]);
         assert_eq!(shares[2], [0.25, 0.0]);
+    }
+
+    #[test]
+    fn few_blocks_of_a_part_of_the_drives_tell_less_than_as_much_all_the_time() {
+        let evidence = Evidence {
+            values: vec![5.0],
+            covariance: DMatrix::identity(1, 1),
+            wald: 25.0,
+            explained: 25.0,
+            own: DMatrix::zeros(0, 1),
+            discord: 1.0,
+            lasting: 1.0,
+            spread: 10.0,
+        };
+        let chance = |evidence: &Evidence, span: Span| {
+            let speaking = speaking(evidence, span, 100);
+            judged(evidence, "payload", &Null::default(), (100, speaking)).unwrap().1
+        };
+        // Tables of F(1, 98) and F(1, 8).
+        assert!(
+            (chance(&evidence, Span::ALL) / 2.5e-6 - 1.0).abs() < 0.1,
+            "{}",
+            chance(&evidence, Span::ALL)
+        );
+        let in_part = Span::EachDrive(300.0);
+        assert!((chance(&evidence, in_part) / 1.05e-3 - 1.0).abs() < 0.1, "{}", chance(&evidence, in_part));
+        // Errors that hang together are so much less evidence.
+        let lasting = Evidence { lasting: 2.0, ..evidence };
+        assert!(chance(&lasting, Span::ALL) > 1e-4);
     }
 }

@@ -74,9 +74,14 @@ fn verdict(found: &Diagnosis, is_refused: bool) -> String {
     let said = said(&found.findings);
     match found.verdict {
         Verdict::Consistent => format!(
-            "Nothing is missing: where it was not fitted, the model is off by {:.1} W, and what is left follows nothing that was \
-             recorded.",
-            found.corrected.held_out_rmse_w
+            "Nothing is missing: where it was not fitted, the model is off by {:.1} W, of which {:.1} W are noise, and {}.",
+            found.corrected.held_out_rmse_w,
+            found.baseline.noise_floor_w,
+            if left < LITTLE_LEFT {
+                "what is left follows nothing that was recorded"
+            } else {
+                "what is left follows what was recorded no more than models usually miss"
+            }
         ),
         Verdict::Explained | Verdict::Ambiguous => format!("{said}."),
         Verdict::Unexplained if found.findings.iter().any(|f| f.mechanism == UNKNOWN) => {
