@@ -13,7 +13,7 @@ use crate::{
     series::{Applied, Series},
     span::Span,
     visits,
-    weigh::{Weighed, blocks, judged, system, system_in_place, system_with, undelayed},
+    weigh::{Weighed, blocks, judged, speaking, system, system_in_place, system_with, undelayed},
 };
 
 /// A candidate is taken up only if chance would make one of all that are tried look as good in one of a hundred drives.
@@ -153,7 +153,8 @@ fn is_seen_in(system: &System, series: &Series, base: &Baseline, one: &Weighed, 
     let columns: Vec<Vec<f64>> = one.candidate.columns.iter().map(|c| white.of(c)).collect();
     let Some(evidence) = system.weigh(&columns) else { return false };
     let cost = one.candidate.numbers() as f64 * (system.blocks() as f64).ln();
-    judged(&evidence, one.name(), null, system.blocks())
+    let speaking = speaking(&evidence, one.candidate.applied.span, system.blocks());
+    judged(&evidence, one.name(), null, (system.blocks(), speaking))
         .is_some_and(|(wald, chance)| chance * f64::from(one.tried) < LEVEL && wald > cost)
 }
 
