@@ -16,7 +16,7 @@ use crate::{
     refused::Refused,
     series::{Applied, Series},
     term::{self, Scale, Term},
-    weigh::{judged, system_with},
+    weigh::{judged, speaking, system_with},
     widths::NORMAL_975,
 };
 
@@ -205,9 +205,11 @@ impl<'a> Beside<'a> {
 
     fn judged<'b>(&self, evidence: Evidence, (rank, term): (f64, &'b Term)) -> Option<Told<'b>> {
         let blocks = self.system.blocks();
-        // Terms are of a form that was not chosen for it: what they leave hangs together, and is no reason to doubt that something acts.
-        let of_form = Evidence { lasting: 1.0, ..evidence.clone() };
-        let (wald, chance) = judged(&of_form, UNKNOWN, self.null, (blocks, blocks as f64))?;
+        // What a term that always acts leaves hangs together by its form, which was not chosen for it, and is no reason to doubt it.
+        let lasting = if term.span.is_all() { 1.0 } else { evidence.lasting };
+        let evidence = Evidence { lasting, ..evidence };
+        let speaking = speaking(&evidence, term.span, blocks);
+        let (wald, chance) = judged(&evidence, UNKNOWN, self.null, (blocks, speaking))?;
         let score = wald - term.choices() as f64 * (blocks as f64).ln();
         let p_value = (chance * self.choices.correction(term)).min(1.0);
         (score > 0.0 && p_value <= LEVEL).then_some(Told { term, evidence, score, rank, p_value })
