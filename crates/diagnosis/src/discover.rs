@@ -76,8 +76,8 @@ pub(crate) fn discover(
         // What spectra show comes first, and other terms beside it.
         let is_tried = |term: &&Term| series.turning.is_none() || !found.is_empty() || term.is_turn();
         let tried: Vec<&Term> = terms.iter().filter(is_tried).collect();
-        let level = if found.is_empty() && series.turning.is_none() { first.level() } else { LEVEL };
-        let beside = Beside::new(series, base, null, &taken, (Choices::of(&terms), level));
+        let sure = if found.is_empty() && series.turning.is_none() { first } else { Sure::AsUsual };
+        let beside = Beside::new(series, base, null, &taken, (Choices::of(&terms), sure));
         let Some(next) = beside.strongest(&tried) else { break };
         found.push(next);
     }
@@ -97,8 +97,8 @@ struct Beside<'a> {
     white: Whitening,
     /// Among how many terms one is chosen.
     choices: Choices,
-    /// Largest chance that passes at last.
-    level: f64,
+    /// How sure what passes has to be at last.
+    sure: Sure,
 }
 
 /// How many terms are tried that go with one quantity at most and always act, and how many others.
@@ -141,10 +141,10 @@ impl<'a> Beside<'a> {
         base: &'a Baseline,
         null: &'a Null,
         taken: &[Vec<f64>],
-        (choices, level): (Choices, f64),
+        (choices, sure): (Choices, Sure),
     ) -> Self {
         let (system, white) = (system_with(series, base, taken), base.whitening(series));
-        Beside { series, base, null, system, white, choices, level }
+        Beside { series, base, null, system, white, choices, sure }
     }
 
     /// What passes every gate and explains most, if what passes is sure enough.
@@ -156,7 +156,7 @@ impl<'a> Beside<'a> {
         let surest =
             told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
         let surer = if surest.term.is_of_heading() { OF_HEADING } else { 1.0 };
-        if surest.p_value > self.level / surer {
+        if surest.p_value > self.sure.level() / surer {
             return None;
         }
         let (mut best, mut held_out_gain) = self.closest(told)?;
@@ -205,10 +205,11 @@ impl<'a> Beside<'a> {
 
     fn judged<'b>(&self, evidence: Evidence, (rank, term): (f64, &'b Term)) -> Option<Told<'b>> {
         let blocks = self.system.blocks();
-        // What a term that always acts leaves hangs together by its form, which was not chosen for it, and is no reason to doubt it.
-        let lasting = if term.span.is_all() { 1.0 } else { evidence.lasting };
+        // What a term leaves hangs together by its form, which was not chosen for it, and is no reason to doubt it where much is left.
+        let is_doubtful = self.sure == Sure::Very && !term.span.is_all();
+        let lasting = if is_doubtful { evidence.lasting } else { 1.0 };
+        let speaking = if is_doubtful { speaking(&evidence, term.span, blocks) } else { blocks as f64 };
         let evidence = Evidence { lasting, ..evidence };
-        let speaking = speaking(&evidence, term.span, blocks);
         let (wald, chance) = judged(&evidence, UNKNOWN, self.null, (blocks, speaking))?;
         let score = wald - term.choices() as f64 * (blocks as f64).ln();
         let p_value = (chance * self.choices.correction(term)).min(1.0);
