@@ -208,7 +208,7 @@ pub(crate) fn speaking(evidence: &Evidence, span: Span, blocks: usize) -> f64 {
 }
 
 /// Blocks that speak at least: a brake that binds for half a minute is in two, ten times as far off as any other, and all others tell that.
-const LEAST_SPEAKING: f64 = 10.0;
+const LEAST_SPEAKING: f64 = 20.0;
 
 /// Evidence beyond what models miss of healthy drives, of which so many blocks speak, and the chance of as much.
 pub(crate) fn judged(
@@ -269,20 +269,20 @@ mod tests {
             own: DMatrix::zeros(0, 1),
             discord: 1.0,
             lasting: 1.0,
-            spread: 10.0,
+            spread: 20.0,
         };
         let chance = |evidence: &Evidence, span: Span| {
             let speaking = speaking(evidence, span, 100);
             judged(evidence, "payload", &Null::default(), (100, speaking)).unwrap().1
         };
-        // Tables of F(1, 98) and F(1, 8).
+        // Tables of F(1, 98) and F(1, 18).
         assert!(
             (chance(&evidence, Span::ALL) / 2.5e-6 - 1.0).abs() < 0.1,
             "{}",
             chance(&evidence, Span::ALL)
         );
         let in_part = Span::EachDrive(300.0);
-        assert!((chance(&evidence, in_part) / 1.05e-3 - 1.0).abs() < 0.1, "{}", chance(&evidence, in_part));
+        assert!((chance(&evidence, in_part) / 9.3e-5 - 1.0).abs() < 0.1, "{}", chance(&evidence, in_part));
         // Errors that hang together are so much less evidence.
         let lasting = Evidence { lasting: 2.0, ..evidence };
         assert!(chance(&lasting, Span::ALL) > 1e-4);
