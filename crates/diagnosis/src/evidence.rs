@@ -6,6 +6,7 @@ mod lasting;
 
 use std::sync::Arc;
 
+pub(crate) use lasting::spread;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
@@ -71,6 +72,24 @@ pub(crate) struct Evidence {
     pub(crate) lasting: f64,
     /// Among how many blocks what it explains is spread.
     pub(crate) spread: f64,
+}
+
+#[cfg(test)]
+impl Evidence {
+    /// Of one number, spread over many blocks that agree; `own` are the sensitivities that nothing else explains.
+    pub(crate) fn of_one(value: f64, variance: f64, own: DMatrix<f64>) -> Self {
+        let wald = value * value / variance;
+        Evidence {
+            values: vec![value],
+            covariance: DMatrix::from_element(1, 1, variance),
+            wald,
+            explained: wald,
+            own,
+            discord: 1.0,
+            lasting: 1.0,
+            spread: 100.0,
+        }
+    }
 }
 
 impl System {
@@ -187,7 +206,7 @@ impl System {
             sums
         };
         let lasting = lasting::lasting(&by_block(&after));
-        let spread = lasting::spread(&by_block(&effect));
+        let spread = spread(&by_block(&effect));
         let values = values.iter().copied().collect();
         Some(Evidence { values, covariance, wald, explained, own, discord, lasting, spread })
     }

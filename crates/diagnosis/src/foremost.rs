@@ -107,20 +107,9 @@ mod tests {
     fn weighed(name: &str, from_s: f64, score: f64, rank: f64) -> Weighed {
         let mechanism = mechanism::by_name(name).unwrap();
         let applied = Applied { mechanism, values: vec![0.0], span: Span::EachDrive(from_s) };
-        let (covariance, own) = (DMatrix::identity(1, 1), DMatrix::zeros(0, 1));
-        let evidence = Evidence {
-            values: vec![1.0],
-            covariance,
-            wald: 1.0,
-            explained: 1.0,
-            own,
-            discord: 1.0,
-            lasting: 1.0,
-            spread: 100.0,
-        };
         Weighed {
             candidate: Candidate { applied, linear: vec![0], columns: Vec::new() },
-            evidence,
+            evidence: Evidence::of_one(1.0, 1.0, DMatrix::zeros(0, 1)),
             tried: 1,
             score,
             rank,

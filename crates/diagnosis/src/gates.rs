@@ -6,7 +6,7 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates,
-    evidence::{Evidence, System},
+    evidence::{self, Evidence, System},
     foremost::Foremost,
     manner,
     null::Null,
@@ -194,12 +194,8 @@ fn acting(system: &System, series: &Series, one: &Evidence) -> Vec<bool> {
 /// much in each, one if one holds nearly all. It is no more spread than what it does is before the fit takes its part, as what little a fit
 /// leaves of a single block lies all over.
 pub(crate) fn spread(system: &System, series: &Series, one: &Evidence, column: &[f64]) -> f64 {
-    let over = |size: Vec<f64>| {
-        let squares: f64 = size.iter().map(|size| size * size).sum();
-        size.iter().sum::<f64>().powi(2) / squares.max(1e-300)
-    };
     let whole = DVector::from_column_slice(column);
-    f64::min(over(sizes(system, series, one)), over(by_block(system, series, &whole)))
+    f64::min(one.spread, evidence::spread(&by_block(system, series, &whole)))
 }
 
 /// Squares of what a candidate does beyond what the fit takes of it, block by block.

@@ -185,4 +185,16 @@ mod tests {
         assert_eq!(cold(0.0), 1.0);
         assert!((cold(60.0) - (-1.0_f64).exp()).abs() < 1e-12);
     }
+
+    #[test]
+    fn backwards_is_a_quantity_of_its_own() {
+        let of = |speed_mps: f64| {
+            let input = Input { speed_mps, ..Input::default() };
+            let average = Average { channel: 0, run: 0, suspect: true, t_s: 0.0, input };
+            let group = GROUPS.iter().find(|group| group.words == "driving backwards");
+            group.map(|group| (group.value)(&average, 2.0)).unwrap_or(f64::NAN)
+        };
+        assert_eq!([of(0.0), of(1.0)], [0.0; 2]);
+        assert!(of(-0.5) > 0.99 && of(-0.05) < 0.5, "{} {}", of(-0.5), of(-0.05));
+    }
 }

@@ -269,18 +269,7 @@ mod tests {
         let mechanism = mechanism::by_name(name).unwrap();
         let applied = Applied { mechanism, values: vec![0.0], span: Span::ALL };
         let candidate = Candidate { applied, linear: vec![0], columns: Vec::new() };
-        let own = DMatrix::from_columns(&[own]);
-        let (values, covariance) = (vec![1.0], DMatrix::identity(1, 1));
-        let evidence = Evidence {
-            values,
-            covariance,
-            wald: 1.0,
-            explained: 1.0,
-            own,
-            discord: 1.0,
-            lasting: 1.0,
-            spread: 100.0,
-        };
+        let evidence = Evidence::of_one(1.0, 1.0, DMatrix::from_columns(&[own]));
         let weighed =
             Weighed { candidate, evidence, tried: 1, score: 0.0, rank: 0.0, p_value: 0.0, is_strong: true };
         Open { weighed, forms }

@@ -49,16 +49,7 @@ mod tests {
         let mechanism = mechanism::by_name(name).unwrap();
         let applied = Applied { mechanism, values: vec![0.0; mechanism.parameters().len()], span: Span::ALL };
         let candidate = Candidate { applied, linear: vec![0], columns: Vec::new() };
-        let evidence = Evidence {
-            values: vec![value],
-            covariance: DMatrix::from_element(1, 1, 1e-8),
-            wald: 0.0,
-            explained: 0.0,
-            own: DMatrix::zeros(0, 1),
-            discord: 1.0,
-            lasting: 1.0,
-            spread: 100.0,
-        };
+        let evidence = Evidence::of_one(value, 1e-8, DMatrix::zeros(0, 1));
         is_plausible(&builtin::husky_a200(), &candidate, &evidence, 0.1)
     }
 

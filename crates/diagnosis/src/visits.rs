@@ -1,6 +1,6 @@
 //! How often drives came through a part of the ground.
 
-use crate::{average::Average, region::Region};
+use crate::{average::Average, evidence::spread, region::Region};
 
 /// Blocks that have to speak for a mechanism: one visit is an event, not evidence.
 pub(crate) const LEAST: f64 = 6.0;
@@ -27,8 +27,7 @@ impl<'a> Visits<'a> {
                 within[*block] += 1.0;
             }
         }
-        let sum = |of: fn(f64) -> f64| within.iter().map(|n| of(*n)).sum::<f64>();
-        sum(|n| n).powi(2) / sum(|n| n * n).max(1.0)
+        spread(&within)
     }
 
     /// Whether drives came through a region often enough to tell it from what happened once.

@@ -261,16 +261,7 @@ mod tests {
 
     #[test]
     fn few_blocks_of_a_part_of_the_drives_tell_less_than_as_much_all_the_time() {
-        let evidence = Evidence {
-            values: vec![5.0],
-            covariance: DMatrix::identity(1, 1),
-            wald: 25.0,
-            explained: 25.0,
-            own: DMatrix::zeros(0, 1),
-            discord: 1.0,
-            lasting: 1.0,
-            spread: 20.0,
-        };
+        let evidence = Evidence { spread: 20.0, ..Evidence::of_one(5.0, 1.0, DMatrix::zeros(0, 1)) };
         let chance = |evidence: &Evidence, span: Span| {
             let speaking = speaking(evidence, span, 100);
             judged(evidence, "payload", &Null::default(), (100, speaking)).unwrap().1

@@ -2,7 +2,7 @@
 
 /// Blocks over which errors may hang together: an inclinometer that wanders does over a minute.
 const BLOCKS: usize = 4;
-/// Most of it: what wanders for a minute makes 1.3, and what the form of a strong effect misses in the few blocks that hold it is no reason
+/// Most of it: what wanders for a minute made 1.25, and what the form of a strong effect misses in the few blocks that hold it is no reason
 /// to doubt that it is there.
 const MOST: f64 = 1.5;
 
@@ -18,10 +18,10 @@ pub(super) fn lasting(scores: &[f64]) -> f64 {
     (1.0 + together / lagged(0).max(1e-300)).clamp(1.0, MOST)
 }
 
-/// Among how many blocks what is explained is spread: as many as there are if each has as much of it, one if one holds all.
-pub(super) fn spread(squares: &[f64]) -> f64 {
-    let of_squares: f64 = squares.iter().map(|square| square * square).sum();
-    squares.iter().sum::<f64>().powi(2) / of_squares.max(1e-300)
+/// Among how many parts something is spread, of which each has so much: as many as there are if each has as much of it, one if one holds all.
+pub(crate) fn spread(shares: &[f64]) -> f64 {
+    let squares: f64 = shares.iter().map(|share| share * share).sum();
+    shares.iter().sum::<f64>().powi(2) / squares.max(1e-300)
 }
 
 #[cfg(test)]
