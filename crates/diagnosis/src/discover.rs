@@ -135,6 +135,14 @@ struct Told<'a> {
     p_value: f64,
 }
 
+impl Told<'_> {
+    /// Whether it is so sure that it alone tells that something acts.
+    fn tells(&self, sure: Sure) -> bool {
+        let surer = if self.term.is_of_heading() { OF_HEADING } else { 1.0 };
+        self.term.scale != Scale::Moment && self.p_value <= sure.level() / surer
+    }
+}
+
 impl<'a> Beside<'a> {
     fn new(
         series: &'a Series,
@@ -149,16 +157,11 @@ impl<'a> Beside<'a> {
 
     /// What passes every gate and explains most, if what passes is sure enough.
     ///
-    /// That something acts is known from what is surest, which may follow it here and there only; what it is, from what explains most. A
+    /// That something acts is known from whatever is sure, which may follow it here and there only; what it is, from what explains most. A
     /// moment is no evidence that something acts: drives turn for seconds only, in which it goes with all that the model misses of turns.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
         let told = self.told(tried);
-        let surest =
-            told.iter().filter(|one| one.term.scale != Scale::Moment).find(|one| self.gain(one).is_some())?;
-        let surer = if surest.term.is_of_heading() { OF_HEADING } else { 1.0 };
-        if surest.p_value > self.sure.level() / surer {
-            return None;
-        }
+        told.iter().filter(|one| one.tells(self.sure)).find(|one| self.gain(one).is_some())?;
         let (mut best, mut held_out_gain) = self.closest(told)?;
         // Since when it acts, and what else it goes with, is looked for about what was tried.
         let mut near = [around(self.series, best.term), best.term.with_one_more()];
@@ -265,4 +268,30 @@ fn resembling(
         });
     let (most, name) = alike.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (most > ALIKE).then_some(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::{group::GROUPS, span::Span, term::On};
+
+    #[test]
+    fn what_is_sure_tells_that_something_acts_whatever_else_scores_more() {
+        let told = |scale: Scale, symbol: &str, p_value: f64| {
+            let groups = GROUPS.iter().filter(|group| group.symbol == symbol).collect();
+            let term = Term { scale, groups, on: On::Both, span: Span::ALL };
+            let evidence = Evidence::of_one(1.0, 1.0, DMatrix::zeros(0, 1));
+            [Sure::AsUsual, Sure::Very].map(|sure| {
+                Told { term: &term, evidence: evidence.clone(), score: 0.0, rank: 0.0, p_value }.tells(sure)
+            })
+        };
+        assert_eq!(told(Scale::Force, "|v|/u_max", 1e-3), [true, false]);
+        assert_eq!(told(Scale::Force, "|v|/u_max", 1e-5), [true, true]);
+        // Lanes have one heading each, and a moment goes with all that models miss of turns.
+        assert_eq!(told(Scale::Force, "cos ψ", 5e-3), [false, false]);
+        assert_eq!(told(Scale::Force, "cos ψ", 5e-6), [true, true]);
+        assert_eq!(told(Scale::Moment, "|v|/u_max", 1e-9), [false, false]);
+    }
 }

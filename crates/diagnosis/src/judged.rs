@@ -11,7 +11,7 @@ use crate::{
     explainable::explained_share,
     locate,
     missed::{MISFIT, Missed, REMAINS, floor_w, open_w, usual_w},
-    refitted::{Refitted, bias_w, rmse_w},
+    refitted::{Refitted, bias_w, of_healthy_alone_w, rmse_w},
     report::{
         BaselineFit, CorrectedFit, EvidenceFigures, Finding, FindingFit, FoundParameter, Place, Range, Trace,
         Verdict,
@@ -77,7 +77,11 @@ impl Judged {
         let discovered = Vec::new();
         let sizes: Vec<f64> = series.recorded.iter().map(|w| w.abs()).collect();
         let mean_w = bias_w(series, &sizes);
-        let usual_w = usual_w(series, &found.after, &steps[last].held_out_w);
+        // Where nothing is taken for what is missing, that is in the fit to all drives.
+        let usual_w = match found.found.is_empty() {
+            true => usual_w(series, &found.before, &of_healthy_alone_w(series, &found.before)),
+            false => usual_w(series, &found.after, &steps[last].held_out_w),
+        };
         let mut judged = Judged {
             baseline,
             corrected,

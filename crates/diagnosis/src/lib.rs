@@ -34,6 +34,8 @@ mod form;
 mod gates;
 mod ground;
 mod group;
+#[cfg(test)]
+mod hills;
 mod history;
 mod imitate;
 mod judged;
