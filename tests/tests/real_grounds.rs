@@ -9,7 +9,7 @@ use std::{
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose, report::Finding};
 use model::Robot;
-use recording::{Recording, Run, read_paths};
+use recording::{Channel, Recording, Run, read_paths};
 
 fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {
     diagnose(&Question::new(robot, suspect, Some(healthy)), &|_, _| {}).unwrap()
@@ -74,6 +74,18 @@ fn a_real_husky_on_other_ground_is_told_by_its_motor_currents() {
     let found = said(&robot, &odd, &even);
     say("flooring", &found);
     assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+    // Its meters of currents at the other motors.
+    let mut swapped = odd.clone();
+    let currents = [Channel::LeftMotorCurrent, Channel::RightMotorCurrent];
+    let [left_a, right_a] = currents.map(|side| swapped.channels.remove(&side).unwrap());
+    swapped.channels.extend(currents.into_iter().zip([right_a, left_a]));
+    let found = said(&robot, &swapped, &even);
+    say("flooring, swapped", &found);
+    assert!(
+        found.sentence.contains("motor currents of the left and the right side seem swapped"),
+        "{}",
+        found.sentence
+    );
     // On ice, where spinning takes 7 A instead of 19, skid friction is a fifth.
     let found = said(&robot, &unlabelled(&folder, "ice", |_| true), &flooring);
     say("ice", &found);

@@ -38,6 +38,16 @@ fn a_stone_in_a_tyre_is_not_taken_for_drag() {
 }
 
 #[test]
+fn a_stone_in_a_tyre_is_told_of_a_short_drive_too() {
+    // A quarter of an hour at walking pace is some two hundred turns.
+    let bump = Effect { side: Some(Side::Right), ..Effect::new(EffectName::WheelBump, 28.0) };
+    let (suspect, healthy) = (drive(54, 540.0, vec![bump]), drive(51, 540.0, vec![]));
+    let found = said(&suspect, Some(&healthy));
+    assert!(found.findings.iter().all(|f| f.mechanism == "unknown"), "{}", found.sentence);
+    assert!(turns(&found).unwrap().contains("the right side"), "{:?}", found.notes);
+}
+
+#[test]
 fn drag_on_one_side_and_robots_in_order_show_no_turns() {
     let dragging = Effect::new(EffectName::DrivetrainDrag, 8.0);
     let healthy = drive(51, 1200.0, vec![]);

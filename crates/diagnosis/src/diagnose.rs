@@ -13,7 +13,7 @@ use crate::{
     caveats::caveats,
     corrected::corrected,
     discover::{Sure, discover},
-    doubts::{doubts, mistakes},
+    doubts::{contradictions, doubts, mistakes},
     judged::Judged,
     next_drive::next_drive,
     report::{Diagnosis, Verdict},
@@ -68,8 +68,11 @@ pub fn diagnose_watched(
     let Question { robot, suspect, healthy, ruled_out } = *question;
     progress("preparing the drives", 0.0);
     admissible::check(suspect, healthy)?;
+    // Means over angles in another unit are none.
+    let contradictions = contradictions(suspect, healthy);
     let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
-    let suspect = &with_powers(robot, &suspect.thinned(), watch)?;
+    let as_recorded = suspect.thinned();
+    let suspect = &with_powers(robot, &as_recorded, watch)?;
     let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
     let healthy = healthy.as_ref();
     let series = Series::watched(robot, suspect, healthy, watch)?;
@@ -80,7 +83,7 @@ pub fn diagnose_watched(
     }
     let told = |step: &str, share: f64| progress(step, 0.1 + 0.6 * share.min(1.0));
     let begun = Search::begin(&series, robot, healthy, &told)?;
-    let mistakes = mistakes(robot, (suspect, healthy), &series, &begun.before)?;
+    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &begun.before)?;
     // Nothing else is told of what is not what it seems.
     let found = if mistakes.is_empty() { search(&series, robot, begun, &told)? } else { begun };
     progress("judging what is left", 0.7);

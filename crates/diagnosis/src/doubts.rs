@@ -1,6 +1,6 @@
 //! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
 
-use calibration::Drives;
+use calibration::{Drives, with_powers};
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
 
@@ -17,26 +17,28 @@ const NOT_THIS_ROBOT: [f64; 2] = [0.1, 3.0];
 /// Widths of the file that a fitted number may move before it is told.
 const FAR_SIGMAS: f64 = 5.0;
 
-/// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round, units
-/// or robots mistaken. Nothing else is told of them before that is mended.
+/// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round,
+/// units or robots mistaken. Nothing else is told of them before that is mended. `said` are their [`contradictions`]; `as_recorded` may tell
+/// motor currents where `recording` has the power that they make.
 ///
 /// # Errors
 /// As [`Series::new`] and [`Series::predict`].
 pub(crate) fn mistakes(
     robot: &Robot,
-    (recording, healthy_drives): (&Recording, Option<&Recording>),
+    (recording, as_recorded, mut said): (&Recording, &Recording, Vec<String>),
     series: &Series,
     healthy: &Baseline,
 ) -> Result<Vec<String>, Error> {
-    let mut said = contradictions(recording);
-    let of_healthy = healthy_drives.map_or(Vec::new(), contradictions).into_iter();
-    said.extend(of_healthy.map(|why| format!("of the healthy drives, {why}")));
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { &healthy.robot } else { robot };
     let given = follows(known, series, true)?;
     let mut mended = Vec::new();
-    for (change, words) in CHANGES {
-        let Some(changed) = change(recording) else { continue };
+    let swapped_currents = swapped(as_recorded, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
+        .map(|swapped| with_powers(robot, &swapped, series.watch()))
+        .transpose()?;
+    let of_currents = swapped_currents.map(|changed| (changed, SWAPPED_CURRENTS));
+    let changes = CHANGES.iter().filter_map(|(change, words)| Some((change(recording)?, *words)));
+    for (changed, words) in changes.chain(of_currents) {
         let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
             mended.push((other.r2, words));
@@ -60,11 +62,19 @@ pub(crate) fn mistakes(
     Ok(said)
 }
 
-/// What channels of motion contradict whatever the robot: the sign of the yaw rate, and sizes that another unit would explain.
-fn contradictions(recording: &Recording) -> Vec<String> {
+/// What drives as they were recorded contradict whatever the robot, in sentences.
+pub(crate) fn contradictions(suspect: &Recording, healthy: Option<&Recording>) -> Vec<String> {
+    let mut said = of_motion(suspect);
+    let of_healthy = healthy.map_or(Vec::new(), of_motion).into_iter();
+    said.extend(of_healthy.map(|why| format!("of the healthy drives, {why}")));
+    said
+}
+
+/// What channels of motion contradict: the sign of the yaw rate or heading, and sizes that another unit would explain.
+fn of_motion(recording: &Recording) -> Vec<String> {
     let is_of_motion = |channel: Channel| {
-        use Channel::{LeftSpeed, Pitch, RightSpeed, Roll, YawRate};
-        matches!(channel, Pitch | Roll | LeftSpeed | RightSpeed | YawRate)
+        use Channel::{Heading, LeftSpeed, Pitch, RightSpeed, Roll, YawRate};
+        matches!(channel, Pitch | Roll | LeftSpeed | RightSpeed | YawRate | Heading)
     };
     let all = suspicions(recording).into_iter();
     let told = all.filter(|one| {
@@ -190,11 +200,18 @@ const CHANGES: [(Change, &str); 4] = [
     (turned_power, "power seems to have the wrong sign (drawn from the battery must be positive)"),
 ];
 
+const SWAPPED_CURRENTS: &str = "motor currents of the left and the right side seem swapped";
+
 fn swapped_power(recording: &Recording) -> Option<Recording> {
     swapped(recording, Channel::LeftPower, Channel::RightPower)
 }
 
+/// None where how the robot turned tells that they are not.
 fn swapped_speeds(recording: &Recording) -> Option<Recording> {
+    let turns = [Channel::YawRate, Channel::Heading];
+    if turns.iter().any(|turn| recording.channel(*turn).is_some()) && of_motion(recording).is_empty() {
+        return None;
+    }
     swapped(recording, Channel::LeftSpeed, Channel::RightSpeed)
 }
 

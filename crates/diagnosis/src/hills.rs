@@ -10,9 +10,8 @@ use crate::{imitate, series::Applied};
 /// A quarter of an hour over hills at changing speeds and turns, with power that the model would show and 2 W of noise.
 pub(crate) fn drive(robot: &Robot, phase_rad: f64, applied: &[Applied]) -> Recording {
     let rows = 9000;
-    let wave = |period_s: f64| {
-        move |i: usize| (0.1 * i as f64 * std::f64::consts::TAU / period_s + phase_rad).sin()
-    };
+    let wave =
+        |period_s: f64| move |i: usize| (0.1 * i as f64 * std::f64::consts::TAU / period_s + phase_rad).sin();
     let (speed, turn, slope) = (wave(47.0), wave(31.0), wave(73.0));
     let column = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows).map(value).collect() };
     let side = |sign: f64| column(&|i| 0.5 + 0.25 * speed(i) + sign * 0.15 * turn(i));

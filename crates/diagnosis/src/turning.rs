@@ -7,14 +7,13 @@ use calibration::Drives;
 use model::{Robot, Sides};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-/// Turns of a window. Encoders that are read ten times a second lose the angle over some hundred turns.
-const WINDOW_TURNS: f64 = 40.0;
-/// Step between rates per turn: half of what a window tells apart.
-const STEP: f64 = 0.0125;
-/// Rates per turn at which wheels may show, in steps on both sides of one: those of wheels a twentieth off the file's radius.
-const OWN_STEPS: i32 = 4;
-/// Steps beyond which rates tell what there is without the wheels' turns.
-const BESIDE_STEPS: std::ops::RangeInclusive<i32> = 8..=28;
+/// Turns of a window, the first of which a drive has enough windows. Encoders that are read ten times a second lose the angle over some
+/// hundred turns.
+const WINDOW_TURNS: [f64; 3] = [40.0, 30.0, 20.0];
+/// Rates per turn at which wheels may show, on both sides of one: those of wheels a twentieth off the file's radius.
+const OWN: f64 = 0.05;
+/// How far beside one rates tell what there is without the wheels' turns.
+const BESIDE: [f64; 2] = [0.1, 0.35];
 /// Chance of as clear a line where nothing turns, over both sides and all drives.
 const LEVEL: f64 = 1e-6;
 /// Windows that a line takes at least: as many visits as any evidence.
@@ -48,12 +47,23 @@ struct Window {
     beside_n2: f64,
 }
 
-fn own_rates() -> impl Iterator<Item = f64> {
-    (-OWN_STEPS..=OWN_STEPS).map(|step| 1.0 + STEP * f64::from(step))
+/// Rates per turn at which spectra are looked at.
+struct Rates {
+    window_turns: f64,
+    own: Vec<f64>,
+    beside: Vec<f64>,
 }
 
-fn beside_rates() -> impl Iterator<Item = f64> {
-    BESIDE_STEPS.flat_map(|step| [1.0 - STEP * f64::from(step), 1.0 + STEP * f64::from(step)])
+impl Rates {
+    /// Half of what windows of so many turns tell apart lies between them.
+    fn of(window_turns: f64) -> Rates {
+        let step = 0.5 / window_turns;
+        let steps = |of: f64| (of / step).round() as i32;
+        let at = |n: i32| 1.0 + step * f64::from(n);
+        let own = (-steps(OWN)..=steps(OWN)).map(at).collect();
+        let beside = (steps(BESIDE[0])..=steps(BESIDE[1])).flat_map(|n| [at(-n), at(n)]).collect();
+        Rates { window_turns, own, beside }
+    }
 }
 
 fn squared([cos, sin]: [f64; 2]) -> f64 {
@@ -81,15 +91,14 @@ fn of_side(robot: &Robot, Left { drives, errors_w }: &Left<'_>, side: usize) -> 
     let errors_w = errors_w.get(if errors_w.len() > 1 { side } else { 0 })?;
     let runs = used_rows(drives, errors_w);
     let angle_rad = angles_rad(drives, robot.wheel_radius_m, side, &runs);
-    let windows: Vec<Window> =
-        runs.iter().flat_map(|run| windows(drives, run, side, &angle_rad, errors_w)).collect();
-    if windows.len() < LEAST_WINDOWS {
-        return None;
-    }
-    let rates: Vec<f64> = own_rates().collect();
+    let all = |rates: &Rates| -> Vec<Window> {
+        runs.iter().flat_map(|run| windows(drives, run, (side, rates), &angle_rad, errors_w)).collect()
+    };
+    let windows = WINDOW_TURNS.map(Rates::of).into_iter().map(|rates| (all(&rates), rates));
+    let (windows, rates) = windows.into_iter().find(|(windows, _)| windows.len() >= LEAST_WINDOWS)?;
     // Either side could have shown one.
-    let tried = (2 * rates.len()) as f64;
-    let chances = (0..rates.len()).map(|own| chance(&windows, own) * tried);
+    let tried = (2 * rates.own.len()) as f64;
+    let chances = (0..rates.own.len()).map(|own| chance(&windows, own, &rates) * tried);
     let (own, p_value) = chances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let beyond_n2 = |window: &Window| squared(window.own_n[own]) - window.beside_n2;
     let mean_n2 = windows.iter().map(beyond_n2).sum::<f64>() / windows.len() as f64;
@@ -97,7 +106,7 @@ fn of_side(robot: &Robot, Left { drives, errors_w }: &Left<'_>, side: usize) -> 
         side,
         force_n: mean_n2.max(0.0).sqrt(),
         p_value: p_value.min(1.0),
-        nearness: nearness(&windows, (own, rates[own]), &angle_rad),
+        nearness: nearness(&windows, (own, rates.own[own]), &angle_rad),
     })
 }
 
@@ -131,13 +140,19 @@ fn of(side: usize, sides: Sides<f64>) -> f64 {
 }
 
 /// The spectra of a run, window by window.
-fn windows(drives: &Drives, run: &[usize], side: usize, angle_rad: &[f64], errors_w: &[f64]) -> Vec<Window> {
+fn windows(
+    drives: &Drives,
+    run: &[usize],
+    (side, rates): (usize, &Rates),
+    angle_rad: &[f64],
+    errors_w: &[f64],
+) -> Vec<Window> {
     let mut windows = Vec::new();
     let (mut start, mut gone_rad) = (0, 0.0);
     for n in 1..run.len() {
         gone_rad += (angle_rad[run[n]] - angle_rad[run[n - 1]]).abs();
-        if gone_rad >= WINDOW_TURNS * TAU {
-            windows.extend(window(drives, &run[start..n], side, angle_rad, errors_w));
+        if gone_rad >= rates.window_turns * TAU {
+            windows.extend(window(drives, &run[start..n], (side, rates), angle_rad, errors_w));
             (start, gone_rad) = (n, 0.0);
         }
     }
@@ -148,7 +163,7 @@ fn windows(drives: &Drives, run: &[usize], side: usize, angle_rad: &[f64], error
 fn window(
     drives: &Drives,
     rows: &[usize],
-    side: usize,
+    (side, rates): (usize, &Rates),
     angle_rad: &[f64],
     errors_w: &[f64],
 ) -> Option<Window> {
@@ -164,8 +179,8 @@ fn window(
         }
         (weight > 0.0).then(|| [2.0 * cos / weight, 2.0 * sin / weight])
     };
-    let own_n: Vec<[f64; 2]> = own_rates().map(at).collect::<Option<_>>()?;
-    let beside: Vec<f64> = beside_rates().map(|rate| at(rate).map(squared)).collect::<Option<_>>()?;
+    let own_n: Vec<[f64; 2]> = rates.own.iter().copied().map(at).collect::<Option<_>>()?;
+    let beside: Vec<f64> = rates.beside.iter().map(|rate| at(*rate).map(squared)).collect::<Option<_>>()?;
     let beside_n2 = beside.iter().sum::<f64>() / beside.len() as f64;
     Some(Window { rows: *rows.first()?..*rows.last()? + 1, own_n, beside_n2 })
 }
@@ -191,8 +206,8 @@ fn less_mean_of_turn(used: &[usize], angle_rad: &[f64], errors_w: &[f64]) -> Vec
 
 /// Chance of as much at a rate where it is as everywhere beside it, by Fisher's way of taking windows together
 /// (Statistical Methods for Research Workers, 1925, §21.1).
-fn chance(windows: &[Window], own: usize) -> f64 {
-    let Ok(ratio) = FisherSnedecor::new(2.0, 2.0 * beside_rates().count() as f64) else { return 1.0 };
+fn chance(windows: &[Window], own: usize, rates: &Rates) -> f64 {
+    let Ok(ratio) = FisherSnedecor::new(2.0, 2.0 * rates.beside.len() as f64) else { return 1.0 };
     let log = |window: &Window| {
         let times = squared(window.own_n[own]) / window.beside_n2.max(1e-300);
         -2.0 * ratio.sf(times).max(1e-300).ln()
@@ -215,4 +230,21 @@ fn nearness(windows: &[Window], (own, rate): (usize, f64), angle_rad: &[f64]) ->
         }
     }
     nearness
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shorter_windows_look_at_the_same_rates_less_closely() {
+        for turns in WINDOW_TURNS {
+            let Rates { own, beside, .. } = Rates::of(turns);
+            let [first, last] = [own[0], own[own.len() - 1]];
+            assert!((first - 0.95).abs() < 0.01 && (last - 1.05).abs() < 0.01, "{own:?}");
+            assert!(own.contains(&1.0) && beside.iter().all(|rate| (rate - 1.0).abs() > last - 1.0));
+            assert!((own[1] - own[0] - 0.5 / turns).abs() < 1e-12);
+        }
+        assert_eq!((Rates::of(40.0).own.len(), Rates::of(40.0).beside.len()), (9, 42));
+    }
 }

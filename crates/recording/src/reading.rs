@@ -204,9 +204,10 @@ impl Reading {
         let missing: Vec<Channel> = wheels.into_iter().filter(lacks).collect();
         let power = recording.power_form().is_none();
         if power || !missing.is_empty() {
-            // One side alone is the likelier slip: name the other side rather than every form of power.
-            let half =
-                PowerForm::ALL.iter().find(|(_, needs)| needs.iter().filter(|c| !lacks(c)).count() == 1);
+            // One side alone is the likelier slip: name the other side rather than every form of power. A voltage is
+            // recorded for itself.
+            let has = |channel: &&Channel| !lacks(channel) && **channel != Channel::Voltage;
+            let half = PowerForm::ALL.iter().find(|(_, needs)| needs.iter().filter(has).count() == 1);
             return Err(match half {
                 Some((_, needs)) if power => {
                     let other = needs.iter().filter(|channel| lacks(channel));

@@ -6,7 +6,7 @@ mod motion;
 
 use absence::{constant, empty, present, saturated, sparse};
 use magnitude::{magnitude, units_of_runs};
-use motion::{lone_flips, turning, unsigned};
+use motion::{degrees, lone_flips, turning, unsigned};
 
 use crate::{
     Channel, Recording,
@@ -45,6 +45,10 @@ pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
         }
         doubts.extend(turning(recording, run));
     }
+    let in_degrees = recording.channel(Channel::Heading).and_then(degrees);
+    let of_heading =
+        |statement| Suspicion { channel: Channel::Heading, run: None, kind: Kind::Unit, statement };
+    doubts.extend(in_degrees.map(of_heading));
     doubts.extend(units_of_runs(recording));
     doubts.extend(unsigned(recording));
     doubts
@@ -98,6 +102,34 @@ mod tests {
         assert_eq!(drive(C::YawRate, |_, w| w.to_degrees()), [(C::YawRate, Kind::Unit); 2]);
         assert_eq!(drive(C::LeftSpeed, |r, v| if r == 200 { -v } else { v }), [(C::LeftSpeed, Kind::Sign)]);
         assert_eq!(drive(C::Pitch, |_, p| 10.0 * p), [(C::Pitch, Kind::Unit)]);
+    }
+
+    #[test]
+    fn without_a_gyroscope_the_heading_tells_swapped_sides_and_its_own_unit() {
+        // A minute of weaving on a bearing that drifts round, with the noise of a compass.
+        let t_s: Vec<f64> = (0..1200).map(|row| f64::from(row) * 0.1).collect();
+        let turn = |t: f64| 0.15 + 0.2 * (0.3 * t).sin();
+        let [left, right] =
+            [-1.0, 1.0].map(|side| -> Vec<f64> { t_s.iter().map(|t| 0.5 + side * 0.4 * turn(*t)).collect() });
+        let heading_rad = |t: &f64| 0.15 * t - 0.2 / 0.3 * (0.3 * t).cos() + 0.02 * (37.0 * t).sin();
+        let told = |sides: [&Vec<f64>; 2], of: &dyn Fn(f64) -> f64| -> Vec<(Channel, Kind)> {
+            let channels = BTreeMap::from([
+                (Channel::LeftSpeed, sides[0].clone()),
+                (Channel::RightSpeed, sides[1].clone()),
+                (Channel::Heading, t_s.iter().map(heading_rad).map(of).collect()),
+            ]);
+            let runs = vec![Run::new("drive".into(), 0..t_s.len(), &t_s, None)];
+            let recording = Recording { t_s: t_s.clone(), channels, runs, ..Recording::default() };
+            suspicions(&recording).into_iter().map(|doubt| (doubt.channel, doubt.kind)).collect()
+        };
+        let wrapped = |rad: f64| rad.rem_euclid(std::f64::consts::TAU);
+        assert_eq!(told([&left, &right], &|rad| rad), []);
+        assert_eq!(told([&left, &right], &wrapped), []);
+        assert_eq!(told([&right, &left], &wrapped), [(Channel::Heading, Kind::Opposed)]);
+        let degrees = told([&left, &right], &|rad| wrapped(rad).to_degrees());
+        assert!(degrees.contains(&(Channel::Heading, Kind::Unit)), "{degrees:?}");
+        // Whatever a compass shows beside motors is no contradiction.
+        assert_eq!(told([&left, &right], &|rad| (40.0 * rad).sin()), []);
     }
 
     #[test]

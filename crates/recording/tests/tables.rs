@@ -63,6 +63,8 @@ fn bad_tables_are_refused_by_place_and_remedy() {
         (SMALL.replace("t_s", "time"), "t_s is missing; found: time, v_left_mps"),
         (SMALL.replace("v_left_mps", "v_left_kmph"), "`v_left_kmph` for v_left_mps"),
         (SMALL.replace("power_w", "power_left_w"), "power_right_w is missing"),
+        (SMALL.replace("power_w", "voltage_v"), "power (power_left_w and power_right_w, or power_w, or"),
+        (SMALL.replace("power_w", "current_a"), "voltage_v is missing"),
         (SMALL.replace("gear", "note"), "two columns give note"),
         (SMALL.replace("50", "").replace("51", "nan").replace("52", "NaN"), "power_w (without a number)"),
         ("t_s,v_left_mps,v_right_mps,power_w\n".into(), "no row"),

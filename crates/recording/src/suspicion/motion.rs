@@ -1,5 +1,7 @@
 //! Channels that contradict how a robot moves.
 
+use std::f64::consts::{PI, TAU};
+
 use super::LEAST_ROWS;
 use crate::{
     Channel, Recording, Run,
@@ -18,25 +20,75 @@ pub(super) fn lone_flips(values: &[f64]) -> Option<String> {
     (flips > 0).then(|| format!("its sign flips for {flips} single rows"))
 }
 
-/// Wheel speeds against yaw rate: `ω = (v_right − v_left) / slip track`.
+/// A heading that jumps by 360 where it comes round: it is in degrees.
+pub(super) fn degrees(values: &[f64]) -> Option<String> {
+    /// What a jump of one row to the next is at least and at most; a heading in radians jumps by 6.28.
+    const JUMP: [f64; 2] = [300.0, 361.0];
+    let jumps = values.windows(2).filter(|w| (JUMP[0]..=JUMP[1]).contains(&(w[1] - w[0]).abs())).count();
+    (jumps > 0).then(|| {
+        format!(
+            "it jumps by 360 from one row to the next, {jumps} times: is it in degrees and not in radians?"
+        )
+    })
+}
+
+/// Wheels that turn the robot: the difference of their speeds \[m/s\] and the rate at which it turns \[rad/s\], row by row.
+struct Turns {
+    by: Channel,
+    pairs: Vec<[f64; 2]>,
+}
+
+impl Turns {
+    /// As a yaw rate tells it, or else the heading.
+    fn of(recording: &Recording, run: &Run) -> Option<Turns> {
+        let column = |channel| recording.channel(channel).and_then(|values| values.get(run.rows.clone()));
+        let (left, right) = (column(Channel::LeftSpeed)?, column(Channel::RightSpeed)?);
+        let difference: Vec<f64> = left.iter().zip(right).map(|(left, right)| right - left).collect();
+        if let Some(rates) = column(Channel::YawRate) {
+            let pairs = difference.into_iter().zip(rates).map(|(difference, rate)| [difference, *rate]);
+            return Some(Turns { by: Channel::YawRate, pairs: pairs.collect() });
+        }
+        let (headings, t_s) = (column(Channel::Heading)?, recording.t_s.get(run.rows.clone())?);
+        Some(Turns { by: Channel::Heading, pairs: by_heading(t_s, &difference, headings) })
+    }
+}
+
+/// What wheels and headings do from each moment to one a second later: over less, headings scatter more than they turn.
+fn by_heading(t_s: &[f64], difference: &[f64], headings: &[f64]) -> Vec<[f64; 2]> {
+    const STEP_S: f64 = 1.0;
+    let (mut pairs, mut from) = (Vec::new(), 0);
+    for to in 1..t_s.len() {
+        let span_s = t_s[to] - t_s[from];
+        if span_s < STEP_S {
+            continue;
+        }
+        let turned = (headings[to] - headings[from] + PI).rem_euclid(TAU) - PI;
+        let whole = span_s < 1.5 * STEP_S && turned.is_finite();
+        let mean = difference[from..to].iter().sum::<f64>() / (to - from) as f64;
+        if whole && mean.is_finite() {
+            pairs.push([mean, turned / span_s]);
+        }
+        from = to;
+    }
+    pairs
+}
+
+/// Wheel speeds against yaw rate, or the change of heading: `ω = (v_right − v_left) / slip track`.
 pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     /// Slip tracks \[m\] between which a skid-steered robot of 5 kg to 5 t turns, from half a small robot's track to three
     /// times a large one's.
     const SLIP_TRACK_M: [f64; 2] = [0.1, 6.0];
     /// Least share of the yaw rate's variance that turning wheels explain on firm ground.
     const LEAST_R2: f64 = 0.5;
-    let column = |channel| recording.channel(channel).and_then(|values| values.get(run.rows.clone()));
-    let (left, right) = (column(Channel::LeftSpeed)?, column(Channel::RightSpeed)?);
-    let yaw_rate = column(Channel::YawRate)?;
+    let Turns { by, pairs } = Turns::of(recording, run)?;
     let (mut n, mut dd, mut dw, mut ww) = (0usize, 0.0, 0.0, 0.0);
-    for ((left, right), yaw_rate) in left.iter().zip(right).zip(yaw_rate) {
-        let difference = right - left;
-        // Rows where the wheels do not turn the robot only add the gyroscope's noise.
-        if difference.abs() > 2.0 * STANDSTILL_MPS && !yaw_rate.is_nan() {
+    for [difference, rate] in pairs {
+        // Rows where the wheels do not turn the robot only add the sensor's noise.
+        if difference.abs() > 2.0 * STANDSTILL_MPS && !rate.is_nan() {
             n += 1;
             dd += difference * difference;
-            dw += difference * yaw_rate;
-            ww += yaw_rate * yaw_rate;
+            dw += difference * rate;
+            ww += rate * rate;
         }
     }
     if n < LEAST_ROWS || ww == 0.0 {
@@ -46,6 +98,10 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     let (kind, statement) = if dw < 0.0 && r2 > LEAST_R2 {
         (Kind::Opposed, "it is opposed to the wheel speeds: left and right, or its sign, are swapped".into())
     } else if r2 < LEAST_R2 {
+        // A compass beside motors wanders more than robots turn.
+        if by == Channel::Heading {
+            return None;
+        }
         let share = 100.0 * r2;
         (
             Kind::Slip,
@@ -63,7 +119,7 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     } else {
         return None;
     };
-    Some(Suspicion { channel: Channel::YawRate, run: Some(run.name.clone()), kind, statement })
+    Some(Suspicion { channel: by, run: Some(run.name.clone()), kind, statement })
 }
 
 /// Motor currents that are never negative although the wheels turn both ways.
