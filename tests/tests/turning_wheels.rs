@@ -39,7 +39,7 @@ fn a_stone_in_a_tyre_is_not_taken_for_drag() {
 
 #[test]
 fn a_stone_in_a_tyre_is_told_of_a_short_drive_too() {
-    // A quarter of an hour at walking pace is some two hundred turns.
+    // Nine minutes at changing speeds are some 170 turns.
     let bump = Effect { side: Some(Side::Right), ..Effect::new(EffectName::WheelBump, 28.0) };
     let (suspect, healthy) = (drive(54, 540.0, vec![bump]), drive(51, 540.0, vec![]));
     let found = said(&suspect, Some(&healthy));

@@ -161,7 +161,9 @@ impl<'a> Beside<'a> {
     /// moment is no evidence that something acts: drives turn for seconds only, in which it goes with all that the model misses of turns.
     fn strongest(&self, tried: &[&Term]) -> Option<Discovered> {
         let told = self.told(tried);
-        told.iter().filter(|one| one.tells(self.sure)).find(|one| self.gain(one).is_some())?;
+        if !is_told(&told, self.sure, |one| self.gain(one).is_some()) {
+            return None;
+        }
         let (mut best, mut held_out_gain) = self.closest(told)?;
         // Since when it acts, and what else it goes with, is looked for about what was tried.
         let mut near = [around(self.series, best.term), best.term.with_one_more()];
@@ -233,6 +235,11 @@ impl<'a> Beside<'a> {
     }
 }
 
+/// Whether any term that gains on held-out blocks is sure that something acts, whatever others score more.
+fn is_told(told: &[Told<'_>], sure: Sure, gains: impl Fn(&Told<'_>) -> bool) -> bool {
+    told.iter().any(|one| one.tells(sure) && gains(one))
+}
+
 /// Times that are looked at on each side of a first guess, and how far apart they lie [s].
 const STEPS: i32 = 9;
 const STEP_S: f64 = 10.0;
@@ -277,21 +284,37 @@ mod tests {
     use super::*;
     use crate::{group::GROUPS, span::Span, term::On};
 
+    fn term(scale: Scale, symbol: &str) -> Term {
+        let groups = GROUPS.iter().filter(|group| group.symbol == symbol).collect();
+        Term { scale, groups, on: On::Both, span: Span::ALL }
+    }
+
+    fn told(term: &Term, score: f64, p_value: f64) -> Told<'_> {
+        let evidence = Evidence::of_one(1.0, 1.0, DMatrix::zeros(0, 1));
+        Told { term, evidence, score, rank: 0.0, p_value }
+    }
+
+    #[test]
+    fn headings_have_to_be_surer_and_moments_tell_nothing() {
+        let tells = |scale: Scale, symbol: &str, p_value: f64| {
+            let term = term(scale, symbol);
+            [Sure::AsUsual, Sure::Very].map(|sure| told(&term, 0.0, p_value).tells(sure))
+        };
+        assert_eq!(tells(Scale::Force, "|v|/u_max", 1e-3), [true, false]);
+        assert_eq!(tells(Scale::Force, "|v|/u_max", 1e-5), [true, true]);
+        // Lanes have one heading each, and a moment goes with all that models miss of turns.
+        assert_eq!(tells(Scale::Force, "cos ψ", 5e-3), [false, false]);
+        assert_eq!(tells(Scale::Force, "cos ψ", 5e-6), [true, true]);
+        assert_eq!(tells(Scale::Moment, "|v|/u_max", 1e-9), [false, false]);
+    }
+
     #[test]
     fn what_is_sure_tells_that_something_acts_whatever_else_scores_more() {
-        let told = |scale: Scale, symbol: &str, p_value: f64| {
-            let groups = GROUPS.iter().filter(|group| group.symbol == symbol).collect();
-            let term = Term { scale, groups, on: On::Both, span: Span::ALL };
-            let evidence = Evidence::of_one(1.0, 1.0, DMatrix::zeros(0, 1));
-            [Sure::AsUsual, Sure::Very].map(|sure| {
-                Told { term: &term, evidence: evidence.clone(), score: 0.0, rank: 0.0, p_value }.tells(sure)
-            })
-        };
-        assert_eq!(told(Scale::Force, "|v|/u_max", 1e-3), [true, false]);
-        assert_eq!(told(Scale::Force, "|v|/u_max", 1e-5), [true, true]);
-        // Lanes have one heading each, and a moment goes with all that models miss of turns.
-        assert_eq!(told(Scale::Force, "cos ψ", 5e-3), [false, false]);
-        assert_eq!(told(Scale::Force, "cos ψ", 5e-6), [true, true]);
-        assert_eq!(told(Scale::Moment, "|v|/u_max", 1e-9), [false, false]);
+        let speed = term(Scale::Force, "|v|/u_max");
+        // Of what fewer blocks tell, more is less sure.
+        let both = [told(&speed, 66.0, 9.6e-4), told(&speed, 63.8, 1.1e-10)];
+        assert!(is_told(&both, Sure::Very, |_| true));
+        assert!(!is_told(&both[..1], Sure::Very, |_| true) && is_told(&both[..1], Sure::AsUsual, |_| true));
+        assert!(!is_told(&both, Sure::Very, |one| one.score > 65.0), "what is sure does not gain");
     }
 }

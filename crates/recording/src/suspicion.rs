@@ -44,11 +44,8 @@ pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
             }
         }
         doubts.extend(turning(recording, run));
+        doubts.extend(degrees(recording, run));
     }
-    let in_degrees = recording.channel(Channel::Heading).and_then(degrees);
-    let of_heading =
-        |statement| Suspicion { channel: Channel::Heading, run: None, kind: Kind::Unit, statement };
-    doubts.extend(in_degrees.map(of_heading));
     doubts.extend(units_of_runs(recording));
     doubts.extend(unsigned(recording));
     doubts
@@ -128,6 +125,13 @@ mod tests {
         assert_eq!(told([&right, &left], &wrapped), [(Channel::Heading, Kind::Opposed)]);
         let degrees = told([&left, &right], &|rad| wrapped(rad).to_degrees());
         assert!(degrees.contains(&(Channel::Heading, Kind::Unit)), "{degrees:?}");
+        // A drive that went round fifty times, counted on, and one that begins at nothing.
+        let (rows, turned) = (1200, |i: usize| 0.27 * (i % 1200) as f64);
+        let times: Vec<f64> = (0..2 * rows).map(|i| 0.1 * i as f64).collect();
+        let channels = BTreeMap::from([(Channel::Heading, (0..2 * rows).map(turned).collect())]);
+        let runs = [0..rows, rows..2 * rows].map(|rows| Run::new("drive".into(), rows, &times, None)).into();
+        let two = Recording { t_s: times, channels, runs, ..Recording::default() };
+        assert!(suspicions(&two).iter().all(|doubt| !doubt.statement.contains("degrees")));
         // Whatever a compass shows beside motors is no contradiction.
         assert_eq!(told([&left, &right], &|rad| (40.0 * rad).sin()), []);
     }

@@ -20,19 +20,20 @@ pub(super) fn lone_flips(values: &[f64]) -> Option<String> {
     (flips > 0).then(|| format!("its sign flips for {flips} single rows"))
 }
 
-/// A heading that jumps by 360 where it comes round: it is in degrees.
-pub(super) fn degrees(values: &[f64]) -> Option<String> {
+/// A heading that jumps by 360 where it comes round: it is in degrees. From one run to another a heading that is counted on jumps by anything.
+pub(super) fn degrees(recording: &Recording, run: &Run) -> Option<Suspicion> {
     /// What a jump of one row to the next is at least and at most; a heading in radians jumps by 6.28.
     const JUMP: [f64; 2] = [300.0, 361.0];
+    let values = recording.channel(Channel::Heading)?.get(run.rows.clone())?;
     let jumps = values.windows(2).filter(|w| (JUMP[0]..=JUMP[1]).contains(&(w[1] - w[0]).abs())).count();
-    (jumps > 0).then(|| {
-        format!(
-            "it jumps by 360 from one row to the next, {jumps} times: is it in degrees and not in radians?"
-        )
-    })
+    let statement = format!(
+        "it jumps by 360 from one row to the next, {jumps} times: is it in degrees and not in radians?"
+    );
+    let (run, kind) = (Some(run.name.clone()), Kind::Unit);
+    (jumps > 0).then_some(Suspicion { channel: Channel::Heading, run, kind, statement })
 }
 
-/// Wheels that turn the robot: the difference of their speeds \[m/s\] and the rate at which it turns \[rad/s\], row by row.
+/// Wheels that turn the robot: the difference of their speeds \[m/s\] and the rate at which it turns \[rad/s\], moment by moment.
 struct Turns {
     by: Channel,
     pairs: Vec<[f64; 2]>,
