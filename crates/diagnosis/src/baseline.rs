@@ -124,7 +124,11 @@ impl Baseline {
         let sags = sags(series, &predicted_w);
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
         let rims_w_per_n = rims_w_per_n(series, &robot, applied, &predicted_w)?;
-        series.discrepancy.get_or_init(|| learn(series, &predicted_w, &columns, &noise));
+        // Made beforehand: who waits for others to work it out with it must not come back for it.
+        if series.discrepancy.get().is_none() {
+            let learnt = learn(series, &predicted_w, &columns, &noise);
+            series.discrepancy.get_or_init(|| learnt);
+        }
         // How far forms are open hangs on what was learnt.
         let forms = form::forms(series, &robot, applied, &predicted_w)?;
         if series.everywhere.get().is_none() {

@@ -7,6 +7,8 @@
 mod functions;
 mod likelihood;
 
+use rayon::prelude::*;
+
 use self::likelihood::{Likelihoods, SIZES, likelihoods, most};
 use crate::{average::Average, channel, noise::Whitening};
 
@@ -89,7 +91,7 @@ impl Discrepancy {
             let by_ground = likely(&of_ground, &beside);
             (of_inputs, of_ground, by_ground)
         };
-        let learnt: Vec<_> = means.iter().enumerate().map(of_channel).collect();
+        let learnt: Vec<_> = means.par_iter().enumerate().map(of_channel).collect();
         // Ground is under both sides alike.
         let likely: Likelihoods = std::array::from_fn(|i| learnt.iter().map(|(.., one)| one[i]).sum());
         let best = most(&likely);

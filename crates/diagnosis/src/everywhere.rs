@@ -68,6 +68,13 @@ pub(crate) fn of_term(series: &Series, base: &Baseline, term: &Term) -> [Vec<f64
 fn scaled(series: &Series, means: &[f64], change: &[f64]) -> Option<Vec<f64>> {
     let power = || change.iter().zip(&series.averages).filter(|(_, a)| a.quantity() == Quantity::Power);
     let squares = power().map(|(x, a)| (x / means[a.channel].max(1e-9)).powi(2)).sum::<f64>();
-    let share = (squares / power().count().max(1) as f64).sqrt();
-    (share > 0.0).then(|| change.iter().map(|x| x * SHARE_OF_WHAT_IS_LIKE_EFFECTS / share).collect())
+    let by = scale(squares, power().count())?;
+    Some(change.iter().map(|x| x * by).collect())
+}
+
+/// What scales a change to the share of power that models may miss, by the sum of its squares as shares of mean power over so many averages;
+/// `None` if it is nothing.
+pub(crate) fn scale(squares: f64, count: usize) -> Option<f64> {
+    let share = (squares / count.max(1) as f64).sqrt();
+    (share > 0.0).then(|| SHARE_OF_WHAT_IS_LIKE_EFFECTS / share)
 }

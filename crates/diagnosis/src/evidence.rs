@@ -3,11 +3,13 @@
 mod beyond;
 mod held_out;
 mod lasting;
+mod sides;
 
 use std::sync::Arc;
 
 pub(crate) use lasting::spread;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+pub(crate) use sides::{Sided, Sides};
 
 use crate::{
     regime::{self, Regime},

@@ -37,6 +37,16 @@ impl Group {
         of_driving.iter().any(|(name, ..)| *name == self.quantity.0)
     }
 
+    /// Its place among [`GROUPS`].
+    pub(crate) fn place(&self) -> Option<usize> {
+        GROUPS.iter().position(|group| group.symbol == self.symbol)
+    }
+
+    /// Whether it goes with time since it set in.
+    pub(crate) fn is_of_time(&self) -> bool {
+        self.quantity.0 == TIME.0
+    }
+
     /// Whether it tells where the robot heads.
     pub(crate) fn is_of_heading(&self) -> bool {
         self.quantity.0 == HEADING.0

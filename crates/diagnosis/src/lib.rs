@@ -80,6 +80,7 @@ mod shapes;
 mod shared;
 mod span;
 mod stretches;
+mod tables;
 mod term;
 mod turning;
 mod undoing;

@@ -31,14 +31,25 @@ impl<'a> Folded<'a> {
     /// What columns, those of the fit or the same in another scale, say of every row when fitted to the rows of other folds.
     /// Each has a weight of what is known of its share before, and that share.
     pub(crate) fn held_out(&self, columns: &[Vec<f64>], known: &[f64], before: &[f64]) -> Vec<f64> {
-        let shares: Vec<Vec<f64>> = (0..FOLDS).map(|out| self.shares(Some(out), known, before)).collect();
-        (0..self.fold.len()).map(|i| at(columns, i, &shares[self.fold[i]])).collect()
+        let shares: Vec<Vec<f64>> =
+            (0..FOLDS).into_par_iter().map(|out| self.shares(Some(out), known, before)).collect();
+        self.sum(columns, |fold, j| shares[fold][j])
     }
 
     /// The same when fitted to all rows.
     pub(crate) fn fitted(&self, columns: &[Vec<f64>], known: &[f64], before: &[f64]) -> Vec<f64> {
         let shares = self.shares(None, known, before);
-        (0..self.fold.len()).map(|i| at(columns, i, &shares)).collect()
+        self.sum(columns, |_, j| shares[j])
+    }
+
+    /// Columns times the shares that each has in each fold, added up: column by column, as long ones lie far apart.
+    fn sum(&self, columns: &[Vec<f64>], share: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut sum = vec![0.0; self.fold.len()];
+        for (j, column) in columns.iter().enumerate() {
+            let rows = sum.iter_mut().zip(column).zip(self.fold);
+            rows.for_each(|((sum, value), fold)| *sum += value * share(*fold, j));
+        }
+        sum
     }
 
     fn shares(&self, without: Option<usize>, known: &[f64], before: &[f64]) -> Vec<f64> {
@@ -58,10 +69,6 @@ impl<'a> Folded<'a> {
             None => vec![0.0; count],
         }
     }
-}
-
-fn at(columns: &[Vec<f64>], row: usize, shares: &[f64]) -> f64 {
-    columns.iter().zip(shares).map(|(column, share)| column[row] * share).sum()
 }
 
 #[cfg(test)]

@@ -60,6 +60,8 @@ pub struct Series {
     pub(crate) everywhere: OnceLock<Vec<Vec<f64>>>,
     /// What repeats with every turn of the wheels, if anything does.
     pub(crate) turning: Option<Line>,
+    /// See [`Series::row_s`].
+    row_s: f64,
 }
 
 impl Series {
@@ -95,6 +97,7 @@ impl Series {
         let is_told = |meter: &Meter| parts.iter().all(|part| part.tells(*meter));
         let meters: Vec<Meter> = Meter::of(form).into_iter().filter(is_told).collect();
         let watch = Watch::clone(watch);
+        let row_s = row_s(&parts[0]);
         let mut series = Series {
             parts,
             meters,
@@ -106,6 +109,7 @@ impl Series {
             discrepancy: OnceLock::new(),
             everywhere: OnceLock::new(),
             turning: None,
+            row_s,
         };
         let mut runs = 0;
         for part in &series.parts {
@@ -267,9 +271,7 @@ impl Series {
 
     /// Time between rows of the drives under suspicion [s].
     pub fn row_s(&self) -> f64 {
-        let rows = &self.parts[0].drives.rows;
-        let mut steps: Vec<f64> = rows.iter().map(|row| row.step_s).filter(|step_s| *step_s > 0.0).collect();
-        crate::noise::median(&mut steps)
+        self.row_s
     }
 
     /// What would have been recorded of a robot on which mechanisms act in the drives under suspicion.
@@ -297,4 +299,11 @@ impl Series {
         }
         Ok(seen)
     }
+}
+
+/// See [`Series::row_s`].
+fn row_s(part: &Part) -> f64 {
+    let rows = &part.drives.rows;
+    let mut steps: Vec<f64> = rows.iter().map(|row| row.step_s).filter(|step_s| *step_s > 0.0).collect();
+    crate::noise::median(&mut steps)
 }

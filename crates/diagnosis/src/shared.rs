@@ -39,9 +39,14 @@ impl Shared {
 
     /// Products of the shared columns with others, and the weights of the shared ones in them; `None` where both are nothing.
     pub(crate) fn taken(&self, columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-        let products = &self.transposed * &self.own(columns)?;
+        Some(self.taken_of(&self.own(columns)?))
+    }
+
+    /// The same of columns over the rows of the channel.
+    pub(crate) fn taken_of(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+        let products = &self.transposed * columns;
         let weights = self.root.solve(&products);
-        Some((products, weights))
+        (products, weights)
     }
 
     /// Rows of the channel of columns; `None` where they have none, as most do not change what the ground or a gyroscope says.

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// A power that a term is measured in; it brings the unit, so that all else has none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Scale {
     /// m g ∂P/∂F: a force in weights of the robot that holds the side's wheels back, and what it costs beyond the motors.
     Force,
@@ -25,6 +25,22 @@ pub(crate) enum Scale {
     Watt,
 }
 
+impl Scale {
+    /// All, in the order of their numbers.
+    pub(crate) const ALL: [Scale; 4] = [Scale::Force, Scale::Power, Scale::Moment, Scale::Watt];
+
+    /// Its value in one average, for a side that is recorded apart or for both \[W\].
+    pub(crate) fn value_w(self, driven: &Driven<'_>, i: usize, is_both: bool) -> f64 {
+        let weight_n = driven.robot.mass_kg * STANDARD_GRAVITY_MPS2;
+        match self {
+            Scale::Force => weight_n * driven.held_back_w_per_n(i, is_both),
+            Scale::Moment => weight_n * driven.turned_w_per_n(i, is_both),
+            Scale::Power => driven.predicted_w[i],
+            Scale::Watt => 1.0,
+        }
+    }
+}
+
 /// On which side a term acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum On {
@@ -33,6 +49,17 @@ pub(crate) enum On {
     Right,
     /// On the left side, and as much less on the right one.
     Apart,
+}
+
+impl On {
+    /// How much of it a channel has: 1, as much less, or nothing.
+    pub(crate) fn sign(self, channel: usize) -> f64 {
+        match (self, channel) {
+            (On::Both, 0 | 1) | (On::Left | On::Apart, 0) | (On::Right, 1) => 1.0,
+            (On::Apart, 1) => -1.0,
+            _ => 0.0,
+        }
+    }
 }
 
 /// A term, its size still open.
@@ -108,29 +135,27 @@ impl Term {
 
     /// Its value in every average of power, under suspicion or not \[W\].
     pub(crate) fn everywhere(&self, driven: &Driven<'_>) -> Vec<f64> {
-        let weight_n = driven.robot.mass_kg * STANDARD_GRAVITY_MPS2;
         let fastest_mps = driven.robot.max_wheel_speed_mps;
-        let side = |a: &Average| match (self.on, a.channel) {
-            (On::Both, 0 | 1) | (On::Left | On::Apart, 0) | (On::Right, 1) => 1.0,
-            (On::Apart, 1) => -1.0,
-            _ => 0.0,
-        };
         let is_both = driven.averages.iter().all(|a| a.channel != 1);
-        let scale_w = |i: usize| match self.scale {
-            Scale::Force => weight_n * driven.held_back_w_per_n(i, is_both),
-            Scale::Moment => weight_n * driven.turned_w_per_n(i, is_both),
-            Scale::Power => driven.predicted_w[i],
-            Scale::Watt => 1.0,
-        };
         let value = |(i, a): (usize, &Average)| {
-            if !a.is_in(self.span) || side(a) == 0.0 {
+            let sign = self.on.sign(a.channel);
+            if !a.is_in(self.span) || sign == 0.0 {
                 return 0.0;
             }
             let since = a.since(self.span);
             let groups = self.groups.iter().map(|group| (group.value)(&since, fastest_mps));
-            side(a) * scale_w(i) * groups.product::<f64>()
+            sign * self.scale.value_w(driven, i, is_both) * groups.product::<f64>()
         };
         driven.averages.iter().enumerate().map(value).collect()
+    }
+
+    /// Whether another is the same but for the side on which it acts.
+    pub(crate) fn is_but_for_sides(&self, other: &Term) -> bool {
+        let is_same = |(one, other): (&&Group, &&Group)| one.symbol == other.symbol;
+        self.scale == other.scale
+            && self.span == other.span
+            && self.groups.len() == other.groups.len()
+            && self.groups.iter().zip(&other.groups).all(is_same)
     }
 
     /// Whether drives under suspicion tell anything of it.

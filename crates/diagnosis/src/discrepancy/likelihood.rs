@@ -1,6 +1,7 @@
 //! How likely errors are where a function of some size is among what made them.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::average::Average;
 
@@ -36,7 +37,7 @@ pub(super) fn likelihoods(
     let all = DMatrix::from_fn(rows.len(), columns.len(), |i, j| columns[j][rows[i]]);
     let errors = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
     let (square, right) = (all.transpose() * &all, all.tr_mul(&errors));
-    SIZES.map(|share| {
+    let of_size = |share: f64| {
         let size = |j: usize| if j < first { 1.0 } else { share };
         let square =
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| square[(i, j)] * size(i) * size(j));
@@ -44,7 +45,14 @@ pub(super) fn likelihoods(
         let of_scatter =
             |scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
         SCATTERS.into_iter().map(of_scatter).fold(f64::NEG_INFINITY, f64::max)
-    })
+    };
+    let mut likelihoods = [0.0; SIZES.len()];
+    likelihoods
+        .par_iter_mut()
+        .zip(SIZES)
+        .with_max_len(1)
+        .for_each(|(likely, share)| *likely = of_size(share));
+    likelihoods
 }
 
 /// Logarithm of the likelihood of errors that are columns with weights of one sigma 1 and noise of one sigma `scatter`, but for

@@ -1,6 +1,7 @@
 //! What a candidate gains in blocks that were held out of the fit.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::{System, root};
 use crate::shared;
@@ -25,23 +26,26 @@ impl System {
             let (square, right) = (part.transpose() * &part, part.tr_mul(&self.errors_in(&rows)));
             Part { rows, square, right }
         };
-        let parts: Vec<Part> = (0..folds).map(part).collect();
+        let parts: Vec<Part> = (0..folds).into_par_iter().map(part).collect();
         let all = parts.iter().fold(self.known_before(columns.len()), |(square, right), part| {
             (square + &part.square, right + &part.right)
         });
-        let mut gains = vec![0.0; self.blocks];
-        for Part { rows, square, right } in &parts {
+        let gains_of = |Part { rows, square, right }: &Part| -> Option<Vec<f64>> {
             let (square, right) = (&all.0 - square, &all.1 - right);
             let solve = |n: usize| {
                 let square = square.view((0, 0), (n, n)).into_owned();
                 root(square).map(|root| root.solve(&right.rows(0, n)))
             };
-            let (Some(before), Some(after)) = (solve(count), solve(all_columns)) else { continue };
+            let (before, after) = (solve(count)?, solve(all_columns)?);
             let (part, errors) = (self.dense(columns, rows), self.errors_in(rows));
             let left = [&errors - part.columns(0, count) * before, &errors - &part * after];
-            for (k, i) in rows.iter().enumerate() {
-                gains[self.block[*i]] += left[0][k].powi(2) - left[1][k].powi(2);
-            }
+            Some(left[0].iter().zip(&left[1]).map(|(before, after)| before.powi(2) - after.powi(2)).collect())
+        };
+        let by_part: Vec<Option<Vec<f64>>> = parts.par_iter().map(gains_of).collect();
+        let mut gains = vec![0.0; self.blocks];
+        for (part, gained) in parts.iter().zip(by_part) {
+            let gained = part.rows.iter().zip(gained.into_iter().flatten());
+            gained.for_each(|(i, gain)| gains[self.block[*i]] += gain);
         }
         gains
     }
