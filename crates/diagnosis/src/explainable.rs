@@ -34,11 +34,12 @@ pub(crate) fn explained_share(series: &Series, base: &Baseline, errors_w: &[f64]
     let mut shared = whole;
     if series.has_healthy() {
         let healthy: Vec<Vec<f64>> = smooth.iter().map(|column| of(false, column)).collect();
-        let told = Folded::new(&healthy, &of(false, &errors), &fold);
+        let told = Folded::new(&healthy, &of(false, &errors), &fold, &series.averages);
         shared = unexplained(series, &errors, &told, &smooth).min(whole);
         columns.extend(smooth);
     }
-    let left = unexplained(series, &errors, &Folded::new(&columns, &errors, &fold), &columns);
+    let left =
+        unexplained(series, &errors, &Folded::new(&columns, &errors, &fold, &series.averages), &columns);
     ((shared - left) / whole.max(1e-300)).max(0.0)
 }
 

@@ -39,6 +39,7 @@ mod hills;
 mod history;
 mod imitate;
 mod judged;
+mod kept;
 mod knobs;
 mod limit;
 mod linear;

@@ -3,29 +3,57 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::{average::Average, channel};
+
 /// Tenths that are left out in turn.
 pub(crate) const FOLDS: usize = 10;
+
+/// Products of columns with each other and with errors.
+#[derive(Clone)]
+pub(crate) struct Products {
+    pub(crate) square: DMatrix<f64>,
+    pub(crate) right: DVector<f64>,
+}
+
+impl Products {
+    /// Of so many columns over no rows.
+    pub(crate) fn none(count: usize) -> Self {
+        Products { square: DMatrix::zeros(count, count), right: DVector::zeros(count) }
+    }
+
+    /// Adds rows in which only some of the columns are anything.
+    pub(crate) fn add(&mut self, reached: &[usize], part: &DMatrix<f64>, errors: &DVector<f64>) {
+        // Products with what was turned round first are far faster where columns are many.
+        let (square, right) = (part.transpose() * part, part.tr_mul(errors));
+        for (j, to) in reached.iter().enumerate() {
+            reached.iter().enumerate().for_each(|(i, from)| self.square[(*from, *to)] += square[(i, j)]);
+            self.right[*to] += right[j];
+        }
+    }
+}
 
 /// Columns and errors as their products, fold by fold.
 pub(crate) struct Folded<'a> {
     fold: &'a [usize],
-    square: Vec<DMatrix<f64>>,
-    right: Vec<DVector<f64>>,
+    products: Vec<Products>,
 }
 
 impl<'a> Folded<'a> {
-    /// Adds up the products of all rows of each fold.
-    pub(crate) fn new(columns: &[Vec<f64>], errors: &[f64], fold: &'a [usize]) -> Self {
-        let count = columns.len();
+    /// Adds up the products of all rows of each fold, channel by channel, as most columns are of one channel only.
+    pub(crate) fn new(columns: &[Vec<f64>], errors: &[f64], fold: &'a [usize], averages: &[Average]) -> Self {
         let products = |out: usize| {
-            let rows: Vec<usize> = (0..errors.len()).filter(|i| fold[*i] == out).collect();
-            let part = DMatrix::from_fn(rows.len(), count, |i, j| columns[j][rows[i]]);
-            let own = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
-            // Products with what was turned round first are far faster where columns are many.
-            (part.transpose() * &part, part.tr_mul(&own))
+            let mut products = Products::none(columns.len());
+            for channel in 0..channel::count(averages) {
+                let is_own = |i: &usize| fold[*i] == out && averages[*i].channel == channel;
+                let rows: Vec<usize> = (0..errors.len()).filter(is_own).collect();
+                let is_reached = |j: &usize| rows.iter().any(|i| columns[*j][*i] != 0.0);
+                let reached: Vec<usize> = (0..columns.len()).filter(is_reached).collect();
+                let part = DMatrix::from_fn(rows.len(), reached.len(), |i, j| columns[reached[j]][rows[i]]);
+                products.add(&reached, &part, &DVector::from_fn(rows.len(), |i, _| errors[rows[i]]));
+            }
+            products
         };
-        let (square, right) = (0..FOLDS).into_par_iter().map(products).unzip();
-        Folded { fold, square, right }
+        Folded { fold, products: (0..FOLDS).into_par_iter().map(products).collect() }
     }
 
     /// What columns, those of the fit or the same in another scale, say of every row when fitted to the rows of other folds.
@@ -57,8 +85,8 @@ impl<'a> Folded<'a> {
         let mut square = DMatrix::from_diagonal(&DVector::from_column_slice(known));
         let mut right = DVector::from_fn(count, |j, _| known[j] * before[j]);
         for fold in (0..FOLDS).filter(|fold| Some(*fold) != without) {
-            square += &self.square[fold];
-            right += &self.right[fold];
+            square += &self.products[fold].square;
+            right += &self.products[fold].right;
         }
         // Columns that nothing excites take no share.
         for j in 0..count {
@@ -74,6 +102,30 @@ impl<'a> Folded<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::average::Input;
+
+    /// Averages of two channels in turn.
+    fn averages(count: usize) -> Vec<Average> {
+        let input = Input::default();
+        let average = |i: usize| Average { channel: i % 2, run: 0, suspect: true, t_s: i as f64, input };
+        (0..count).map(average).collect()
+    }
+
+    #[test]
+    fn columns_of_one_channel_are_fitted_as_least_squares_over_all_rows_would() {
+        let column = |k: usize| -> Vec<f64> { (0..60).map(|i| (1.7 * (i * (k + 1)) as f64).sin()).collect() };
+        let of_channel = |k: usize| -> Vec<f64> {
+            column(k).into_iter().enumerate().map(|(i, x)| if i % 2 == k % 2 { x } else { 0.0 }).collect()
+        };
+        let (columns, errors) = ([column(0), of_channel(1), of_channel(2)], column(5));
+        let fold: Vec<usize> = (0..60).map(|i| i / 6).collect();
+        let folded = Folded::new(&columns, &errors, &fold, &averages(60));
+        let fitted = folded.fitted(&columns, &[0.0; 3], &[0.0; 3]);
+        let matrix = DMatrix::from_fn(60, 3, |i, j| columns[j][i]);
+        let shares = matrix.clone().svd(true, true).solve(&DVector::from_vec(errors), 1e-12).unwrap();
+        let by_hand = matrix * shares;
+        assert!(fitted.iter().zip(by_hand.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{fitted:?} {by_hand}");
+    }
 
     #[test]
     fn a_row_does_not_tell_what_it_is_predicted_by() {
@@ -81,7 +133,7 @@ mod tests {
         let mut errors = vec![0.0; 100];
         errors[5] = 100.0;
         let columns = vec![vec![1.0; 100]];
-        let folded = Folded::new(&columns, &errors, &fold);
+        let folded = Folded::new(&columns, &errors, &fold, &averages(100));
         let (held_out, fitted) =
             (folded.held_out(&columns, &[0.0], &[0.0]), folded.fitted(&columns, &[0.0], &[0.0]));
         assert!(held_out[5].abs() < 1e-9, "its own fold was left out: {}", held_out[5]);

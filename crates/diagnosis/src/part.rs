@@ -12,6 +12,7 @@ use crate::{
     average::{Average, Input},
     climb::Climb,
     ground, history,
+    kept::Kept,
     meter::Meter,
     sag::{Sag, Source},
     shapes::Shapes,
@@ -48,6 +49,8 @@ pub(crate) struct Part {
     /// How the ground carries the weight, by row.
     grade: Vec<Grade<f64>>,
     shapes: Shapes,
+    /// What the last robots would have shown on which nothing acts.
+    with_nothing: Kept<(Robot, Vec<Meter>), Vec<f64>>,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
@@ -111,6 +114,7 @@ impl Part {
             climb: Climb::of(recording, &drives),
             grade,
             shapes,
+            with_nothing: Kept::default(),
             drives,
             suspect,
         })

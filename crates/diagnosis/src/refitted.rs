@@ -57,7 +57,7 @@ impl Refitted {
         let white = base.whitening(series);
         let whitened: Vec<Vec<f64>> = columns.iter().map(|column| white.of(column)).collect();
         let fold = tenths(series);
-        let folded = Folded::new(&whitened, &white.of(&errors_w), &fold);
+        let folded = Folded::new(&whitened, &white.of(&errors_w), &fold, &series.averages);
         let explained =
             [folded.fitted(&columns, &known, &before), folded.held_out(&columns, &known, &before)];
         let [errors_w, held_out_w] = explained.map(|explained_w| differences(&errors_w, &explained_w));
@@ -86,7 +86,8 @@ pub(crate) fn of_healthy_alone_w(series: &Series, base: &Baseline) -> Vec<f64> {
     };
     let told: Vec<Vec<f64>> = columns.iter().map(of_healthy).collect();
     let fold = tenths(series);
-    let explained_w = Folded::new(&told, &of_healthy(&errors_w), &fold).held_out(&columns, &known, &before);
+    let explained_w = Folded::new(&told, &of_healthy(&errors_w), &fold, &series.averages)
+        .held_out(&columns, &known, &before);
     differences(&errors_w, &explained_w)
 }
 

@@ -294,8 +294,8 @@ impl Series {
     ) -> Result<Vec<f64>, Error> {
         let mut seen = Vec::with_capacity(self.recorded.len());
         for part in &self.parts {
-            let rows = part.predict(robot, if part.suspect { suspect } else { healthy }, &self.meters)?;
-            seen.extend(part.averaged(&self.meters, &rows));
+            let applied = if part.suspect { suspect } else { healthy };
+            seen.extend(part.predict_averages(robot, applied, &self.meters)?);
         }
         Ok(seen)
     }

@@ -1,77 +1,110 @@
 //! What a candidate gains in blocks that were held out of the fit.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{System, root};
-use crate::shared;
+use crate::{
+    linear::Products,
+    shared::{self, Shared},
+};
 
-/// Rows that are held out together, and the products of their columns with each other and with the errors.
-struct Part {
+/// Rows of one channel that are held out together, and which columns are anything there.
+struct Piece<'a> {
     rows: Vec<usize>,
-    square: DMatrix<f64>,
-    right: DVector<f64>,
+    reached: Vec<usize>,
+    shared: Option<&'a Shared>,
 }
+
+/// Rows of one channel, what is shared there, and the places of its columns among all.
+type Channel<'a> = (Vec<usize>, Option<&'a Shared>, Range<usize>);
 
 impl System {
     /// Drop of squared errors block by block when each tenth of the blocks is judged by a fit of the others.
     pub(crate) fn held_out(&self, columns: &[Vec<f64>], folds: usize) -> Vec<f64> {
         let count = self.columns.ncols() + shared::count(&self.shared);
         let all_columns = count + columns.len();
-        // Whole stretches of neighbouring blocks are left out together.
-        let fold = |block: usize| block * folds / self.blocks.max(1);
-        let part = |out: usize| {
-            let rows: Vec<usize> = (0..self.rows).filter(|i| fold(self.block[*i]) == out).collect();
-            let part = self.dense(columns, &rows);
-            let (square, right) = (part.transpose() * &part, part.tr_mul(&self.errors_in(&rows)));
-            Part { rows, square, right }
+        let pieces: Vec<Vec<Piece<'_>>> = self.pieces(columns.len(), folds);
+        let products = |pieces: &Vec<Piece<'_>>| {
+            let mut products = Products::none(all_columns);
+            for piece in pieces {
+                products.add(&piece.reached, &self.dense(columns, piece), &self.errors_in(&piece.rows));
+            }
+            products
         };
-        let parts: Vec<Part> = (0..folds).into_par_iter().map(part).collect();
+        let parts: Vec<Products> = pieces.par_iter().map(products).collect();
         let all = parts.iter().fold(self.known_before(columns.len()), |(square, right), part| {
             (square + &part.square, right + &part.right)
         });
-        let gains_of = |Part { rows, square, right }: &Part| -> Option<Vec<f64>> {
-            let (square, right) = (&all.0 - square, &all.1 - right);
+        let gains_of = |(pieces, part): (&Vec<Piece<'_>>, &Products)| -> Option<Vec<f64>> {
+            let (square, right) = (&all.0 - &part.square, &all.1 - &part.right);
             let solve = |n: usize| {
                 let square = square.view((0, 0), (n, n)).into_owned();
-                root(square).map(|root| root.solve(&right.rows(0, n)))
+                let found = root(square)?.solve(&right.rows(0, n));
+                // Without the candidate its columns weigh nothing.
+                Some(found.resize_vertically(all_columns, 0.0))
             };
             let (before, after) = (solve(count)?, solve(all_columns)?);
-            let (part, errors) = (self.dense(columns, rows), self.errors_in(rows));
-            let left = [&errors - part.columns(0, count) * before, &errors - &part * after];
-            Some(left[0].iter().zip(&left[1]).map(|(before, after)| before.powi(2) - after.powi(2)).collect())
+            let mut gains = vec![0.0; self.blocks];
+            for piece in pieces {
+                let (part, errors) = (self.dense(columns, piece), self.errors_in(&piece.rows));
+                let left = [&before, &after].map(|found| &errors - &part * found.select_rows(&piece.reached));
+                for (k, i) in piece.rows.iter().enumerate() {
+                    gains[self.block[*i]] += left[0][k].powi(2) - left[1][k].powi(2);
+                }
+            }
+            Some(gains)
         };
-        let by_part: Vec<Option<Vec<f64>>> = parts.par_iter().map(gains_of).collect();
+        let by_part: Vec<Option<Vec<f64>>> = pieces.par_iter().zip(&parts).map(gains_of).collect();
         let mut gains = vec![0.0; self.blocks];
-        for (part, gained) in parts.iter().zip(by_part) {
-            let gained = part.rows.iter().zip(gained.into_iter().flatten());
-            gained.for_each(|(i, gain)| gains[self.block[*i]] += gain);
+        for of_part in by_part.into_iter().flatten() {
+            gains.iter_mut().zip(of_part).for_each(|(sum, gain)| *sum += gain);
         }
         gains
     }
 
-    /// All columns over some of the recorded rows, those of a candidate last: over all rows at once they would take gigabytes of long
-    /// drives.
-    fn dense(&self, columns: &[Vec<f64>], rows: &[usize]) -> DMatrix<f64> {
+    /// Rows of each fold, channel by channel as far as something is shared there; whole stretches of neighbouring blocks are left out
+    /// together. Columns of a candidate come last.
+    fn pieces<'a>(&'a self, candidate: usize, folds: usize) -> Vec<Vec<Piece<'a>>> {
+        let fold = |i: usize| self.block[i] * folds / self.blocks.max(1);
         let always = self.columns.ncols();
-        let count = always + shared::count(&self.shared) + columns.len();
-        let mut part = DMatrix::zeros(rows.len(), count);
-        for j in 0..always {
-            rows.iter().enumerate().for_each(|(k, i)| part[(k, j)] = self.columns[(*i, j)]);
-        }
-        let mut within = vec![None; self.rows];
-        rows.iter().enumerate().for_each(|(k, i)| within[*i] = Some(k));
+        let last = always + shared::count(&self.shared);
+        let mut is_rest = vec![true; self.rows];
+        let mut channels: Vec<Channel<'a>> = Vec::new();
         let mut at = always;
         for one in self.shared.iter() {
-            let own: Vec<(usize, usize)> =
-                one.places.iter().enumerate().filter_map(|(i, place)| Some((i, within[*place]?))).collect();
-            for j in 0..one.columns.ncols() {
-                own.iter().for_each(|(i, k)| part[(*k, at + j)] = one.columns[(*i, j)]);
-            }
+            one.places.iter().for_each(|place| is_rest[*place] = false);
+            channels.push((one.places.clone(), Some(one), at..at + one.columns.ncols()));
             at += one.columns.ncols();
         }
+        channels.push(((0..self.rows).filter(|i| is_rest[*i]).collect(), None, last..last));
+        let piece = |out: usize, (places, shared, own): &Channel<'a>| Piece {
+            rows: places.iter().copied().filter(|i| fold(*i) == out).collect(),
+            reached: (0..always).chain(own.clone()).chain(last..last + candidate).collect(),
+            shared: *shared,
+        };
+        (0..folds).map(|out| channels.iter().map(|channel| piece(out, channel)).collect()).collect()
+    }
+
+    /// The columns that reach a piece, over its rows, those of a candidate last.
+    fn dense(&self, columns: &[Vec<f64>], piece: &Piece<'_>) -> DMatrix<f64> {
+        let always = self.columns.ncols();
+        let shared = piece.shared.map_or(0, |one| one.columns.ncols());
+        let mut part = DMatrix::zeros(piece.rows.len(), piece.reached.len());
+        for j in 0..always {
+            piece.rows.iter().enumerate().for_each(|(k, i)| part[(k, j)] = self.columns[(*i, j)]);
+        }
+        if let Some(one) = piece.shared {
+            let own: Vec<usize> = piece.rows.iter().map(|i| one.places.partition_point(|p| p < i)).collect();
+            for j in 0..shared {
+                own.iter().enumerate().for_each(|(k, i)| part[(k, always + j)] = one.columns[(*i, j)]);
+            }
+        }
         for (j, column) in columns.iter().enumerate() {
-            rows.iter().enumerate().for_each(|(k, i)| part[(k, at + j)] = column[*i]);
+            let to = always + shared + j;
+            piece.rows.iter().enumerate().for_each(|(k, i)| part[(k, to)] = column[*i]);
         }
         part
     }
@@ -106,7 +139,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::{evidence::Fitted, shared::Shared};
+    use crate::evidence::Fitted;
 
     const ROWS: usize = 60;
     const BLOCKS: usize = 12;

@@ -8,9 +8,30 @@ use rayon::prelude::*;
 use recording::PowerForm;
 
 use super::{Part, Seen};
-use crate::{Error, meter::Meter, series::Applied};
+use crate::{Error, meter::Meter, series::Applied, shapes::Key};
 
 impl Part {
+    /// Averages of what would be recorded, quantity by quantity, where it was.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub(crate) fn predict_averages(
+        &self,
+        robot: &Robot,
+        applied: &[Applied],
+        meters: &[Meter],
+    ) -> Result<Vec<f64>, Error> {
+        let work_out = |robot: &Robot| Ok(self.averaged(meters, &self.predict(robot, applied, meters)?));
+        if applied.is_empty() {
+            // Healthy drives are the same whatever acts in the others.
+            return Ok(self
+                .with_nothing
+                .of((robot.clone(), meters.to_vec()), |(robot, _)| work_out(robot))?
+                .to_vec());
+        }
+        work_out(robot)
+    }
+
     /// What would be recorded, by row, as far as meters ask for it.
     pub(crate) fn predict(
         &self,
@@ -91,17 +112,17 @@ impl Part {
             Err(_) => Err(Error::surface(name, robot)),
         });
         let scales_rad: Vec<f64> = scales_rad.collect::<Result<_, _>>()?;
-        Ok(self.shapes.of(robot, scales_rad, |scales_rad| {
+        self.shapes.of(Key::of(robot, scales_rad), |key| {
             let mut shapes = vec![FrictionShape::default(); self.drives.rows.len()];
             for stretch in &self.drives.stretches {
-                let scale_rad = scales_rad[stretch.surface];
+                let scale_rad = key.scales_rad[stretch.surface];
                 let rows = &self.drives.rows[stretch.rows.clone()];
                 let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &row.motion(robot));
                 let shapes = &mut shapes[stretch.rows.clone()];
                 shapes.par_iter_mut().zip(rows).with_min_len(512).for_each(|(to, row)| *to = shape(row));
             }
-            shapes
-        }))
+            Ok(shapes)
+        })
     }
 
     /// The row with the powers of so much earlier, between rows in proportion; the first or last where the stretch does not
