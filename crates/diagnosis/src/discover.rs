@@ -8,7 +8,7 @@ use crate::{
     candidates::{self, Family},
     discovered::{Discovered, UNKNOWN},
     everywhere,
-    evidence::{Evidence, System, TOGETHER},
+    evidence::{Evidence, System},
     gates::{LEVEL, cosine, passes, spread},
     noise::Whitening,
     null::Null,
@@ -198,7 +198,7 @@ impl<'a> Beside<'a> {
         let most: Vec<(f64, &Term)> =
             ranked.into_iter().take_while(|(rank, _)| *rank > 0.0).take(MOST_JUDGED).collect();
         let pair = |term: &Term| everywhere::of_term(self.series, self.base, term).map(|c| self.white.of(&c));
-        let judged = most.par_chunks(TOGETHER).flat_map_iter(|some| {
+        let judged = most.par_chunks(self.system.together()).flat_map_iter(|some| {
             let pairs: Vec<[Vec<f64>; 2]> = some.iter().map(|(_, term)| pair(term)).collect();
             let evidences = self.system.weigh_beyond(&pairs).into_iter().zip(some);
             evidences.filter_map(|(evidence, of)| self.judged(evidence?, *of)).collect::<Vec<_>>()

@@ -16,8 +16,11 @@ use crate::{
     shared::{self, Shared},
 };
 
-/// Candidates that are weighed in one go: enough for products of matrices, few enough for a processor's caches.
-pub(crate) const TOGETHER: usize = 64;
+/// Columns that are weighed in one go: enough for products of matrices, few enough for a processor's caches.
+const TOGETHER: usize = 64;
+/// Fewest that are, of long drives, and values that they may have in all: larger pieces of memory are asked for anew each time.
+const LEAST_TOGETHER: usize = 8;
+const MOST_VALUES: usize = 1 << 20;
 
 /// Whitened errors, everything that is fitted whatever the candidate, and the blocks that count as one piece of evidence each.
 ///
@@ -127,6 +130,11 @@ impl System {
     /// Number of blocks.
     pub(crate) fn blocks(&self) -> usize {
         self.blocks
+    }
+
+    /// How many columns are best weighed in one go.
+    pub(crate) fn together(&self) -> usize {
+        (MOST_VALUES / self.rows.max(1)).clamp(LEAST_TOGETHER, TOGETHER)
     }
 
     /// What is left of columns when everything fitted always has taken its part.

@@ -6,7 +6,6 @@ use crate::{
     Error,
     baseline::Baseline,
     candidates::{self, Candidate, Family},
-    evidence::TOGETHER,
     null::Null,
     secant,
     series::{Applied, Series},
@@ -52,11 +51,11 @@ impl Foremost {
             let mut best = [Vec::new(), Vec::new()];
             // All at once would take gigabytes of long drives.
             loop {
-                let some: Vec<Candidate> = candidates.by_ref().take(TOGETHER).collect();
+                let some: Vec<Candidate> = candidates.by_ref().take(scales.together()).collect();
                 if some.is_empty() {
                     break best;
                 }
-                for one in scales.weigh_all(&some).iter().flatten() {
+                for one in scales.weigh_all(some).iter().flatten() {
                     best.iter_mut().zip(MEASURES).for_each(|(best, measure)| take(best, one, measure));
                 }
             }

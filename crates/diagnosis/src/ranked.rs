@@ -9,7 +9,7 @@ use crate::{
     average::Quantity,
     baseline::Baseline,
     everywhere,
-    evidence::{Sided, Sides, System, TOGETHER},
+    evidence::{Sided, Sides, System},
     noise::Whitening,
     null::Null,
     series::Series,
@@ -56,7 +56,7 @@ fn explained<'t>(
     let sides = system.sides(tables.iter().map(|table| &table.places[..]));
     let count = series.averages.iter().filter(|a| a.quantity() == Quantity::Power).count();
     let all = Tabled { tables: &tables, white: base.whitening(series), sides, count };
-    let together = together(families(terms, series.has_healthy()));
+    let together = together(families(terms, series.has_healthy()), system.together());
     together.par_iter().flat_map_iter(|families| all.explained(families)).collect()
 }
 
@@ -78,14 +78,14 @@ fn families<'a, 't>(terms: &'a [&'t Term], has_healthy: bool) -> Vec<Family<'a, 
     families
 }
 
-/// Families of some dozens of columns each.
-fn together<'a, 't>(families: Vec<Family<'a, 't>>) -> Vec<Vec<Family<'a, 't>>> {
+/// Families of so many columns together.
+fn together<'a, 't>(families: Vec<Family<'a, 't>>, most: usize) -> Vec<Vec<Family<'a, 't>>> {
     let mut all: Vec<Vec<Family<'a, 't>>> = Vec::new();
     let mut columns = 0;
     for family in families {
         let more = family.columns().count();
         match all.last_mut() {
-            Some(last) if columns < TOGETHER => last.push(family),
+            Some(last) if columns < most => last.push(family),
             _ => {
                 all.push(vec![family]);
                 columns = 0;

@@ -23,7 +23,7 @@ pub(crate) fn closer(
     base: &Baseline,
     others: &[Applied],
     (first, measure): (&Weighed, Measure),
-    weigh: &dyn Fn(&Candidate) -> Option<Weighed>,
+    weigh: &dyn Fn(Candidate) -> Option<Weighed>,
 ) -> Result<Option<Weighed>, Error> {
     let mut best: Option<Weighed> = None;
     for _ in 0..ROUNDS {
@@ -34,7 +34,7 @@ pub(crate) fn closer(
             linear: first.candidate.linear.clone(),
             columns,
         };
-        match weigh(&candidate) {
+        match weigh(candidate) {
             Some(next) if measure(&next) > measure(last) => best = Some(next),
             _ => break,
         }

@@ -1,6 +1,7 @@
 //! What models miss, channel by channel: many columns that are taken out of all others.
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
+use rayon::prelude::*;
 
 /// Columns of one channel whose weights have a width of 1, about 0.
 pub(crate) struct Shared {
@@ -26,15 +27,11 @@ impl Shared {
         Some(Shared { places, columns, transposed, root })
     }
 
-    /// Takes the shared part out of columns, and puts its weights in rows from `first` on, where what is known before of them stands.
-    fn take(&self, columns: &mut DMatrix<f64>, first: usize) {
-        let Some(own) = self.own(columns) else { return };
-        let weights = self.root.solve(&(&self.transposed * &own));
-        let left = own - &self.columns * &weights;
-        for (mut column, left) in columns.column_iter_mut().zip(left.column_iter()) {
-            self.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
-        }
-        columns.rows_mut(first, weights.nrows()).copy_from(&-weights);
+    /// What is left of columns in the rows of the channel when the shared ones took their part, and the weights of those in them.
+    fn left(&self, columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        let own = self.own(columns)?;
+        let (_, weights) = self.taken_of(&own);
+        Some((own - &self.columns * &weights, weights))
     }
 
     /// Products of the shared columns with others, and the weights of the shared ones in them; `None` where both are nothing.
@@ -63,10 +60,16 @@ pub(crate) fn count(shared: &[Shared]) -> usize {
     shared.iter().map(|one| one.columns.ncols()).sum()
 }
 
-/// Takes the shared parts of all channels out of columns; rows of what is known before of them begin at `first`.
+/// Takes the shared parts of all channels out of columns; rows of what is known before of them, where their weights stand, begin at `first`.
 pub(crate) fn take(shared: &[Shared], mut first: usize, columns: &mut DMatrix<f64>) {
-    for one in shared {
-        one.take(columns, first);
+    let left: Vec<_> = shared.par_iter().map(|one| one.left(columns)).collect();
+    for (one, left) in shared.iter().zip(left) {
+        if let Some((left, weights)) = left {
+            for (mut column, left) in columns.column_iter_mut().zip(left.column_iter()) {
+                one.places.iter().zip(left.iter()).for_each(|(place, x)| column[*place] = *x);
+            }
+            columns.rows_mut(first, weights.nrows()).copy_from(&-weights);
+        }
         first += one.columns.ncols();
     }
 }

@@ -140,19 +140,24 @@ impl<'a> Scales<'a> {
         self.all_fitted.blocks()
     }
 
+    /// How many candidates are best weighed in one go.
+    pub(crate) fn together(&self) -> usize {
+        self.all_fitted.together()
+    }
+
     /// What candidates of one mechanism explain, each by itself.
-    pub(crate) fn weigh_all(&self, candidates: &[Candidate]) -> Vec<Option<Weighed>> {
+    pub(crate) fn weigh_all(&self, candidates: Vec<Candidate>) -> Vec<Option<Weighed>> {
         let is_delay = candidates.iter().any(|one| name(one) == "clock_offset");
         let system = if is_delay { &self.delay_apart } else { &self.all_fitted };
         let white = |one: &Candidate| one.columns.iter().map(|c| self.white.of(c)).collect();
         let whitened: Vec<Vec<Vec<f64>>> = candidates.iter().map(white).collect();
         let evidence = system.weigh_all(&whitened).into_iter().zip(candidates);
-        evidence.map(|(evidence, one)| self.judge(one.clone(), evidence?)).collect()
+        evidence.map(|(evidence, one)| self.judge(one, evidence?)).collect()
     }
 
     /// What a candidate explains; `None` where that is nothing, or more than can be.
-    pub(crate) fn weigh(&self, candidate: &Candidate) -> Option<Weighed> {
-        self.weigh_all(std::slice::from_ref(candidate)).pop().flatten()
+    pub(crate) fn weigh(&self, candidate: Candidate) -> Option<Weighed> {
+        self.weigh_all(vec![candidate]).pop().flatten()
     }
 
     /// A candidate with its evidence; `None` where that is more than can be.
