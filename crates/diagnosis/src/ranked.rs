@@ -199,7 +199,12 @@ mod tests {
         let robot = model::builtin::husky_a200();
         let payload = mechanism::by_name("payload").unwrap();
         let load = Applied { mechanism: payload, values: vec![10.0], span: Span::ALL };
-        let [suspect, healthy] = [(0.0, &[load][..]), (1.0, &[])].map(|(at, with)| drive(&robot, at, with));
+        let [suspect, healthy] = [(0.0, &[load][..]), (1.0, &[])].map(|(at, with)| {
+            // The first second began before the drive did.
+            let mut drive = drive(&robot, at, with);
+            drive.t_s.iter_mut().for_each(|t_s| *t_s += 0.1);
+            drive
+        });
         let from = Span::From { run: 0, t_s: 200.0 };
         for healthy in [Some(&healthy), None] {
             let series = Series::new(&robot, &suspect, healthy).unwrap();

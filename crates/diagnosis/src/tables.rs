@@ -59,9 +59,7 @@ impl<'a> Table<'a> {
                 }
             }
         }
-        if !term.span.is_all() {
-            self.keep(&mut column, |average| average.is_in(term.span));
-        }
+        self.keep(&mut column, |average| average.is_in(term.span));
         column
     }
 
