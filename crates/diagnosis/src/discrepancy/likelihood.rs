@@ -32,8 +32,11 @@ pub(super) fn likelihoods(
     let has_healthy = averages.iter().any(|a| !a.suspect);
     let tells = |a: &Average| a.channel == channel && !(has_healthy && a.suspect);
     let rows: Vec<usize> = (0..averages.len()).filter(|i| tells(&averages[*i])).collect();
-    let first = beside.len();
-    let columns: Vec<&Vec<f64>> = beside.iter().chain(own).collect();
+    // Columns of other channels are nothing here, and would cost the most.
+    let is_own = |column: &&Vec<f64>| rows.iter().any(|i| column[*i] != 0.0);
+    let mut columns: Vec<&Vec<f64>> = beside.iter().filter(is_own).collect();
+    let first = columns.len();
+    columns.extend(own);
     let all = DMatrix::from_fn(rows.len(), columns.len(), |i, j| columns[j][rows[i]]);
     let errors = DVector::from_fn(rows.len(), |i, _| errors[rows[i]]);
     let (square, right) = (all.transpose() * &all, all.tr_mul(&errors));
