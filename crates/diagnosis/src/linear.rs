@@ -8,22 +8,22 @@ use crate::{average::Average, channel};
 /// Tenths that are left out in turn.
 pub(crate) const FOLDS: usize = 10;
 
-/// Products of columns with each other and with errors.
+/// NormalEquations of columns with each other and with errors.
 #[derive(Clone)]
-pub(crate) struct Products {
+pub(crate) struct NormalEquations {
     pub(crate) square: DMatrix<f64>,
     pub(crate) right: DVector<f64>,
 }
 
-impl Products {
+impl NormalEquations {
     /// Of so many columns over no rows.
     pub(crate) fn none(count: usize) -> Self {
-        Products { square: DMatrix::zeros(count, count), right: DVector::zeros(count) }
+        NormalEquations { square: DMatrix::zeros(count, count), right: DVector::zeros(count) }
     }
 
     /// Adds rows in which only some of the columns are anything.
     pub(crate) fn add(&mut self, reached: &[usize], part: &DMatrix<f64>, errors: &DVector<f64>) {
-        // Products with what was turned round first are far faster where columns are many.
+        // NormalEquations with what was turned round first are far faster where columns are many.
         let (square, right) = (part.transpose() * part, part.tr_mul(errors));
         for (j, to) in reached.iter().enumerate() {
             reached.iter().enumerate().for_each(|(i, from)| self.square[(*from, *to)] += square[(i, j)]);
@@ -35,14 +35,14 @@ impl Products {
 /// Columns and errors as their products, fold by fold.
 pub(crate) struct Folded<'a> {
     fold: &'a [usize],
-    products: Vec<Products>,
+    products: Vec<NormalEquations>,
 }
 
 impl<'a> Folded<'a> {
     /// Adds up the products of all rows of each fold, channel by channel, as most columns are of one channel only.
     pub(crate) fn new(columns: &[Vec<f64>], errors: &[f64], fold: &'a [usize], averages: &[Average]) -> Self {
         let products = |out: usize| {
-            let mut products = Products::none(columns.len());
+            let mut products = NormalEquations::none(columns.len());
             for channel in 0..channel::count(averages) {
                 let is_own = |i: &usize| fold[*i] == out && averages[*i].channel == channel;
                 let rows: Vec<usize> = (0..errors.len()).filter(is_own).collect();

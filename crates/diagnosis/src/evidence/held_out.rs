@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{System, root};
 use crate::{
-    linear::Products,
+    linear::NormalEquations,
     shared::{self, Shared},
 };
 
@@ -28,17 +28,17 @@ impl System {
         let all_columns = count + columns.len();
         let pieces: Vec<Vec<Piece<'_>>> = self.pieces(columns.len(), folds);
         let products = |pieces: &Vec<Piece<'_>>| {
-            let mut products = Products::none(all_columns);
+            let mut products = NormalEquations::none(all_columns);
             for piece in pieces {
                 products.add(&piece.reached, &self.dense(columns, piece), &self.errors_in(&piece.rows));
             }
             products
         };
-        let parts: Vec<Products> = pieces.par_iter().map(products).collect();
+        let parts: Vec<NormalEquations> = pieces.par_iter().map(products).collect();
         let all = parts.iter().fold(self.known_before(columns.len()), |(square, right), part| {
             (square + &part.square, right + &part.right)
         });
-        let gains_of = |(pieces, part): (&Vec<Piece<'_>>, &Products)| -> Option<Vec<f64>> {
+        let gains_of = |(pieces, part): (&Vec<Piece<'_>>, &NormalEquations)| -> Option<Vec<f64>> {
             let (square, right) = (&all.0 - &part.square, &all.1 - &part.right);
             let solve = |n: usize| {
                 let square = square.view((0, 0), (n, n)).into_owned();
