@@ -32,6 +32,9 @@ fn a_stone_in_a_tyre_is_not_taken_for_drag() {
     let whole =
         squares(fit.held_out_rmse_before_w, found.baseline.noise_floor_w.min(fit.held_out_rmse_after_w));
     assert!(squares(fit.held_out_rmse_before_w, fit.held_out_rmse_after_w) > 0.5 * whole, "{fit:?}");
+    // What was told is no noise.
+    let (floor_w, corrected_w) = (found.baseline.noise_floor_w, found.corrected.rmse_w);
+    assert!(floor_w <= corrected_w, "{floor_w} {corrected_w}");
     // It is told without healthy drives too.
     let alone = said(&suspect, None);
     assert!(alone.verdict == Verdict::Unexplained && turns(&alone).is_some(), "{}", alone.sentence);

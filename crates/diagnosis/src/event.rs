@@ -58,6 +58,11 @@ impl Event {
         let places = beyond.iter().take(told).map(|stretch| stretch.place(series, all_w2)).collect();
         Some(Event { words: beyond.first()?.words(series), recurs, places })
     }
+
+    /// Whether there is enough of it to be evidence that something is missing.
+    pub(crate) fn comes_again(&self) -> bool {
+        self.recurs.is_some()
+    }
 }
 
 /// In how many stretches of drives under suspicion power is further off than it is in healthy ones; in none, as far as one can tell, without

@@ -119,12 +119,14 @@ impl Judged {
             held_out_rmse_w: rmse_w(series, &last.held_out_w),
         };
         let missed = Missed { after_w: corrected.held_out_rmse_w, ..self.missed() };
-        let recurs = |event: &Event| event.recurs.is_some();
-        let recurs_still = || Event::of(series, &found.after, &last.held_out_w).is_some_and(|e| recurs(&e));
-        if self.event.as_ref().is_some_and(recurs) && missed.is_most() && recurs_still() {
+        let comes_still =
+            || Event::of(series, &found.after, &last.held_out_w).is_some_and(|event| event.comes_again());
+        if self.event.as_ref().is_some_and(Event::comes_again) && missed.is_most() && comes_still() {
             return Ok(());
         }
         self.corrected = corrected;
+        // What a term tells was no noise, though neither inputs nor the second before had told it.
+        self.baseline.noise_floor_w = self.baseline.noise_floor_w.min(corrected.rmse_w);
         self.held_out_rmse_w.extend(more.iter().map(|step| rmse_w(series, &step.held_out_w)));
         self.steps.extend(more);
         self.discovered = discovered;
@@ -133,7 +135,7 @@ impl Judged {
 
     pub(crate) fn verdict(&self, found: &Search) -> Verdict {
         match self.verdict_by_inputs(found) {
-            Verdict::Consistent if self.event.as_ref().is_some_and(|event| event.recurs.is_some()) => {
+            Verdict::Consistent if self.event.as_ref().is_some_and(Event::comes_again) => {
                 Verdict::Unexplained
             }
             verdict => verdict,

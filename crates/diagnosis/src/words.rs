@@ -31,7 +31,7 @@ pub(crate) fn sentence(found: &Diagnosis, refused: &[Refused], event: Option<&Ev
         (None, _) => verdict(found, !refused.is_empty()),
     };
     // What is not sure enough to be missing is not worth a reason.
-    let is_else = event.is_some_and(|event| event.recurs.is_some());
+    let is_else = event.is_some_and(Event::comes_again);
     let told = if found.verdict == Verdict::Consistent || is_else { &[] } else { refused };
     for Refused { mechanism, why, .. } in told {
         text += &format!(" {} would explain part of it, but {why}.", capital(plain(mechanism)));
