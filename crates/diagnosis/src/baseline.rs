@@ -10,13 +10,14 @@ use crate::{
     Error,
     average::{Average, Quantity},
     candidates, channel,
-    discrepancy::{Discrepancy, Ground, Whitened},
+    discrepancy::Ground,
     driven::Driven,
     everywhere, form,
     knobs::Knob,
+    learnt::{Fit, Learnt},
     noise::{Noise, Whitening},
     nuisance,
-    series::{Applied, Series},
+    series::{Applied, Look, Series},
     shared::Shared,
     span::Span,
 };
@@ -50,8 +51,7 @@ pub(crate) struct Baseline {
     pub(crate) rims_w_per_n: [Vec<f64>; 2],
     /// What the forms of mechanisms that act leave open, per one sigma.
     pub(crate) forms: Vec<Vec<f64>>,
-    /// Scatter of what is recorded about the predictions: what models miss, which [`Baseline::shared`] may take, counts as noise as well. With
-    /// less, a healthy drive of another kind than the healthy ones passed for one with a meter that reads 1 % too little.
+    /// Scatter of what is recorded about the predictions, as [`Look`] says.
     pub(crate) noise: Noise,
     /// What [`Baseline::missed`] made, on even and on uneven ground.
     missed: [OnceLock<Arc<[Shared]>>; 2],
@@ -125,17 +125,24 @@ impl Baseline {
         let tilts = tilts(series, &robot, applied, &predicted_w)?;
         let rims_w_per_n = rims_w_per_n(series, &robot, applied, &predicted_w)?;
         // Made beforehand: who waits for others to work it out with it must not come back for it.
-        if series.discrepancy.get().is_none() {
-            let learnt = learn(series, &predicted_w, &columns, &noise);
-            series.discrepancy.get_or_init(|| learnt);
+        let fit = Fit { predicted_w: &predicted_w, columns: &columns, trusted: &trusted };
+        let told = series.told();
+        if told.learnt.get().is_none() {
+            let learnt = Learnt::of(series, fit, &noise);
+            told.learnt.get_or_init(|| learnt);
+        }
+        if let Some(learnt) = told.learnt.get()
+            && series.look == Look::Closer
+        {
+            noise = learnt.noise_of(series, fit);
         }
         // How far forms are open hangs on what was learnt.
         let forms = form::forms(series, &robot, applied, &predicted_w)?;
-        if series.everywhere.get().is_none() {
+        if told.everywhere.get().is_none() {
             let none_w =
                 if applied.is_empty() { predicted_w.clone() } else { series.predict(&robot, &[])? };
             let columns = everywhere::columns(series, &robot, &none_w)?;
-            series.everywhere.get_or_init(|| columns);
+            told.everywhere.get_or_init(|| columns);
         }
         Ok(Baseline {
             robot,
@@ -161,8 +168,8 @@ impl Baseline {
         let of = |(channel, mean_w): (usize, f64)| {
             let places = channel::places(averages, channel);
             let mut columns = nuisance::of_channel(averages, &places, mean_w);
-            if let Some(missed) = series.discrepancy.get() {
-                columns.extend(missed.of_channel(channel, mean_w, ground));
+            if let Some(learnt) = series.told().learnt.get() {
+                columns.extend(learnt.missed.of_channel(channel, mean_w, ground));
             }
             (places, columns)
         };
@@ -205,16 +212,6 @@ impl Baseline {
     pub(crate) fn whitening(&self, series: &Series) -> Whitening {
         self.noise.whitening(&self.predicted_w, &series.averages)
     }
-}
-
-/// Learns what the model misses from what a fit leaves.
-fn learn(series: &Series, predicted_w: &[f64], columns: &[Vec<f64>], noise: &Noise) -> Discrepancy {
-    let white = noise.whitening(predicted_w, &series.averages);
-    let means = nuisance::means(&series.averages, predicted_w);
-    let errors = white.of(&differences(&series.recorded, predicted_w));
-    let nuisances = nuisance::columns(&series.averages, predicted_w);
-    let columns = columns.iter().chain(&nuisances).map(|column| white.of(column)).collect();
-    Discrepancy::learn(&series.averages, (&means, predicted_w), &Whitened { errors, columns, white: &white })
 }
 
 fn delays(

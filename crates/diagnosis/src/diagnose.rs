@@ -18,7 +18,7 @@ use crate::{
     next_drive::next_drive,
     report::{Diagnosis, Verdict},
     search::{Search, search},
-    series::{Applied, Series},
+    series::{Applied, Look, Series},
     weigh::BLOCK_S,
     words,
 };
@@ -76,7 +76,7 @@ pub fn diagnose_watched(
     let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
     let healthy = healthy.as_ref();
     let series = Series::watched(robot, suspect, healthy, watch)?;
-    let series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;
+    let mut series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
@@ -88,11 +88,18 @@ pub fn diagnose_watched(
     let found = if mistakes.is_empty() { search(&series, robot, begun, &told)? } else { begun };
     progress("judging what is left", 0.7);
     let mut judged = Judged::new(&series, robot, &found)?;
-    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    progress("looking outside the list", 0.75);
+    progress("looking outside the list", 0.72);
+    let mut found = found;
     if mistakes.is_empty() {
-        look_outside(&series, &found, &applied, &mut judged)?;
+        look_outside(&series, &found, &mut judged)?;
+        progress("looking closer for what is weak", 0.75);
+        if judged.verdict(&found) == Verdict::Consistent
+            && let Some(closer) = look_closer(&mut series, robot, healthy)?
+        {
+            (found, judged) = closer;
+        }
     }
+    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
     progress("locating the difference", 0.8);
     let places = if mistakes.is_empty() { judged.places(&series, robot, &found)? } else { Vec::new() };
     progress("planning the next drive", 0.85);
@@ -140,12 +147,7 @@ fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
 }
 
 /// Takes up terms outside the list, if what was found leaves it open whether something else acts.
-fn look_outside(
-    series: &Series,
-    found: &Search,
-    applied: &[Applied],
-    judged: &mut Judged,
-) -> Result<(), Error> {
+fn look_outside(series: &Series, found: &Search, judged: &mut Judged) -> Result<(), Error> {
     // That something comes again and again says nothing of what it would follow.
     let sure = match judged.verdict_by_inputs(found) {
         Verdict::Unexplained if series.has_healthy() => Sure::AsUsual,
@@ -153,8 +155,31 @@ fn look_outside(
         _ if series.turning.is_some() => Sure::AsUsual,
         _ => return Ok(()),
     };
-    let terms = discover(series, &found.after, applied, &found.refused, (&found.null, sure))?;
+    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
+    let terms = discover(series, &found.after, &applied, &found.refused, (&found.null, sure))?;
     judged.take_up(series, found, terms)
+}
+
+/// What is weak and has a name, where nothing else is missing: beside what models miss of healthy drives, noise is less.
+fn look_closer(
+    series: &mut Series,
+    robot: &Robot,
+    healthy: Option<&Recording>,
+) -> Result<Option<(Search, Judged)>, Error> {
+    if healthy.is_none() {
+        return Ok(None);
+    }
+    series.look = Look::Closer;
+    let begun = Search::begin(series, robot, healthy, &|_, _| {})?;
+    let found = search(series, robot, begun, &|_, _| {})?;
+    if !found.found.is_empty() {
+        let judged = Judged::new(series, robot, &found)?;
+        if let Verdict::Explained | Verdict::Ambiguous = judged.verdict(&found) {
+            return Ok(Some((found, judged)));
+        }
+    }
+    series.look = Look::Usual;
+    Ok(None)
 }
 
 /// The drive that tells the first ambiguous finding from its alternatives.

@@ -41,6 +41,7 @@ mod imitate;
 mod judged;
 mod kept;
 mod knobs;
+mod learnt;
 mod limit;
 mod linear;
 mod locate;

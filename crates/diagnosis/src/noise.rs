@@ -77,6 +77,14 @@ impl Noise {
         more * self.sigma_of(average.channel, &average.input, predicted)
     }
 
+    /// By what share it is more or less than another, mean of all averages.
+    pub(crate) fn change_from(&self, other: &Noise, (averages, predicted): (&[Average], &[f64])) -> f64 {
+        let change = |(average, p): (&Average, &f64)| {
+            (self.fresh_sigma(average, *p) / other.fresh_sigma(average, *p)).ln().abs()
+        };
+        averages.iter().zip(predicted).map(change).sum::<f64>() / averages.len().max(1) as f64
+    }
+
     /// What the average before does not tell of an error, one sigma.
     pub(crate) fn fresh_sigma(&self, average: &Average, predicted: f64) -> f64 {
         (1.0 - self.channels[average.channel].rho.powi(2)).sqrt() * self.sigma(average, predicted)

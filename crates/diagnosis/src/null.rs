@@ -9,7 +9,12 @@ use model::Robot;
 use recording::{Recording, Watch};
 
 use crate::{
-    Error, baseline::Baseline, diagnose::NEEDED_S, foremost::Foremost, parts::one_and_others, series::Series,
+    Error,
+    baseline::Baseline,
+    diagnose::NEEDED_S,
+    foremost::Foremost,
+    parts::one_and_others,
+    series::{Look, Series},
     weigh::Weighed,
 };
 
@@ -35,17 +40,22 @@ impl Null {
     ///
     /// # Errors
     /// A surface that the robot does not know, or that the watch breaks.
-    pub(crate) fn of(robot: &Robot, healthy: Option<&Recording>, watch: &Watch) -> Result<Self, Error> {
+    pub(crate) fn of(
+        robot: &Robot,
+        healthy: Option<&Recording>,
+        (watch, look): (&Watch, Look),
+    ) -> Result<Self, Error> {
         let Some(healthy) = healthy else { return Ok(Null::default()) };
         let mut seen: BTreeMap<&'static str, Vec<Seen>> = BTreeMap::new();
         for (suspect, others) in one_and_others(healthy, NEEDED_S as f64) {
-            let series = match Series::watched(robot, &suspect, Some(&others), watch) {
+            let mut series = match Series::watched(robot, &suspect, Some(&others), watch) {
                 Ok(series) => series,
                 Err(Error::Calibration(calibration::Error::Stopped)) => {
                     return Err(calibration::Error::Stopped.into());
                 }
                 Err(_) => continue,
             };
+            series.look = look;
             let base = Baseline::fit(&series, robot, &[])?;
             let Foremost { surest, blocks, .. } = Foremost::of(&series, &base, &[], &Null::default())?;
             for Weighed { candidate, evidence, tried, .. } in surest.iter().filter(|one| !one.is_in_place()) {

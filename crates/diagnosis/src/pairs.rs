@@ -203,7 +203,7 @@ mod tests {
     use recording::unwatched;
 
     use super::*;
-    use crate::{candidates::Candidate, evidence::Evidence, hills::drive, span::Span};
+    use crate::{candidates::Candidate, evidence::Evidence, hills::drive, series::Look, span::Span};
 
     #[test]
     fn what_sets_in_between_the_times_that_are_tried_is_weighed_from_when_it_does() {
@@ -212,7 +212,7 @@ mod tests {
         let load = Applied { mechanism: mechanism::by_name("payload").unwrap(), values: vec![25.0], span };
         let [suspect, healthy] = [drive(&robot, 0.0, &[load]), drive(&robot, 1.0, &[])];
         let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
-        let null = Null::of(&robot, Some(&healthy), &unwatched()).unwrap();
+        let null = Null::of(&robot, Some(&healthy), (&unwatched(), Look::Usual)).unwrap();
         let before = Baseline::fit(&series, &robot, &[]).unwrap();
         let Foremost { closest, blocks, .. } = Foremost::of(&series, &before, &[], &null).unwrap();
         let load = closest.into_iter().find(|one| one.name() == "payload").unwrap();

@@ -91,7 +91,7 @@ impl Search {
         progress: &dyn Fn(&str, f64),
     ) -> Result<Search, Error> {
         progress("comparing healthy drives", 0.0);
-        let null = Null::of(file, healthy, series.watch())?;
+        let null = Null::of(file, healthy, (series.watch(), series.look))?;
         progress("fitting the robot", 0.05);
         let before = Baseline::fit(series, file, &[])?;
         let left = left(series, &before);
@@ -269,5 +269,5 @@ pub(crate) fn openness(series: &Series) -> f64 {
 
 /// One sigma of what the model misses, as learnt of healthy drives where there are any, as a share of power.
 pub(crate) fn missed_share(series: &Series) -> f64 {
-    series.discrepancy.get().map_or(0.0, |missed| missed.share(series.channels()))
+    series.told().learnt.get().map_or(0.0, |learnt| learnt.missed.share(series.channels()))
 }

@@ -15,8 +15,8 @@ use recording::{PowerForm, Recording, Watch, unwatched};
 use crate::{
     Error,
     average::Average,
-    discrepancy::Discrepancy,
     knobs::Seen,
+    learnt::Learnt,
     meter::Meter,
     part::Part,
     region::EDGES,
@@ -41,6 +41,24 @@ impl std::fmt::Debug for Applied {
     }
 }
 
+/// How drives are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Look {
+    /// What models miss counts as noise as well: what stands out is no matter of how a model's form is off.
+    Usual,
+    /// Beside what models miss, for what is weak where nothing else is missing; see [`crate::learnt`].
+    Closer,
+}
+
+/// What drives tell of the model; worked out when first needed.
+#[derive(Default)]
+pub(crate) struct Told {
+    /// What the model misses of these drives.
+    pub(crate) learnt: OnceLock<Learnt>,
+    /// What mechanisms do where they act in all drives.
+    pub(crate) everywhere: OnceLock<Vec<Vec<f64>>>,
+}
+
 /// All drives.
 pub struct Series {
     parts: Vec<Part>,
@@ -54,10 +72,9 @@ pub struct Series {
     watch: Watch,
     /// Mechanisms that may act.
     library: Vec<&'static dyn Mechanism>,
-    /// What the model misses of these drives; learnt when first needed.
-    pub(crate) discrepancy: OnceLock<Discrepancy>,
-    /// What mechanisms do where they act in all drives; worked out when first needed.
-    pub(crate) everywhere: OnceLock<Vec<Vec<f64>>>,
+    /// How they are looked at.
+    pub(crate) look: Look,
+    told: [Told; 2],
     /// What repeats with every turn of the wheels, if anything does.
     pub(crate) turning: Option<Line>,
     /// See [`Series::row_s`].
@@ -106,8 +123,8 @@ impl Series {
             names: suspect.runs.iter().map(|run| run.name.clone()).collect(),
             watch,
             library: mechanism::ALL.to_vec(),
-            discrepancy: OnceLock::new(),
-            everywhere: OnceLock::new(),
+            look: Look::Usual,
+            told: Default::default(),
             turning: None,
             row_s,
         };
@@ -120,6 +137,11 @@ impl Series {
             runs += part.drives.runs.len();
         }
         Ok(series)
+    }
+
+    /// What drives tell of the model, looked at as they are.
+    pub(crate) fn told(&self) -> &Told {
+        &self.told[self.look as usize]
     }
 
     /// The same drives, with what repeats with every turn of the wheels looked for.

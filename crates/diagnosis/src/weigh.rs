@@ -14,7 +14,7 @@ use crate::{
     noise::Whitening,
     null::Null,
     plausible::is_plausible,
-    series::{Applied, Series},
+    series::{Applied, Look, Series},
     span::Span,
 };
 
@@ -168,6 +168,9 @@ impl<'a> Scales<'a> {
         if is_from_grid(&candidate) || is_strong {
             evidence.discord = 1.0;
         }
+        if self.series.look == Look::Closer {
+            evidence.discord = shrunk(evidence.discord);
+        }
         if !is_plausible(&self.base.robot, &candidate, &evidence, self.series.row_s()) {
             return None;
         }
@@ -201,6 +204,12 @@ impl<'a> Scales<'a> {
         }
         f64::sqrt(change / whole.max(1e-300))
     }
+}
+
+/// A scatter from regime to regime where nothing strong is missing: three regimes tell it no closer than its own size, so that it counts
+/// half, as next to as many that agree.
+fn shrunk(discord: f64) -> f64 {
+    f64::midpoint(1.0, discord)
 }
 
 /// Changes of power beyond this share of it are not what a model misses of a robot in order.
@@ -282,5 +291,10 @@ mod tests {
         // Errors that hang together are so much less evidence.
         let lasting = Evidence { lasting: 2.0, ..evidence };
         assert!(chance(&lasting, Span::ALL) > 1e-4);
+    }
+
+    #[test]
+    fn a_scatter_that_three_regimes_tell_counts_half() {
+        assert_eq!([1.0, 2.0, 5.0].map(shrunk), [1.0, 1.5, 3.0]);
     }
 }

@@ -77,7 +77,7 @@ fn system_by(
     if delayed {
         columns.push(white.of(&base.delays[0]));
     }
-    let everywhere = series.everywhere.get().into_iter().flatten();
+    let everywhere = series.told().everywhere.get().into_iter().flatten();
     columns.extend(base.sags.iter().chain(&base.tilts).chain(everywhere).map(|c| white.of(c)));
     if sizes == Sizes::Open {
         columns.extend(base.forms.iter().map(|c| white.of(c)));
