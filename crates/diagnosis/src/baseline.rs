@@ -167,10 +167,10 @@ impl Baseline {
         let averages = &series.averages;
         let of = |(channel, mean_w): (usize, f64)| {
             let places = channel::places(averages, channel);
-            let mut columns = nuisance::of_channel(averages, &places, mean_w);
-            if let Some(learnt) = series.told().learnt.get() {
-                columns.extend(learnt.missed.of_channel(channel, mean_w, ground));
-            }
+            let columns = match series.told().learnt.get() {
+                Some(learnt) => learnt.of_channel(averages, &places, (channel, mean_w), ground),
+                None => nuisance::of_channel(averages, &places, mean_w),
+            };
             (places, columns)
         };
         nuisance::means(averages, &self.predicted_w).into_iter().enumerate().map(of).collect()

@@ -14,9 +14,10 @@ use crate::{
     null::Null,
     ranked::ranked,
     refused::Refused,
+    search::TOLD,
     series::{Applied, Series},
     term::{self, Scale, Term},
-    weigh::{judged, speaking, system_with},
+    weigh::{judged, share, speaking, system_with},
     widths::NORMAL_975,
 };
 
@@ -174,14 +175,20 @@ impl<'a> Beside<'a> {
                 (best, held_out_gain) = (closer, gain);
             }
         }
+        let (size, column_w) = (best.evidence.values[0], self.column_w(best.term));
+        let change_w: Vec<f64> = column_w.iter().map(|w| size * w).collect();
+        // However surely long drives tell it: that little a model may miss.
+        if self.sure == Sure::Very && share(self.series, self.base, &change_w) < TOLD {
+            return None;
+        }
         Some(Discovered {
             term: best.term.clone(),
-            size: best.evidence.values[0],
+            size,
             half_width: NORMAL_975 * best.evidence.covariance[(0, 0)].max(0.0).sqrt(),
             p_value: best.p_value,
             score: best.score,
             held_out_gain,
-            column_w: self.column_w(best.term),
+            column_w,
             resembles: None,
         })
     }

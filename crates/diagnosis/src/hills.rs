@@ -38,3 +38,15 @@ pub(crate) fn drive(robot: &Robot, phase_rad: f64, applied: &[Applied]) -> Recor
     }
     made
 }
+
+/// The same of a Husky whose power the model misses by so many watts, up and down with what each side does; noise of an average is 2 W/√10.
+pub(crate) fn missed_by(size_w: f64, phase_rad: f64, applied: &[Applied]) -> Recording {
+    let mut made = drive(&model::builtin::husky_a200(), phase_rad, applied);
+    let sides = [(Channel::LeftSpeed, Channel::LeftPower), (Channel::RightSpeed, Channel::RightPower)];
+    for (speed, power) in sides {
+        let speeds = made.channels[&speed].clone();
+        let powers = made.channels.get_mut(&power).unwrap();
+        powers.iter_mut().zip(speeds).for_each(|(w, mps)| *w += size_w * (8.0 * mps).sin());
+    }
+    made
+}

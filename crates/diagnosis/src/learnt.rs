@@ -8,6 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
+    average::Average,
     baseline::differences,
     channel,
     discrepancy::{Discrepancy, Ground, Whitened},
@@ -61,35 +62,39 @@ impl Learnt {
         let mut errors = differences(&series.recorded, predicted_w);
         for (channel, mean_w) in nuisance::means(&series.averages, predicted_w).into_iter().enumerate() {
             let places = channel::places(&series.averages, channel);
-            let taken =
-                self.taken(series, fit, (&places, &self.columns(series, fit, (channel, mean_w))), &errors);
-            places.iter().zip(taken).for_each(|(place, error)| errors[*place] = error);
+            let own = |column: &Vec<f64>| places.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+            let mut columns = self.of_channel(&series.averages, &places, (channel, mean_w), Ground::Even);
+            columns.extend(fit.columns.iter().map(own).filter(|own| own.iter().any(|x| *x != 0.0)));
+            let left = self.left(series, fit, (&places, &columns), &own(&errors));
+            places.iter().zip(left).for_each(|(place, error)| errors[*place] = error);
         }
         Noise::of(&errors, predicted_w, &series.averages, trusted)
     }
 
-    /// What models may miss of a channel of such a mean size, and what the robot's numbers change of it, with weights of one sigma 1.
-    fn columns(&self, series: &Series, fit: Fit<'_>, (channel, mean_w): (usize, f64)) -> Vec<Vec<f64>> {
-        let places = channel::places(&series.averages, channel);
-        let own = |column: &Vec<f64>| places.iter().map(|i| column[*i]).collect::<Vec<f64>>();
-        let mut columns = nuisance::of_channel(&series.averages, &places, mean_w);
-        columns.extend(self.missed.of_channel(channel, mean_w, Ground::Even));
-        columns.extend(fit.columns.iter().map(own).filter(|own| own.iter().any(|x| *x != 0.0)));
+    /// What models may miss of a channel of such a mean size [W], over its averages, with weights of one sigma 1.
+    pub(crate) fn of_channel(
+        &self,
+        averages: &[Average],
+        places: &[usize],
+        (channel, mean_w): (usize, f64),
+        ground: Ground,
+    ) -> Vec<Vec<f64>> {
+        let mut columns = nuisance::of_channel(averages, places, mean_w);
+        columns.extend(self.missed.of_channel(channel, mean_w, ground));
         columns
     }
 
-    /// Errors of a channel's averages less what its columns take of those that are trusted, in units that make up for the numbers that were
-    /// fitted.
-    fn taken(
+    /// Errors of a channel's averages less what its columns take of those that are trusted, so much larger as fitting makes them smaller: n
+    /// averages have n less the trace of the fit's influence of freedom.
+    fn left(
         &self,
         series: &Series,
         Fit { predicted_w, trusted, .. }: Fit<'_>,
         (places, columns): (&[usize], &[Vec<f64>]),
-        errors: &[f64],
+        own: &[f64],
     ) -> Vec<f64> {
         let white = self.noise.whitening(predicted_w, &series.averages);
         let rows: Vec<usize> = (0..places.len()).filter(|k| trusted[places[*k]]).collect();
-        let own: Vec<f64> = places.iter().map(|i| errors[*i]).collect();
         let told = |column: &[f64]| {
             let whitened = white.of_channel(places, column);
             rows.iter().map(|k| whitened[*k]).collect::<Vec<f64>>()
@@ -98,9 +103,9 @@ impl Learnt {
         let columns_of = DMatrix::from_fn(rows.len(), columns.len(), |i, j| whitened[j][i]);
         let square = columns_of.tr_mul(&columns_of);
         let Some(root) = (&square + DMatrix::identity(columns.len(), columns.len())).cholesky() else {
-            return own;
+            return own.to_vec();
         };
-        let weights = root.solve(&columns_of.tr_mul(&DVector::from_vec(told(&own))));
+        let weights = root.solve(&columns_of.tr_mul(&DVector::from_vec(told(own))));
         let fitted = root.solve(&square).trace();
         let count = rows.len() as f64;
         let makes_up = (count / (count - fitted).max(0.5 * count).max(1.0)).sqrt();
@@ -122,28 +127,16 @@ fn missed(series: &Series, fit: Fit<'_>, noise: &Noise) -> Discrepancy {
 
 #[cfg(test)]
 mod tests {
-    use recording::{Channel, Recording};
-
     use super::*;
     use crate::{
+        Question, Verdict,
         baseline::Baseline,
-        hills::drive,
+        diagnose,
+        hills::missed_by,
         search::{Search, search},
         series::Applied,
         span::Span,
     };
-
-    /// A drive whose power the model misses by so many watts, up and down with what each side does; noise of an average is 2 W/√10.
-    fn missed_by(size_w: f64, phase_rad: f64, applied: &[Applied]) -> Recording {
-        let mut made = drive(&model::builtin::husky_a200(), phase_rad, applied);
-        let sides = [(Channel::LeftSpeed, Channel::LeftPower), (Channel::RightSpeed, Channel::RightPower)];
-        for (speed, power) in sides {
-            let speeds = made.channels[&speed].clone();
-            let powers = made.channels.get_mut(&power).unwrap();
-            powers.iter_mut().zip(speeds).for_each(|(w, mps)| *w += size_w * (8.0 * mps).sin());
-        }
-        made
-    }
 
     /// Mean noise of averages of power.
     fn noise_w(look: Look, size_w: f64) -> f64 {
@@ -175,16 +168,13 @@ mod tests {
         let mechanism = model::mechanism::by_name("payload").unwrap();
         let load = Applied { mechanism, values: vec![0.6], span: Span::ALL };
         let [suspect, healthy] = [missed_by(4.0, 0.0, &[load]), missed_by(4.0, 1.0, &[])];
-        let found = |look: Look| {
-            let mut series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
-            series.look = look;
-            let begun = Search::begin(&series, &robot, Some(&healthy), &|_, _| {}).unwrap();
-            let found = search(&series, &robot, begun, &|_, _| {}).unwrap().found;
-            found.iter().map(|one| (one.applied.mechanism.name(), one.applied.values[0])).collect::<Vec<_>>()
-        };
-        assert_eq!(found(Look::Usual), []);
-        let closer = found(Look::Closer);
-        assert!(closer.len() == 1 && closer[0].0 == "payload", "{closer:?}");
-        assert!((closer[0].1 - 0.6).abs() < 0.2, "{closer:?}");
+        let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
+        let begun = Search::begin(&series, &robot, Some(&healthy), &|_, _| {}).unwrap();
+        let usual = search(&series, &robot, begun, &|_, _| {}).unwrap();
+        assert!(usual.found.is_empty() && usual.refused.is_empty(), "{:?}", usual.refused);
+        let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
+        let is_named = found.verdict != Verdict::Consistent && found.findings[0].mechanism == "payload";
+        assert!(is_named && found.findings.len() == 1, "{}", found.sentence);
+        assert!((found.findings[0].parameters[0].value - 0.6).abs() < 0.2, "{}", found.sentence);
     }
 }

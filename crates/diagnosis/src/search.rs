@@ -33,7 +33,7 @@ pub(crate) const MOST: usize = 3;
 /// of 20.
 pub(crate) const AS_GOOD: f64 = 6.0;
 /// What a model may miss of healthy drives where it can be relied on, as a share of power.
-const TOLD: f64 = 0.005;
+pub(crate) const TOLD: f64 = 0.005;
 
 /// A mechanism that was found.
 #[derive(Clone)]

@@ -164,7 +164,7 @@ impl<'a> Scales<'a> {
     fn judge(&self, candidate: Candidate, mut evidence: Evidence) -> Option<Weighed> {
         // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
         // is not in proportion to its size, and more than models miss.
-        let is_strong = self.share(&candidate, &evidence) > STRONG;
+        let is_strong = share(self.series, self.base, &candidate.effect_w(&evidence.values)) > STRONG;
         if is_from_grid(&candidate) || is_strong {
             evidence.discord = 1.0;
         }
@@ -191,19 +191,18 @@ impl<'a> Scales<'a> {
             is_strong,
         })
     }
+}
 
-    /// Change of power that a candidate stands for, over the power, both root mean square over the suspect drives.
-    fn share(&self, candidate: &Candidate, evidence: &Evidence) -> f64 {
-        let (mut change, mut whole) = (0.0, 0.0);
-        let effect_w = candidate.effect_w(&evidence.values);
-        for (i, (predicted_w, effect_w)) in self.base.predicted_w.iter().zip(effect_w).enumerate() {
-            if self.series.is_power(i) && self.series.averages[i].suspect {
-                change += effect_w.powi(2);
-                whole += predicted_w * predicted_w;
-            }
+/// A change of power over the power, both root mean square over the suspect drives.
+pub(crate) fn share(series: &Series, base: &Baseline, effect_w: &[f64]) -> f64 {
+    let (mut change, mut whole) = (0.0, 0.0);
+    for (i, (predicted_w, effect_w)) in base.predicted_w.iter().zip(effect_w).enumerate() {
+        if series.is_power(i) && series.averages[i].suspect {
+            change += effect_w * effect_w;
+            whole += predicted_w * predicted_w;
         }
-        f64::sqrt(change / whole.max(1e-300))
     }
+    f64::sqrt(change / whole.max(1e-300))
 }
 
 /// A scatter from regime to regime where nothing strong is missing: three regimes tell it no closer than its own size, so that it counts
