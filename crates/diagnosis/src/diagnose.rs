@@ -11,14 +11,16 @@ use crate::{
     Error, admissible,
     alternatives::{Explanation, alternatives, detectable},
     average::Quantity,
-    baseline::differences,
+    baseline::{Baseline, differences},
     caveats::caveats,
     corrected::corrected,
     discover::{Sure, discover},
     doubts::{contradictions, doubts, mistakes},
+    gates,
     judged::Judged,
     needed::shown_in,
     next_drive::next_drive,
+    null::Null,
     report::{Diagnosis, Verdict},
     search::{Search, TOLD, search},
     series::{Applied, Look, Series},
@@ -171,10 +173,32 @@ fn look_closer(
     healthy: Option<&Recording>,
     progress: &dyn Fn(&str, f64),
 ) -> Result<Option<(Search, Judged)>, Error> {
-    if healthy.is_none() {
-        return Ok(None);
-    }
     series.look = Look::Closer;
+    let named = if healthy.is_some() && seems_missing(series, robot)? {
+        named(series, robot, healthy, progress)?
+    } else {
+        None
+    };
+    if named.is_none() {
+        series.look = Look::Usual;
+    }
+    Ok(named)
+}
+
+/// Whether any mechanism passes while nothing is discounted for what healthy drives differ by, which takes longest to tell and makes
+/// evidence less only.
+fn seems_missing(series: &Series, robot: &Robot) -> Result<bool, Error> {
+    let base = Baseline::fit(series, robot, &[])?;
+    Ok(gates::best(series, &base, &[], &Null::default())?.is_some())
+}
+
+/// What has a name and changes power by more than a model may miss.
+fn named(
+    series: &Series,
+    robot: &Robot,
+    healthy: Option<&Recording>,
+    progress: &dyn Fn(&str, f64),
+) -> Result<Option<(Search, Judged)>, Error> {
     let begun = Search::begin(series, robot, healthy, progress)?;
     let found = search(series, robot, begun, progress)?;
     let without_w = series.predict(&found.after.robot, &[])?;
@@ -183,14 +207,12 @@ fn look_closer(
     // However surely long drives tell it: that little a model may miss.
     let is_little = shown_in(series, &white.of(&effect_w)) == Quantity::Power
         && share(series, &found.after, &effect_w) < TOLD;
-    if !found.found.is_empty() && !is_little {
-        let judged = Judged::new(series, robot, &found)?;
-        if let Verdict::Explained | Verdict::Ambiguous = judged.verdict(&found) {
-            return Ok(Some((found, judged)));
-        }
+    if found.found.is_empty() || is_little {
+        return Ok(None);
     }
-    series.look = Look::Usual;
-    Ok(None)
+    let judged = Judged::new(series, robot, &found)?;
+    let is_named = matches!(judged.verdict(&found), Verdict::Explained | Verdict::Ambiguous);
+    Ok(is_named.then_some((found, judged)))
 }
 
 /// The drive that tells the first ambiguous finding from its alternatives.

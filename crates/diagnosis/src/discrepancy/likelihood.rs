@@ -45,9 +45,7 @@ pub(super) fn likelihoods(
         let square =
             DMatrix::from_fn(columns.len(), columns.len(), |i, j| square[(i, j)] * size(i) * size(j));
         let right = DVector::from_fn(right.len(), |i, _| right[i] * size(i));
-        let of_scatter =
-            |scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter);
-        SCATTERS.into_iter().map(of_scatter).fold(f64::NEG_INFINITY, f64::max)
+        highest(|scatter| log_likelihood(&square, &right, errors.norm_squared(), rows.len(), scatter))
     };
     let mut likelihoods = [0.0; SIZES.len()];
     likelihoods
@@ -56,6 +54,18 @@ pub(super) fn likelihoods(
         .with_max_len(1)
         .for_each(|(likely, share)| *likely = of_size(share));
     likelihoods
+}
+
+/// The highest of likelihoods, by [`SCATTERS`] from the last on, to where they fall.
+fn highest(of: impl Fn(f64) -> f64) -> f64 {
+    let mut highest = f64::NEG_INFINITY;
+    for likely in SCATTERS.into_iter().rev().map(of) {
+        if likely < highest {
+            break;
+        }
+        highest = likely;
+    }
+    highest
 }
 
 /// Logarithm of the likelihood of errors that are columns with weights of one sigma 1 and noise of one sigma `scatter`, but for
