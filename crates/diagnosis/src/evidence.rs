@@ -79,6 +79,13 @@ pub(crate) struct Evidence {
     pub(crate) spread: f64,
 }
 
+impl Evidence {
+    /// By how much it is less than squares say, as sizes differ from regime to regime and errors hang together.
+    pub(crate) fn scatter(&self) -> f64 {
+        self.discord * self.lasting
+    }
+}
+
 #[cfg(test)]
 impl Evidence {
     /// Of one number, spread over many blocks that agree; `own` are the sensitivities that nothing else explains.

@@ -83,9 +83,9 @@ pub(crate) fn doubt(
     let may_miss = if stands_in { 1.0 } else { open };
     let term = match series.look {
         Look::Usual => {
-            let better = best.first().filter(|(most, _)| is_better(*most, explained, may_miss));
-            let Some((_, term)) = better else { return Ok(None) };
-            leaves_little(series, state, (&without, &alone), term)?.then_some(*term)
+            let ahead = best.into_iter().take_while(|(most, _)| is_better(*most, explained, may_miss));
+            let ahead: Vec<&Term> = ahead.take(MOST_WEIGHED).map(|(_, term)| term).collect();
+            first_that_leaves_little(series, state, (&without, &alone), &ahead)?
         }
         // What is weak has no other than the best name.
         Look::Closer => {
@@ -136,7 +136,7 @@ fn first_surer<'t>(
         return Ok(None);
     }
     let white = without.whitening(series);
-    let sureness = |evidence: &Evidence| evidence.wald / (evidence.discord * evidence.lasting);
+    let sureness = |evidence: &Evidence| evidence.wald / evidence.scatter();
     let effect = white.of(&effect_w(series, state, without)?);
     let Some(own) = alone.weigh(&[effect]) else { return Ok(None) };
     let pairs: Vec<[Vec<f64>; 2]> =
@@ -176,20 +176,25 @@ fn is_better(most: f64, explained: f64, openness: f64) -> bool {
     most > explained + f64::max(BETTER, share * explained)
 }
 
-/// Whether a term leaves little of what a mechanism explains beside others: one that leaves it that is something else that the model
-/// misses.
-fn leaves_little(
+/// The first of some terms that leaves little of what a mechanism explains beside others: one that leaves it is something else that the
+/// model misses, as what one side takes after rests, which was ahead of a name for a fan and hid that terms of the fan were.
+fn first_that_leaves_little<'t>(
     series: &Series,
     state: &State,
     (without, system_without): (&Baseline, &System),
-    term: &Term,
-) -> Result<bool, Error> {
+    terms: &[&'t Term],
+) -> Result<Option<&'t Term>, Error> {
+    if terms.is_empty() {
+        return Ok(None);
+    }
     let white = without.whitening(series);
-    let column = term.column(&without.driven(series));
     let effect = [vec![white.of(&effect_w(series, state, without)?)]];
     let alone = system_without.explained(&effect)[0];
-    let beside = system_at(series, without, Sizes::Free, &[column]).explained(&effect)[0];
-    Ok(beside < SAME * alone)
+    let leaves_little = |term: &&&Term| {
+        let column = term.column(&without.driven(series));
+        system_at(series, without, Sizes::Free, &[column]).explained(&effect)[0] < SAME * alone
+    };
+    Ok(terms.iter().find(leaves_little).copied())
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use recording::{PowerForm, Recording, Watch, unwatched};
 use crate::{
     Error,
     average::Average,
+    baseline::Baseline,
     knobs::Seen,
     learnt::Learnt,
     meter::Meter,
@@ -57,6 +58,8 @@ pub(crate) struct Told {
     pub(crate) learnt: OnceLock<Learnt>,
     /// What mechanisms do where they act in all drives.
     pub(crate) everywhere: OnceLock<Vec<Vec<f64>>>,
+    /// A robot with nothing acting, as it is in its file and as it was fitted: names are held against that again and again.
+    pub(crate) alone: OnceLock<(Robot, Baseline)>,
 }
 
 /// All drives.

@@ -162,15 +162,8 @@ impl<'a> Scales<'a> {
 
     /// A candidate with its evidence; `None` where that is more than can be.
     fn judge(&self, candidate: Candidate, mut evidence: Evidence) -> Option<Weighed> {
-        // A value of the grid is not the true one, and what that changes differs between regimes; so does what is strong, which
-        // is not in proportion to its size, and more than models miss.
         let is_strong = share(self.series, self.base, &candidate.effect_w(&evidence.values)) > STRONG;
-        if is_from_grid(&candidate) || is_strong {
-            evidence.discord = 1.0;
-        }
-        if self.series.look == Look::Closer {
-            evidence.discord = shrunk(evidence.discord);
-        }
+        evidence.discord = counted(evidence.discord, &candidate, (self.series.look, is_strong));
         if !is_plausible(&self.base.robot, &candidate, &evidence, self.series.row_s()) {
             return None;
         }
@@ -205,6 +198,16 @@ pub(crate) fn share(series: &Series, base: &Baseline, effect_w: &[f64]) -> f64 {
     f64::sqrt(change / whole.max(1e-300))
 }
 
+/// What counts of a scatter from regime to regime. A value of the grid is not the true one, and what that changes differs between regimes;
+/// so does what is strong, which is not in proportion to its size, and more than models miss.
+fn counted(discord: f64, candidate: &Candidate, (look, is_strong): (Look, bool)) -> f64 {
+    match look {
+        _ if is_strong || is_from_grid(candidate) => 1.0,
+        Look::Usual => discord,
+        Look::Closer => shrunk(discord),
+    }
+}
+
 /// A scatter from regime to regime where nothing strong is missing: three regimes tell it no closer than its own size, so that it counts
 /// half, as next to as many that agree.
 fn shrunk(discord: f64) -> f64 {
@@ -236,7 +239,7 @@ pub(crate) fn judged(
         Some(misfit_variance) => beyond(evidence, misfit_variance)?,
         None => evidence.wald / null.discount(name, blocks),
     };
-    let (wald, count) = (wald / (evidence.discord * evidence.lasting), parameters as f64);
+    let (wald, count) = (wald / evidence.scatter(), parameters as f64);
     Some((wald, FisherSnedecor::new(count, freedom).ok()?.sf(wald / count)))
 }
 
@@ -290,6 +293,21 @@ mod tests {
         // Errors that hang together are so much less evidence.
         let lasting = Evidence { lasting: 2.0, ..evidence };
         assert!(chance(&lasting, Span::ALL) > 1e-4);
+    }
+
+    #[test]
+    fn the_scatter_of_what_is_strong_or_from_a_grid_does_not_count() {
+        let candidate = |name: &str, values: Vec<f64>| {
+            let mechanism = model::mechanism::by_name(name).unwrap();
+            let applied = Applied { mechanism, values, span: Span::ALL };
+            Candidate { applied, linear: vec![0], columns: Vec::new() }
+        };
+        let load = candidate("payload", vec![1.0]);
+        let warm = candidate("motor_heating", vec![1.0, 600.0]);
+        assert_eq!(counted(3.0, &load, (Look::Usual, false)), 3.0);
+        assert_eq!(counted(3.0, &load, (Look::Closer, false)), 2.0);
+        assert_eq!(counted(3.0, &load, (Look::Usual, true)), 1.0);
+        assert_eq!(counted(3.0, &warm, (Look::Usual, false)), 1.0);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub(crate) enum World {
 impl World {
     pub(crate) const ALL: [World; 4] = [World::Sides, World::Warming, World::Battery, World::Currents];
 
-    /// Fits a hundred or more recordings, each of a robot of its own.
+    /// Fits recordings, each of a robot of its own.
     pub(crate) fn coverage(self, seeds: std::ops::Range<u64>) -> Coverage {
         Coverage::of(seeds.into_par_iter().map(|seed| self.trial(seed)).collect())
     }
@@ -79,12 +79,12 @@ impl World {
         }
     }
 
-    /// Every parameter that most of a hundred recordings determine lies in its 95 % interval in 88 to 100 of them.
+    /// Every parameter that most of fifty recordings determine lies in its 95 % interval in at least 41 of fifty.
     ///
-    /// Of intervals that hold in 95 % of cases 90 to 99 of a hundred hold in 98 % of hundreds, 88 to 100 in 99.9 %: with the wider
-    /// bounds, the forty parameters of all worlds pass together unless an interval is wrong.
+    /// Of intervals that hold in 95 % of cases so many hold in 99.98 % of fifties: the forty parameters of all worlds pass together unless an
+    /// interval is wrong. The example `interval_coverage` tells it closer.
     pub(crate) fn assert_as_promised(self) {
-        let coverage = self.coverage(self.first_seed()..self.first_seed() + 100);
+        let coverage = self.coverage(self.first_seed()..self.first_seed() + 50);
         let found: Vec<_> = coverage.identifiable().collect();
         for name in self.promised() {
             assert!(found.iter().any(|(known, _)| known == name), "{name} is determined: {coverage:?}");
@@ -92,7 +92,7 @@ impl World {
         for (name, tally) in found {
             let share = tally.inside as f64 / tally.determined as f64;
             assert!(
-                (0.88..=1.0).contains(&share),
+                (0.82..=1.0).contains(&share),
                 "{name}: inside in {} of {}",
                 tally.inside,
                 tally.determined

@@ -84,3 +84,23 @@ fn log_likelihood(
     let explained = right.dot(&root.solve(right)) / (variance * variance);
     -0.5 * (errors / variance - explained + log_determinant)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_of_scatters_is_found_without_those_beyond_where_they_fall() {
+        for peak in [0.5, 0.7, 0.85, 1.2] {
+            let of = |scatter: f64| -(scatter - peak).powi(2);
+            let all = SCATTERS.into_iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!(highest(of), all, "{peak}");
+        }
+        let asked = std::cell::Cell::new(0);
+        highest(|scatter| {
+            asked.set(asked.get() + 1);
+            scatter
+        });
+        assert_eq!(asked.get(), 2, "nothing is asked beyond the first that falls");
+    }
+}
