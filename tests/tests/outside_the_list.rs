@@ -8,7 +8,7 @@ use diagnosis::{Diagnosis, Finding, Question, Verdict, diagnose};
 use model::Robot;
 use recording::{Channel, Recording};
 use world::{Effect, EffectName, Side};
-use worlds::drive;
+use worlds::{drawn, drive};
 
 fn record(seed: u64, effects: Vec<Effect>) -> Recording {
     drive(seed, 600.0, effects)
@@ -92,6 +92,15 @@ fn drag_that_is_gone_once_a_brake_is_warm_is_not_called_drag() {
         assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
         assert!(found.sentence.contains("the first minutes"), "{}", found.sentence);
     }
+}
+
+/// Ahead of the name is what one side takes after rests as well, which is something else; terms behind that are the fan.
+#[test]
+fn a_fan_that_goes_with_the_voltage_is_no_gain_of_the_meters() {
+    let [suspect, healthy] = drawn(4_394_379_572_617_515, EffectName::VoltageFan, 0.012);
+    let found = said(&model::builtin::husky_a200(), &suspect, &healthy);
+    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
+    assert_eq!(names(&found), ["unknown"], "{}", found.sentence);
 }
 
 #[test]

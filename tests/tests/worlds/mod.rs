@@ -4,7 +4,7 @@
 
 use model::Robot;
 use recording::{Recording, read_paths};
-use world::{Drive, DriveKind, Effect, RobotFile, Sensors, World, simulate};
+use world::{Case, CaseKind, Drive, DriveKind, Effect, EffectName, Log, RobotFile, Sensors, World, simulate};
 
 /// A rich drive of the built-in robot over gentle hills, the same robot and hills whatever the seed.
 ///
@@ -25,11 +25,29 @@ pub(crate) fn drive_of(robot: &Robot, drive: &Drive, effects: Vec<Effect>) -> Re
     let recorded = || -> Result<Recording, Box<dyn std::error::Error>> {
         let robot = RobotFile::from_json(&serde_json::to_string(robot)?)?;
         let world = World { effects, sensors: Sensors::of(&robot), ..World::from_json(&text)? };
-        let folder = tempfile::tempdir()?;
-        let path = folder.path().join("drive.csv");
-        let log = simulate(&world, &robot, drive)?;
-        log.write_csv(std::fs::File::create(&path)?)?;
-        Ok(read_paths(&[path], None)?.0)
+        read(&simulate(&world, &robot, drive)?)
     };
     recorded().unwrap_or_else(|error| panic!("seed {seed}: {error}"))
+}
+
+/// A drive of the built-in robot that conceals an effect of such a share of power, as trials draw them, and healthy drives beside it.
+///
+/// # Panics
+/// When no such world can be.
+#[allow(dead_code)]
+pub(crate) fn drawn(seed: u64, effect: EffectName, share: f64) -> [Recording; 2] {
+    let recorded = || -> Result<[Recording; 2], Box<dyn std::error::Error>> {
+        let robot = RobotFile::from_json(&serde_json::to_string(&model::builtin::husky_a200())?)?;
+        let case = Case::draw(seed, CaseKind::One(effect), share, &robot)?;
+        Ok([read(&simulate(&case.world, &robot, &case.drive)?)?, read(&case.reference(&robot)?)?])
+    };
+    recorded().unwrap_or_else(|error| panic!("seed {seed}: {error}"))
+}
+
+/// What a file of a log is read as.
+fn read(log: &Log) -> Result<Recording, Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("drive.csv");
+    log.write_csv(std::fs::File::create(&path)?)?;
+    Ok(read_paths(&[path], None)?.0)
 }
