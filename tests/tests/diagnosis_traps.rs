@@ -11,7 +11,7 @@ use world::{Effect, EffectName, Side};
 use worlds::drive;
 
 fn record(seed: u64, effects: Vec<Effect>) -> Recording {
-    drive(seed, 600.0, effects)
+    drive(seed, 480.0, effects)
 }
 
 fn said(robot: &Robot, suspect: &Recording, healthy: &Recording) -> Diagnosis {

@@ -21,11 +21,11 @@ fn said(suspect: &Recording, healthy: &Recording) -> Diagnosis {
 
 #[test]
 fn other_ground_in_one_half_of_the_map_is_found_named_and_placed() {
-    let (plain, healthy) = (drive(42, 1200.0, vec![]), drive(41, 1200.0, vec![]));
+    let (plain, healthy) = (drive(42, 800.0, vec![]), drive(41, 800.0, vec![]));
     let border_m = middle(plain.channel(Channel::X).unwrap());
     let east = Place { x_m: [border_m, 1e6], y_m: [-1e6, 1e6] };
     let effect = Effect { place: Some(east), ..Effect::new(EffectName::SurfaceChange, 0.3) };
-    let found = said(&drive(42, 1200.0, vec![effect]), &healthy);
+    let found = said(&drive(42, 800.0, vec![effect]), &healthy);
     assert_eq!(found.verdict, Verdict::Explained, "{}", found.sentence);
     let [finding] = &found.findings[..] else { panic!("{}", found.sentence) };
     assert_eq!(finding.mechanism, "surface_change", "{}", found.sentence);
@@ -40,6 +40,6 @@ fn other_ground_in_one_half_of_the_map_is_found_named_and_placed() {
 
 #[test]
 fn a_healthy_drive_has_no_place_of_its_own() {
-    let found = said(&drive(42, 1200.0, vec![]), &drive(41, 1200.0, vec![]));
+    let found = said(&drive(42, 800.0, vec![]), &drive(41, 800.0, vec![]));
     assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
 }

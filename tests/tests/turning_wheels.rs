@@ -20,7 +20,7 @@ fn turns(found: &Diagnosis) -> Option<&String> {
 #[test]
 fn a_stone_in_a_tyre_is_not_taken_for_drag() {
     let bump = Effect { side: Some(Side::Right), ..Effect::new(EffectName::WheelBump, 12.0) };
-    let (suspect, healthy) = (drive(52, 1200.0, vec![bump]), drive(51, 1200.0, vec![]));
+    let (suspect, healthy) = (drive(52, 800.0, vec![bump]), drive(51, 800.0, vec![]));
     let found = said(&suspect, Some(&healthy));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(found.findings.iter().all(|f| f.mechanism == "unknown"), "{}", found.sentence);
@@ -53,11 +53,11 @@ fn a_stone_in_a_tyre_is_told_of_a_short_drive_too() {
 #[test]
 fn drag_on_one_side_and_robots_in_order_show_no_turns() {
     let dragging = Effect::new(EffectName::DrivetrainDrag, 8.0);
-    let healthy = drive(51, 1200.0, vec![]);
-    let found = said(&drive(52, 1200.0, vec![dragging]), Some(&healthy));
+    let healthy = drive(51, 800.0, vec![]);
+    let found = said(&drive(52, 800.0, vec![dragging]), Some(&healthy));
     assert_eq!(found.verdict, Verdict::Explained, "{}", found.sentence);
     assert_eq!(found.findings[0].mechanism, "drivetrain_drag");
     assert!(turns(&found).is_none(), "{:?}", found.notes);
-    let found = said(&drive(52, 1200.0, vec![]), Some(&healthy));
+    let found = said(&drive(52, 800.0, vec![]), Some(&healthy));
     assert!(found.verdict == Verdict::Consistent && turns(&found).is_none(), "{}", found.sentence);
 }

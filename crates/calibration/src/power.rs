@@ -213,6 +213,7 @@ fn power(
 }
 
 /// What a recording of a form would show of a power: left and right, or battery alone (the second value is then 0) \[W\].
+#[inline]
 pub fn seen_w(robot: &Robot, form: PowerForm, row: &Row, power: &Power) -> [f64; 2] {
     match form {
         PowerForm::Sides | PowerForm::MotorCurrents => {

@@ -48,6 +48,7 @@ impl Row {
     }
 
     /// dv/dt, dω/dt and v ω of a robot whose wheels move so.
+    #[inline]
     pub fn acceleration(&self, robot: &Robot) -> Acceleration {
         let moved = 1.0 - robot.wheel_slip();
         let turned = moved * (1.0 - robot.turning_slip());
@@ -60,16 +61,19 @@ impl Row {
     }
 
     /// How the robot moves. Encoders dither about zero while it stands; rolling resistance would follow them.
+    #[inline]
     pub fn motion(&self, robot: &Robot) -> Motion {
         Motion::of_wheels(robot, if self.stands() { Sides::both(0.0) } else { self.rim_mps })
     }
 
     /// How it stands on the ground.
+    #[inline]
     pub fn attitude(&self) -> Attitude {
         Attitude { pitch_rad: self.pitch_rad, roll_rad: self.roll_rad }
     }
 
     /// Both sides stand.
+    #[inline]
     pub fn stands(&self) -> bool {
         self.rim_mps.left.abs() < STANDSTILL_MPS && self.rim_mps.right.abs() < STANDSTILL_MPS
     }

@@ -29,6 +29,7 @@ mod event;
 mod everywhere;
 mod evidence;
 mod explainable;
+mod faint;
 mod foremost;
 mod form;
 mod gates;

@@ -7,7 +7,7 @@ use recording::Recording;
 use crate::{
     Error, as_hard,
     baseline::Baseline,
-    constancy,
+    constancy, faint,
     gates::best,
     limit,
     misfit::{self, Squares},
@@ -189,7 +189,9 @@ pub fn search(
     let takes_little =
         |state: &State, which: usize, _: bool| missed::doubt(series, file, &before, state, which);
     let unshown = |state: &State, which: usize, _: bool| Ok(unshown::doubt(series, state, which));
-    let doubts: [&Doubt<'_>; 5] = [&too_much, &unshown, &of_many_sizes, &told_better, &takes_little];
+    let faint =
+        |state: &State, which: usize, stands_in: bool| Ok(faint::doubt(series, state, which, stands_in));
+    let doubts: [&Doubt<'_>; 6] = [&too_much, &unshown, &of_many_sizes, &told_better, &takes_little, &faint];
     let refused = refuse(series, file, &mut state, &doubts, &null)?;
     ridge::widen(series, file, &mut state, &null)?;
     let State { mut found, fit: after } = state;

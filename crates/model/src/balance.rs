@@ -74,6 +74,7 @@ impl Friction {
     }
 
     /// The same with what a mechanism changes of it.
+    #[inline]
     pub(crate) fn adjusted(&self, adjustment: &Adjustment) -> Friction {
         let shifted = Sides { left: adjustment.load_left, right: -adjustment.load_left };
         let rolling = self.rolling_per_load.zip(shifted).zip(self.mu_roll.zip(adjustment.mu_roll));

@@ -24,11 +24,13 @@ impl Motion {
 
     /// The same motion with a heading.
     #[must_use]
+    #[inline]
     pub fn heading(self, heading_rad: f64) -> Self {
         Motion { heading_rad: Some(heading_rad).filter(|rad| rad.is_finite()), ..self }
     }
 
     /// The motion that wheel encoders report, when no gyroscope says otherwise.
+    #[inline]
     pub fn of_wheels(robot: &Robot, rim_speeds_mps: Sides<f64>) -> Self {
         let moved = 1.0 - robot.wheel_slip();
         let turned = moved * (1.0 - robot.turning_slip());

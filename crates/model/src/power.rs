@@ -179,6 +179,7 @@ impl Manoeuvre {
     ///
     /// Tyres that push inwards slip outwards: the robot turns about a place d ahead of its middle, and what pulls it there has to be driven
     /// against. It grows with the fourth power of speed on the same circle, so that slow robots hardly feel it.
+    #[inline]
     fn steady_n(&self, grade: Grade<f64>, left_mps2: f64) -> Sides<f64> {
         if left_mps2 == 0.0 {
             return self.kernel.forces_n(grade);

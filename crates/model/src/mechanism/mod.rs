@@ -134,6 +134,7 @@ impl Default for Adjustment {
 impl Adjustment {
     /// Both at the same time.
     #[must_use]
+    #[inline]
     pub fn and(self, other: Adjustment) -> Adjustment {
         Adjustment {
             mass_kg: self.mass_kg + other.mass_kg,
