@@ -61,7 +61,7 @@ fn known(value: f64) -> f64 {
 }
 
 /// Change of size with one standard deviation of a quantity, as a share of it, from which it is another thing. Of mechanisms concealed in
-/// worlds with forms of their own, on seeds that none is scored on, inertia changed by 0.25 clearly, no other by more than 0.15, and of what
+/// worlds with forms of their own, in trials of versions before, inertia changed by 0.25 clearly, no other by more than 0.15, and of what
 /// passed for a high mass and was a load that slides, 0.34.
 const LEAST_CHANGE: f64 = 0.3;
 /// The same of what the ground does: what the model makes of ice, the same all through, changes by 0.3 on real ground.

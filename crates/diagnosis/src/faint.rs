@@ -8,7 +8,7 @@ use crate::{
 /// Mechanisms that press wheels on the ground or into it, and so explain some of all that changes power wherever a robot rolls, turns or
 /// climbs.
 const OF_ALL_THAT_ROLLS: [&str; 2] = ["soft_soil", "payload"];
-/// Chance of as much as they explain above which they are not named. On seeds that none is scored on, where 1.2 % of power was concealed and
+/// Chance of as much as they explain above which they are not named. In trials of versions before, where 1.2 % of power was concealed and
 /// what was named had a greater chance, 3 of 11 such names were right and 22 of 29 others.
 const FAINT: f64 = 1e-4;
 
