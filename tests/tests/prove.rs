@@ -33,6 +33,8 @@ fn a_case_of_each_kind_is_proven_and_the_published_hash_is_that_of_the_keys() {
     assert_eq!(board["errors"]["hits"], 0, "{:#}", board["scores"]);
     assert_eq!(board["peers"].as_array().unwrap().len(), 2);
     assert!(said.contains(board["commitment"].as_str().unwrap()), "{said}");
+    let ratio = board["rmse_ratio_listed_median"].as_f64().unwrap();
+    assert!(said.contains(&format!("held-out error over that without     {ratio:.3}\n")), "{said}");
     let checked = Command::new("sha256sum")
         .args(["--check", "--strict", "SHA256SUMS"])
         .current_dir(out.join("keys"))

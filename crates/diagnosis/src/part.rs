@@ -24,6 +24,8 @@ pub(crate) struct Part {
     pub(crate) suspect: bool,
     /// By row [rad].
     pub(crate) heading_rad: Vec<f64>,
+    /// By row: cosine and sine of the heading.
+    towards: Vec<[f64; 2]>,
     /// By row, above the mean [m].
     height_m: Vec<f64>,
     /// By row [m].
@@ -99,8 +101,10 @@ impl Part {
         let position_m = ground::positions_m(recording);
         let grade = drives.rows.par_iter().map(|row| row.attitude().grade()).collect();
         let shapes = Shapes::default();
+        let towards = heading_rad.iter().map(|heading_rad| [heading_rad.cos(), heading_rad.sin()]).collect();
         Ok(Part {
             heading_rad,
+            towards,
             height_m,
             position_m,
             moving_s: history::moving_s(&drives),
@@ -235,8 +239,8 @@ impl Part {
             mean(&|i| rows[i].pitch_rad),
             mean(&|i| rows[i].roll_rad),
             mean(&|i| rows[i].rim_mps2.sum() / 2.0),
-            mean(&|i| self.heading_rad[i].cos()),
-            mean(&|i| self.heading_rad[i].sin()),
+            mean(&|i| self.towards[i][0]),
+            mean(&|i| self.towards[i][1]),
             mean(&|i| self.height_m[i]),
             mean(&|i| rows[i].rim_mps2.right - rows[i].rim_mps2.left),
             mean(&|i| self.position_m[i][0]),

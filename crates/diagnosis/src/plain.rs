@@ -39,7 +39,7 @@ impl Plain {
         let families = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
         let mut candidates: Vec<Candidate> =
             families.iter().flat_map(|family| family.candidates(series)).collect();
-        let mut always = base.columns.clone();
+        let mut always = base.sensitivities.columns.clone();
         always.extend(nuisance::columns(&series.averages, &base.predicted_w));
         // Errors taken as alike are all of power.
         let power = |values: &[f64]| -> Vec<f64> {

@@ -31,6 +31,8 @@ pub(crate) struct Polished {
 const POLISHES: usize = 3;
 /// Shares of a step that are tried: beyond a kink, as where wheels begin to be driven, a whole one leads away.
 const SHARES: [f64; 3] = [1.0, 0.3, 0.1];
+/// Moves of less than this share of one sigma are none.
+const STILL: f64 = 0.03;
 /// Drop of squared errors, in sigma, that a move has to bring.
 const LEAST_GAIN: f64 = 1.0;
 /// One sigma of what the form of a mechanism leaves open of all that it does, as a share, where the model misses something itself: in
@@ -76,7 +78,7 @@ pub(crate) fn polish(
             together = together.freed_fully(series, file, which)?;
         }
     }
-    together.polished(series)
+    together.polished(series, file)
 }
 
 /// Fits mechanisms that act together with each other and the robot.
@@ -92,7 +94,7 @@ pub(crate) fn settle(
     let free: Vec<Vec<usize>> = applied.iter().map(candidates::sizes).collect();
     let count = free.iter().map(Vec::len).sum();
     let covariance = DMatrix::zeros(count, count);
-    Together::settled(series, file, (applied.to_vec(), free), covariance, near)?.polished(series)
+    Together::settled(series, file, (applied.to_vec(), free), covariance, near)?.polished(series, file)
 }
 
 /// By how much to move all values that are fitted, one mechanism after the other, and their covariance.
@@ -121,13 +123,17 @@ impl Together {
         let mut last = Together { applied, free, base, covariance };
         for _ in 0..POLISHES {
             let Some((values, covariance)) = last.weighed(series)? else { break };
+            let is_still = is_still(&values, &covariance);
             last.covariance = covariance;
+            if is_still {
+                break;
+            }
             let before = cost(series, (&last.applied, &last.base), &last.base);
             let mut better = None;
             for share in SHARES {
                 let by: Vec<f64> = values.iter().map(|value| share * value).collect();
                 let moved = last.moved(file, &by);
-                let next = Baseline::fit_from(series, file, &moved, &last.base.robot)?;
+                let next = Baseline::fit_near(series, file, &moved, &last.base)?;
                 if cost(series, (&moved, &next), &last.base) < before {
                     better = Some((moved, next));
                     break;
@@ -209,7 +215,9 @@ impl Together {
         };
         let within: Vec<usize> = all.iter().copied().filter(is_within).collect();
         let before = cost(series, (&self.applied, &self.base), &self.base);
-        for own in [all, within] {
+        let mut ways = vec![all, within];
+        ways.dedup();
+        for own in ways {
             let mut free = self.free.clone();
             free[which] = own.clone();
             let first: usize = free.iter().take(which).map(Vec::len).sum();
@@ -225,7 +233,10 @@ impl Together {
                 let by: Vec<f64> = whole.iter().map(|by| share * by).collect();
                 let mut moved = self.applied.clone();
                 moved[which] = candidates::moved(&applied, file, &own, &by);
-                let next = Baseline::fit_from(series, file, &moved, &self.base.robot)?;
+                if moved[which].values == applied.values {
+                    break;
+                }
+                let next = Baseline::fit_near(series, file, &moved, &self.base)?;
                 if cost(series, (&moved, &next), &self.base) < before - LEAST_GAIN {
                     return Ok(Some(Together { applied: moved, base: next, covariance, ..with }));
                 }
@@ -233,6 +244,11 @@ impl Together {
         }
         Ok(None)
     }
+}
+
+/// Whether a step is none.
+fn is_still(values: &[f64], covariance: &DMatrix<f64>) -> bool {
+    values.iter().zip(&covariance.diagonal()).all(|(by, variance)| by.abs() < STILL * variance.sqrt())
 }
 
 /// How well mechanisms with a robot explain the drives, and how usual they are, by the noise of another fit.

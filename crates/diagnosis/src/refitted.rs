@@ -70,7 +70,7 @@ fn always(series: &Series, base: &Baseline) -> (Vec<Vec<f64>>, Vec<f64>) {
     let mut before: Vec<f64> = base.moved.iter().map(|moved| -moved).collect();
     let shared = base.shared(series);
     before.extend(vec![0.0; shared.len()]);
-    ([base.columns.clone(), shared].concat(), before)
+    ([base.sensitivities.columns.clone(), shared].concat(), before)
 }
 
 /// Errors held out of a robot with nothing missing that is fitted to healthy drives alone: what a great error of the others pulls off is

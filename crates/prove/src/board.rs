@@ -56,8 +56,10 @@ pub struct Scoreboard {
     pub parameter_error_median: Option<f64>,
     /// Intervals that hold the truth.
     pub interval_coverage: Rate,
-    /// Median of the held-out error after correction over that of the drive without effects.
-    pub rmse_ratio_median: Option<f64>,
+    /// Median of the held-out error after correction over that of the drive without effects, where effects of the list acted.
+    pub rmse_ratio_listed_median: Option<f64>,
+    /// The same where effects without a name did, of which terms take a part only.
+    pub rmse_ratio_unlisted_median: Option<f64>,
     /// By mechanism and strength.
     pub mechanisms: Vec<MechanismRow>,
     /// By strength.
@@ -102,7 +104,10 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         unlisted_explained_median: median(of(Kind::Unlisted).map(|case| case.discovered.unwrap_or(0.0))),
         parameter_error_median: median(numbers().filter_map(|number| number.relative_error)),
         interval_coverage: Rate::of(numbers().filter_map(|number| number.covered)),
-        rmse_ratio_median: median(concealing().filter_map(|case| case.rmse_ratio)),
+        rmse_ratio_listed_median: median(
+            concealing().filter(|case| case.kind != Kind::Unlisted).filter_map(|case| case.rmse_ratio),
+        ),
+        rmse_ratio_unlisted_median: median(of(Kind::Unlisted).filter_map(|case| case.rmse_ratio)),
         mechanisms: by_mechanism(&scores),
         strengths: by_strength(&scores),
         peers: by_peer(&scores),

@@ -122,6 +122,19 @@ fn effects_outside_the_list_may_be_unknown_but_not_something_else() {
 }
 
 #[test]
+fn errors_after_correction_are_told_apart_of_effects_with_and_without_a_name() {
+    let after = |effect, after_w| one(effect, &fits("explained", &finding("payload", ""), [4.0, after_w]));
+    // The twin's drive ends at 2 W.
+    let payloads = [2.0, 2.04, 2.2].map(|after_w| after(EffectName::Payload, after_w));
+    let puddles = [3.0, 3.2].map(|after_w| after(EffectName::Puddles, after_w));
+    let board = board(payloads.into_iter().chain(puddles).collect());
+    assert_eq!(board.rmse_ratio_listed_median, Some(2.04 / 2.0));
+    assert_eq!(board.rmse_ratio_unlisted_median, Some(3.1 / 2.0));
+    let html = page(&board);
+    assert!(html.contains("<td class=number>1.020<td") && html.contains("<td class=number>1.550<td"));
+}
+
+#[test]
 fn terms_that_are_discovered_count_together() {
     let terms = [fitting("unknown", "", [4.0, 3.5]), fitting("unknown", "", [3.5, 2.5])].join(", ");
     let found = one(EffectName::Puddles, &says("unexplained", &terms));

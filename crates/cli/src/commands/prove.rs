@@ -153,17 +153,24 @@ fn summary(board: &Scoreboard) -> String {
         let [low, high] = rate.interval_95.map(|bound| 100.0 * bound);
         format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of)
     };
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let median = |value: Option<f64>, show: &dyn Fn(f64) -> String| value.map_or("no such case".into(), show);
+    let ratio = |value| median(value, &|ratio| format!("{ratio:.3}"));
     [
-        ("false alarms, healthy drives", board.false_alarms_healthy),
-        ("false alarms, decoys", board.false_alarms_decoy),
-        ("false alarms, effects taken away", board.false_alarms_twin),
-        ("effects detected", board.detected),
-        ("effects named, set of two at most", board.in_two),
-        ("both of two effects named", board.both_of_two),
-        ("outside the list, not misnamed", board.unlisted_not_misnamed),
-        ("intervals that hold the truth", board.interval_coverage),
-        ("diagnoses that failed", board.errors),
+        ("false alarms, healthy drives", rate(board.false_alarms_healthy)),
+        ("false alarms, decoys", rate(board.false_alarms_decoy)),
+        ("false alarms, effects taken away", rate(board.false_alarms_twin)),
+        ("effects detected", rate(board.detected)),
+        ("effects named, set of two at most", rate(board.in_two)),
+        ("both of two effects named", rate(board.both_of_two)),
+        ("outside the list, not misnamed", rate(board.unlisted_not_misnamed)),
+        ("mismatch that terms explain, median", median(board.unlisted_explained_median, &percent)),
+        ("intervals that hold the truth", rate(board.interval_coverage)),
+        ("error of numbers, median", median(board.parameter_error_median, &percent)),
+        ("held-out error over that without", ratio(board.rmse_ratio_listed_median)),
+        ("the same outside the list", ratio(board.rmse_ratio_unlisted_median)),
+        ("diagnoses that failed", rate(board.errors)),
     ]
-    .map(|(what, of)| format!("{what:<34} {}", rate(of)))
+    .map(|(what, shown)| format!("{what:<36} {shown}"))
     .join("\n")
 }

@@ -181,8 +181,7 @@ impl Part {
         let rest_w = if meters.contains(&Meter::Rest) { battery_w() - first_w - second_w } else { 0.0 };
         let Motion { speed_mps, yaw_rate_radps, .. } = moment.motion;
         let [along_mps, across_mps] = if meters.contains(&Meter::Ground) {
-            let (sin, cos) = self.heading_rad[i].sin_cos();
-            [speed_mps * cos, speed_mps * sin]
+            self.towards[i].map(|share| speed_mps * share)
         } else {
             [0.0; 2]
         };

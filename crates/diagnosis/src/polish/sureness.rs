@@ -1,5 +1,6 @@
 //! How sure the numbers of mechanisms are that were fitted together.
 
+use model::Robot;
 use nalgebra::DMatrix;
 
 use super::{Polished, Together};
@@ -14,7 +15,8 @@ use crate::{
 
 impl Together {
     /// The fit with the widths of what was fitted.
-    pub(super) fn polished(self, series: &Series) -> Result<Polished, Error> {
+    pub(super) fn polished(mut self, series: &Series, file: &Robot) -> Result<Polished, Error> {
+        self.base = self.base.about_itself(series, file, &self.applied)?;
         let openness = openness(series);
         let mut half_widths = Vec::new();
         for (which, one) in self.applied.iter().enumerate() {

@@ -69,18 +69,19 @@ fn system_by(
     (beside, ground): (&[Vec<f64>], Ground),
 ) -> System {
     let white = by.whitening(series);
-    let mut columns: Vec<Vec<f64>> = base.columns.iter().map(|c| white.of(c)).collect();
+    let about = &base.sensitivities;
+    let mut columns: Vec<Vec<f64>> = about.columns.iter().map(|c| white.of(c)).collect();
     let mut offset: Vec<f64> = base.moved.iter().map(|m| -m).collect();
     if series.has_healthy() {
-        columns.push(white.of(&base.delays[1]));
+        columns.push(white.of(&about.delays[1]));
     }
     if delayed {
-        columns.push(white.of(&base.delays[0]));
+        columns.push(white.of(&about.delays[0]));
     }
     let everywhere = series.told().everywhere.get().into_iter().flatten();
-    columns.extend(base.sags.iter().chain(&base.tilts).chain(everywhere).map(|c| white.of(c)));
+    columns.extend(about.sags.iter().chain(&about.tilts).chain(everywhere).map(|c| white.of(c)));
     if sizes == Sizes::Open {
-        columns.extend(base.forms.iter().map(|c| white.of(c)));
+        columns.extend(about.forms.iter().map(|c| white.of(c)));
     }
     let mut known = vec![1.0; columns.len()];
     // Of sizes and of what stands beside nothing is known before.
@@ -89,7 +90,7 @@ fn system_by(
         Sizes::FreeBut(one) => which != one,
         Sizes::Fixed => false,
     };
-    let free = (0..base.sizes.len()).filter(|which| is_free(*which)).flat_map(|which| &base.sizes[which]);
+    let free = (0..about.sizes.len()).filter(|which| is_free(*which)).flat_map(|which| &about.sizes[which]);
     columns.extend(free.chain(beside).map(|c| white.of(c)));
     known.resize(columns.len(), 0.0);
     offset.resize(columns.len(), 0.0);
