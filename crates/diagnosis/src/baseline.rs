@@ -225,7 +225,7 @@ mod tests {
             [(0.0, payload(6.0)), (1.0, vec![])].map(|(at, with)| drive(&robot, at, &with));
         let series = Series::new(&robot, &suspect, Some(&healthy)).unwrap();
         let anew = |mass_kg| Baseline::fit(&series, &robot, &payload(mass_kg)).unwrap();
-        let (near, own) = (anew(5.5), anew(6.0));
+        let (near, own) = (anew(5.9), anew(6.0));
         let tried = Baseline::fit_near(&series, &robot, &payload(6.0), &near).unwrap();
         assert!(Arc::ptr_eq(&tried.sensitivities, &near.sensitivities));
         let off =
