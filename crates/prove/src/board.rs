@@ -58,7 +58,9 @@ pub struct Scoreboard {
     pub interval_coverage: Rate,
     /// Median of the held-out error after correction over that of the drive without effects, where effects of the list acted.
     pub rmse_ratio_listed_median: Option<f64>,
-    /// The same where effects without a name did, of which terms take a part only.
+    /// Median of the noise floor over that of the drive without effects, in the same cases.
+    pub noise_ratio_listed_median: Option<f64>,
+    /// The errors' where effects without a name acted, of which terms take a part only.
     pub rmse_ratio_unlisted_median: Option<f64>,
     /// By mechanism and strength.
     pub mechanisms: Vec<MechanismRow>,
@@ -74,6 +76,7 @@ pub struct Scoreboard {
 pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scoreboard {
     let of = |kind: Kind| scores.iter().filter(move |case| case.kind == kind);
     let concealing = || scores.iter().filter(|case| case.kind.conceals());
+    let concealing_listed = || concealing().filter(|case| case.kind != Kind::Unlisted);
     let numbers = || listed(&scores).flat_map(|truth| &truth.parameters);
     let sizes: Vec<f64> = listed(&scores).filter_map(|t| t.set_size).map(|size| size as f64).collect();
     let (right, wrong) = names_given(&scores);
@@ -104,9 +107,8 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         unlisted_explained_median: median(of(Kind::Unlisted).map(|case| case.discovered.unwrap_or(0.0))),
         parameter_error_median: median(numbers().filter_map(|number| number.relative_error)),
         interval_coverage: Rate::of(numbers().filter_map(|number| number.covered)),
-        rmse_ratio_listed_median: median(
-            concealing().filter(|case| case.kind != Kind::Unlisted).filter_map(|case| case.rmse_ratio),
-        ),
+        rmse_ratio_listed_median: median(concealing_listed().filter_map(|case| case.rmse_ratio)),
+        noise_ratio_listed_median: median(concealing_listed().filter_map(|case| case.noise_ratio)),
         rmse_ratio_unlisted_median: median(of(Kind::Unlisted).filter_map(|case| case.rmse_ratio)),
         mechanisms: by_mechanism(&scores),
         strengths: by_strength(&scores),

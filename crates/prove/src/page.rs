@@ -103,7 +103,8 @@ fn goals(board: &Scoreboard) -> String {
             board.rmse_ratio_listed_median,
             "≤ 1.03",
         ),
-        ratio("The same of effects outside the list", board.rmse_ratio_unlisted_median, ""),
+        ratio("The same of the noise floor, which grows with power", board.noise_ratio_listed_median, ""),
+        ratio("The errors' of effects outside the list", board.rmse_ratio_unlisted_median, ""),
         rate("Said “consistent” although something acted", board.abstained, "", [0.0, 1.0]),
         rate("Diagnoses that failed", board.errors, "0", [0.0, 0.0]),
     ];

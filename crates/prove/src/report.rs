@@ -50,6 +50,9 @@ pub struct Fit {
     /// Root mean square error on drives that were held out [W].
     #[serde(default)]
     pub held_out_rmse_w: Option<f64>,
+    /// What of it no model could predict, with everything found, where the report says so [W].
+    #[serde(default)]
+    pub noise_floor_w: Option<f64>,
 }
 
 /// One mechanism.

@@ -34,6 +34,8 @@ pub struct CaseScore {
     pub swapped: bool,
     /// Root mean square error after correction over that of the drive without effects, both held out.
     pub rmse_ratio: Option<f64>,
+    /// The same of the noise floor: of a robot that draws more power, noise is more.
+    pub noise_ratio: Option<f64>,
     /// Share of the held-out mismatch that discovered terms explain together.
     pub discovered: Option<f64>,
     /// The same drive without the effects.
@@ -51,6 +53,8 @@ pub struct Twin {
     pub error: Option<String>,
     /// Held-out error of the robot fitted to it, with what was falsely found if that lowers it [W].
     pub held_out_rmse_w: Option<f64>,
+    /// What of it no model could predict [W].
+    pub noise_floor_w: Option<f64>,
 }
 
 /// How one effect fared.
@@ -119,9 +123,12 @@ impl Twin {
             Outcome::Report(report) => {
                 let fits = [report.baseline, report.corrected];
                 let rmse_w = fits.iter().filter_map(|fit| fit.held_out_rmse_w).reduce(f64::min);
-                Twin { alarmed: report.alarms(), error: None, held_out_rmse_w: rmse_w }
+                let noise_floor_w = report.baseline.noise_floor_w;
+                Twin { alarmed: report.alarms(), error: None, held_out_rmse_w: rmse_w, noise_floor_w }
             }
-            Outcome::Failed(why) => Twin { alarmed: false, error: Some(why.clone()), held_out_rmse_w: None },
+            Outcome::Failed(why) => {
+                Twin { alarmed: false, error: Some(why.clone()), held_out_rmse_w: None, noise_floor_w: None }
+            }
         }
     }
 }
@@ -144,6 +151,7 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
     };
     let wrong = |(j, finding): (usize, &Finding)| finding.is_named() && !matched.contains(&Some(j));
     let twin_w = twin.as_ref().and_then(|twin| twin.held_out_rmse_w);
+    let twin_noise_w = twin.as_ref().and_then(|twin| twin.noise_floor_w);
     CaseScore {
         case: key.case.clone(),
         kind: key.kind,
@@ -157,6 +165,7 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
         swapped: is_swapped(key, findings, &matched),
         rmse_ratio: report
             .and_then(|r| ratio(r.corrected.held_out_rmse_w.or(r.baseline.held_out_rmse_w)?, twin_w?)),
+        noise_ratio: report.and_then(|r| ratio(r.baseline.noise_floor_w?, twin_noise_w?)),
         discovered: discovered(findings, twin_w),
         twin,
         peers: Vec::new(),

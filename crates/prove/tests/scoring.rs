@@ -32,8 +32,10 @@ fn says(verdict: &str, findings: &str) -> Outcome {
 }
 
 fn fits(verdict: &str, findings: &str, [before_w, after_w]: [f64; 2]) -> Outcome {
+    // Noise is nine tenths of what is left.
+    let noise_w = 0.9 * after_w;
     let text = format!(
-        r#"{{"verdict": "{verdict}", "baseline": {{"held_out_rmse_w": {before_w}, "bias_w": 0.1}}, "where": [],
+        r#"{{"verdict": "{verdict}", "baseline": {{"held_out_rmse_w": {before_w}, "bias_w": 0.1, "noise_floor_w": {noise_w}}}, "where": [],
             "findings": [{findings}], "corrected": {{"held_out_rmse_w": {after_w}}}, "next_drive": null}}"#
     );
     Outcome::Report(serde_json::from_str::<Report>(&text).unwrap())
@@ -129,6 +131,7 @@ fn errors_after_correction_are_told_apart_of_effects_with_and_without_a_name() {
     let puddles = [3.0, 3.2].map(|after_w| after(EffectName::Puddles, after_w));
     let board = board(payloads.into_iter().chain(puddles).collect());
     assert_eq!(board.rmse_ratio_listed_median, Some(2.04 / 2.0));
+    assert_eq!(board.noise_ratio_listed_median, Some(0.9 * 2.04 / (0.9 * 2.0)));
     assert_eq!(board.rmse_ratio_unlisted_median, Some(3.1 / 2.0));
     let html = page(&board);
     assert!(html.contains("<td class=number>1.020<td") && html.contains("<td class=number>1.550<td"));

@@ -168,7 +168,8 @@ fn summary(board: &Scoreboard) -> String {
         ("intervals that hold the truth", rate(board.interval_coverage)),
         ("error of numbers, median", median(board.parameter_error_median, &percent)),
         ("held-out error over that without", ratio(board.rmse_ratio_listed_median)),
-        ("the same outside the list", ratio(board.rmse_ratio_unlisted_median)),
+        ("noise over that without", ratio(board.noise_ratio_listed_median)),
+        ("held-out error, outside the list", ratio(board.rmse_ratio_unlisted_median)),
         ("diagnoses that failed", rate(board.errors)),
     ]
     .map(|(what, shown)| format!("{what:<36} {shown}"))
