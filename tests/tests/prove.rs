@@ -4,13 +4,14 @@
 
 use std::{
     collections::BTreeSet,
+    path::Path,
     process::{Command, Output},
 };
 
 use joulepath_tests::program;
 use serde_json::Value;
 
-fn prove(out: &std::path::Path, more: &[&str]) -> Output {
+fn prove(out: &Path, more: &[&str]) -> Output {
     Command::new(program()).arg("prove").args(more).arg("--out").arg(out).output().unwrap()
 }
 
@@ -34,7 +35,7 @@ fn a_case_of_each_kind_is_proven_and_the_published_hash_is_that_of_the_keys() {
     assert_eq!(board["peers"].as_array().unwrap().len(), 2);
     assert!(said.contains(board["commitment"].as_str().unwrap()), "{said}");
     let ratio = board["rmse_ratio_listed_median"].as_f64().unwrap();
-    assert!(said.contains(&format!("held-out error over that without     {ratio:.3}\n")), "{said}");
+    assert!(said.contains(&format!("held-out error over that without   {ratio:.3}\n")), "{said}");
     let checked = Command::new("sha256sum")
         .args(["--check", "--strict", "SHA256SUMS"])
         .current_dir(out.join("keys"))
@@ -43,6 +44,28 @@ fn a_case_of_each_kind_is_proven_and_the_published_hash_is_that_of_the_keys() {
     assert!(checked.status.success(), "{checked:?}");
     let html = std::fs::read_to_string(out.join("scoreboard.html")).unwrap();
     assert!(html.contains("concealed effects were named"), "{html}");
+}
+
+#[test]
+fn trials_of_before_are_added_up_and_what_is_no_trial_is_said() {
+    let room = tempfile::tempdir().unwrap();
+    let first = room.path().join("first");
+    assert!(prove(&first, &["--cases", "1", "--seed", "3", "--only", "healthy"]).status.success());
+    let together = |folders: &[&Path]| {
+        Command::new(program()).args(["prove", "--together"]).args(folders).output().unwrap()
+    };
+    let said = String::from_utf8(together(&[&first, &first]).stdout).unwrap();
+    assert!(said.starts_with("false alarms, healthy drives       0 of 2 (0 to 84 %)\n"), "{said}");
+    assert!(!said.contains("named"), "what there is no case of is not said: {said}");
+    std::fs::write(room.path().join("scoreboard.json"), r#"{"seed": 1}"#).unwrap();
+    for (folder, fault) in
+        [(room.path(), "missing field"), (&room.path().join("none"), "none/scoreboard.json")]
+    {
+        let output = together(&[&first, folder]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && output.stdout.is_empty(), "{message}");
+        assert!(message.contains(fault) && message.lines().count() == 1, "{message}");
+    }
 }
 
 #[test]

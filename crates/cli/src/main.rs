@@ -9,6 +9,7 @@ mod picture;
 mod progress;
 mod reach_picture;
 mod recorded;
+mod scored;
 mod table;
 
 use std::process::ExitCode;

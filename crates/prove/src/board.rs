@@ -48,10 +48,14 @@ pub struct Scoreboard {
     pub physics_called_sensor: Rate,
     /// Effects without a name to which none was given by a diagnosis that did not fail.
     pub unlisted_not_misnamed: Rate,
+    /// The same of those that change power by 3 % and more.
+    pub unlisted_strong_not_misnamed: Rate,
     /// Effects without a name that were found.
     pub unlisted_detected: Rate,
     /// Median share of the held-out mismatch that discovered terms explain.
     pub unlisted_explained_median: Option<f64>,
+    /// The same where there are such terms.
+    pub unlisted_terms_explain_median: Option<f64>,
     /// Median relative error of numbers.
     pub parameter_error_median: Option<f64>,
     /// Intervals that hold the truth.
@@ -71,6 +75,9 @@ pub struct Scoreboard {
     /// Every case.
     pub scores: Vec<CaseScore>,
 }
+
+/// Share of power from which on an effect without a name counts as strong.
+const STRONG: f64 = 0.03;
 
 /// Adds up the cases; their order and names change nothing but the list of them.
 pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scoreboard {
@@ -103,8 +110,12 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         sensor_called_physics: swaps(&scores, Family::Measurement),
         physics_called_sensor: swaps(&scores, Family::Physics),
         unlisted_not_misnamed: Rate::of(of(Kind::Unlisted).map(CaseScore::misnames_nothing)),
+        unlisted_strong_not_misnamed: Rate::of(
+            of(Kind::Unlisted).filter(|case| case.share >= STRONG).map(CaseScore::misnames_nothing),
+        ),
         unlisted_detected: Rate::of(of(Kind::Unlisted).map(|case| case.alarmed)),
         unlisted_explained_median: median(of(Kind::Unlisted).map(|case| case.discovered.unwrap_or(0.0))),
+        unlisted_terms_explain_median: median(of(Kind::Unlisted).filter_map(|case| case.discovered)),
         parameter_error_median: median(numbers().filter_map(|number| number.relative_error)),
         interval_coverage: Rate::of(numbers().filter_map(|number| number.covered)),
         rmse_ratio_listed_median: median(concealing_listed().filter_map(|case| case.rmse_ratio)),

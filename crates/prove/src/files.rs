@@ -13,6 +13,9 @@ pub const ROBOT: &str = "robot.json";
 /// Drives of the same robot from before.
 pub const REFERENCE: &str = "reference.csv";
 
+/// How all cases together came out.
+pub(crate) const SCOREBOARD: &str = "scoreboard.json";
+
 /// The files of a case.
 pub(crate) const ALL: [&str; 3] = [RECORDING, ROBOT, REFERENCE];
 

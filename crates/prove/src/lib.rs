@@ -22,6 +22,7 @@ mod rate;
 mod report;
 mod score;
 mod strength;
+mod together;
 mod trial;
 
 pub use board::{Scoreboard, scoreboard};
@@ -38,4 +39,5 @@ pub use rate::Rate;
 pub use report::{Estimate, Finding, Least, Report, Verdict};
 pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};
 pub use strength::{Misled, z};
+pub use together::together;
 pub use trial::{Stage, Trial};

@@ -1,6 +1,6 @@
 //! Other ways to the same answer, on the same files.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{Kind, SealedKey};
 
@@ -14,14 +14,14 @@ pub struct PeerAnswer {
 }
 
 /// How a peer did on one case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerScore {
     /// The peer.
     pub peer: String,
     /// What it said.
     pub names: Vec<String>,
     /// Why it said nothing.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
     /// Truths that stand among as many of its first names as there are truths.
     pub named: usize,

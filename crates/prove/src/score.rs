@@ -1,6 +1,6 @@
 //! One case scored: what was said against what is true.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use world::{EffectName, Family};
 
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// How the diagnosis did on one case.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseScore {
     /// The case.
     pub case: String,
@@ -45,7 +45,7 @@ pub struct CaseScore {
 }
 
 /// The diagnosis of the same drive without the effects.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Twin {
     /// Whether it said that something is wrong.
     pub alarmed: bool,
@@ -58,13 +58,14 @@ pub struct Twin {
 }
 
 /// How one effect fared.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TruthScore {
     /// Its name.
     pub effect: EffectName,
     /// Its family.
     pub family: Family,
-    /// How strong it is for a detector that knows it.
+    /// How strong it is for a detector that knows it; not a number where that cannot be told.
+    #[serde(deserialize_with = "number_or_none")]
     pub z: f64,
     /// Root mean square change of power over its mean, as it came out.
     pub power_change: f64,
@@ -83,7 +84,7 @@ pub struct TruthScore {
 }
 
 /// How one number of an effect fared.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterScore {
     /// Of what.
     pub name: String,
@@ -241,6 +242,11 @@ fn discovered(findings: &[Finding], twin_w: Option<f64>) -> Option<f64> {
     let (before_w, after_w) = (first.held_out_rmse_before_w?, last.held_out_rmse_after_w?);
     let floor_w2 = twin_w?.min(before_w).powi(2);
     ratio(before_w.powi(2) - after_w.powi(2), before_w.powi(2) - floor_w2).map(|share| share.min(1.0))
+}
+
+/// What JSON has no number for is none.
+fn number_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 fn ratio(a: f64, b: f64) -> Option<f64> {

@@ -188,7 +188,7 @@ impl Trial<'_> {
     }
 
     fn write(&self, board: &Scoreboard) -> Result<(), Error> {
-        let path = self.out.join("scoreboard.json");
+        let path = self.out.join(files::SCOREBOARD);
         let json = serde_json::to_string_pretty(board)
             .map_err(|source| Error::Content { path: path.clone(), source })?;
         files::write(&path, &(json + "\n"))?;

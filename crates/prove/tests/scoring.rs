@@ -118,6 +118,11 @@ fn effects_outside_the_list_may_be_unknown_but_not_something_else() {
     let failed = one(EffectName::Puddles, &Outcome::Failed("killed".into()));
     let board = board(vec![unknown, misnamed, failed]);
     assert_eq!((board.unlisted_not_misnamed.hits, board.unlisted_not_misnamed.of), (1, 3));
+    assert_eq!(board.unlisted_strong_not_misnamed, board.unlisted_not_misnamed, "3 % of power is strong");
+    // With nothing for those that have no term, and of those that have one.
+    let explained = (16.0 - 6.25) / (16.0 - 4.0);
+    assert_eq!(board.unlisted_explained_median, Some(0.0));
+    assert_eq!(board.unlisted_terms_explain_median, Some(explained));
     // From 4 W down to 2.5 W, of a mismatch that ends at the 2 W of the twin's drive.
     assert_eq!(board.scores[0].discovered, Some((16.0 - 6.25) / (16.0 - 4.0)));
     assert_eq!((board.in_two.of, board.detected.of), (0, 0), "they are no part of the list's figures");
@@ -209,6 +214,17 @@ fn what_a_failing_program_says_cannot_break_the_page() {
     let nasty = Outcome::Failed("<script>alert(1)</script>".into());
     let html = page(&board(vec![one(EffectName::Payload, &nasty)]));
     assert!(html.contains("&lt;script&gt;") && !html.contains("<script>"));
+}
+
+#[test]
+fn a_score_that_was_written_is_read_as_it_was_without_a_strength_too() {
+    let said = says("explained", &finding("payload", ""));
+    let known = one(EffectName::Payload, &said);
+    let unknown = score(&key("case-0002", Kind::One, &[EffectName::Payload]), &[], &said, twin());
+    for case in [known, unknown] {
+        let read: CaseScore = serde_json::from_str(&serde_json::to_string(&case).unwrap()).unwrap();
+        assert_eq!(format!("{read:?}"), format!("{case:?}"));
+    }
 }
 
 #[test]

@@ -10,10 +10,10 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::Robot;
-use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial};
+use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Stage, Trial};
 use recording::read_paths;
 
-use crate::{failure::BadInput, progress, recorded::robot};
+use crate::{failure::BadInput, progress, recorded::robot, scored::summary};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -38,8 +38,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     share: Option<f64>,
     /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
-    #[arg(long)]
-    out: PathBuf,
+    #[arg(long, required_unless_present = "together")]
+    out: Option<PathBuf>,
+    /// Folders of trials that were made before: add them up instead of making one
+    #[arg(long, value_name = "FOLDER", num_args = 1.., conflicts_with_all = ["robot", "cases", "seed", "only", "share", "out"])]
+    together: Vec<PathBuf>,
 }
 
 /// A kind of case.
@@ -70,7 +73,11 @@ impl From<Only> for Kind {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    check(arguments)?;
+    let Some(out) = &arguments.out else {
+        println!("{}", summary(&prove::together(&arguments.together)?));
+        return Ok(());
+    };
+    check(arguments, out)?;
     let program = std::env::current_exe().context("cannot tell where joulepath itself lies")?;
     let robot_json = serde_json::to_string_pretty(&robot(&arguments.robot)?)? + "\n";
     let bar = Mutex::new(progress::cases());
@@ -87,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         only: arguments.only.map(Kind::from),
         share: arguments.share,
         robot_json: &robot_json,
-        out: &arguments.out,
+        out,
         // Cases side by side use the cores better than threads within one.
         diagnosis: Diagnosis { program, threads: 1 },
         peers: &peers,
@@ -100,11 +107,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bar.finish_and_clear();
     }
     println!("{}", summary(&board));
-    println!("{}", arguments.out.join("scoreboard.html").display());
+    println!("{}", out.join("scoreboard.html").display());
     Ok(())
 }
 
-fn check(arguments: &Arguments) -> Result<(), BadInput> {
+fn check(arguments: &Arguments, out: &Path) -> Result<(), BadInput> {
     if !(1..=MOST_CASES).contains(&arguments.cases) {
         return Err(BadInput(format!("--cases {} must lie in 1 to {MOST_CASES}", arguments.cases)));
     }
@@ -114,7 +121,6 @@ fn check(arguments: &Arguments) -> Result<(), BadInput> {
             "--share {share} must lie in {low} to {high}, such as 0.012 for 1.2 %"
         )));
     }
-    let out = &arguments.out;
     let is_new = !out.exists() || out.read_dir().is_ok_and(|mut entries| entries.next().is_none());
     let fault = "it exists and is not an empty folder; name one that is new";
     if is_new { Ok(()) } else { Err(BadInput(format!("--out {}: {fault}", out.display()))) }
@@ -146,32 +152,4 @@ fn plain(case: &Path) -> Result<Plain, String> {
     let (suspect, healthy) = (read(prove::RECORDING)?.0, read(REFERENCE)?.0);
     let series = Series::new(&robot, &suspect, Some(&healthy)).map_err(|error| error.to_string())?;
     Plain::new(&series, &robot).map_err(|error| error.to_string())
-}
-
-fn summary(board: &Scoreboard) -> String {
-    let rate = |rate: prove::Rate| {
-        let [low, high] = rate.interval_95.map(|bound| 100.0 * bound);
-        format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of)
-    };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let median = |value: Option<f64>, show: &dyn Fn(f64) -> String| value.map_or("no such case".into(), show);
-    let ratio = |value| median(value, &|ratio| format!("{ratio:.3}"));
-    [
-        ("false alarms, healthy drives", rate(board.false_alarms_healthy)),
-        ("false alarms, decoys", rate(board.false_alarms_decoy)),
-        ("false alarms, effects taken away", rate(board.false_alarms_twin)),
-        ("effects detected", rate(board.detected)),
-        ("effects named, set of two at most", rate(board.in_two)),
-        ("both of two effects named", rate(board.both_of_two)),
-        ("outside the list, not misnamed", rate(board.unlisted_not_misnamed)),
-        ("mismatch that terms explain, median", median(board.unlisted_explained_median, &percent)),
-        ("intervals that hold the truth", rate(board.interval_coverage)),
-        ("error of numbers, median", median(board.parameter_error_median, &percent)),
-        ("held-out error over that without", ratio(board.rmse_ratio_listed_median)),
-        ("noise over that without", ratio(board.noise_ratio_listed_median)),
-        ("held-out error, outside the list", ratio(board.rmse_ratio_unlisted_median)),
-        ("diagnoses that failed", rate(board.errors)),
-    ]
-    .map(|(what, shown)| format!("{what:<36} {shown}"))
-    .join("\n")
 }

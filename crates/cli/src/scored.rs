@@ -1,0 +1,49 @@
+//! A scoreboard in some lines.
+
+use prove::{Rate, Scoreboard};
+
+/// Every figure on a line of its own; those of no case are left out.
+pub(crate) fn summary(board: &Scoreboard) -> String {
+    let strong = |low: f64, high: f64| {
+        let rows = board.strengths.iter().filter(|row| (low..high).contains(&row.from_z));
+        let (hits, of) = rows.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
+        Rate::new(hits, of)
+    };
+    let lines = [
+        ("false alarms, healthy drives", rate(board.false_alarms_healthy)),
+        ("false alarms, decoys", rate(board.false_alarms_decoy)),
+        ("false alarms, effects taken away", rate(board.false_alarms_twin)),
+        ("effects detected", rate(board.detected)),
+        ("effects named, set of two at most", rate(board.in_two)),
+        ("those of z = 32 to 64", rate(strong(32.0, 64.0))),
+        ("those of z = 64 and more", rate(strong(64.0, f64::INFINITY))),
+        ("both of two effects named", rate(board.both_of_two)),
+        ("sensor faults called physics", rate(board.sensor_called_physics)),
+        ("physics called a sensor fault", rate(board.physics_called_sensor)),
+        ("intervals that hold the truth", rate(board.interval_coverage)),
+        ("error of numbers, median", percent(board.parameter_error_median)),
+        ("held-out error over that without", ratio(board.rmse_ratio_listed_median)),
+        ("noise over that without", ratio(board.noise_ratio_listed_median)),
+        ("outside the list, not misnamed", rate(board.unlisted_not_misnamed)),
+        ("those of 3 % of power and more", rate(board.unlisted_strong_not_misnamed)),
+        ("mismatch explained, median", percent(board.unlisted_explained_median)),
+        ("the same where terms are given", percent(board.unlisted_terms_explain_median)),
+        ("held-out error over that without", ratio(board.rmse_ratio_unlisted_median)),
+        ("diagnoses that failed", rate(board.errors)),
+    ];
+    let shown = lines.into_iter().filter_map(|(what, shown)| Some(format!("{what:<34} {}", shown?)));
+    shown.collect::<Vec<String>>().join("\n")
+}
+
+fn rate(rate: Rate) -> Option<String> {
+    let [low, high] = rate.interval_95.map(|bound| 100.0 * bound);
+    (rate.of > 0).then(|| format!("{} of {} ({low:.0} to {high:.0} %)", rate.hits, rate.of))
+}
+
+fn percent(share: Option<f64>) -> Option<String> {
+    Some(format!("{:.1} %", 100.0 * share?))
+}
+
+fn ratio(ratio: Option<f64>) -> Option<String> {
+    Some(format!("{:.3}", ratio?))
+}
