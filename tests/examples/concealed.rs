@@ -6,15 +6,15 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::{collections::BTreeMap, path::Path, time::Instant};
+use std::{collections::BTreeMap, time::Instant};
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
+use joulepath_tests::logs::read_back;
 use model::{
     Robot,
     mechanism::{self, Mechanism},
 };
-use recording::{Recording, read_paths};
-use world::{Case, CaseKind, EffectName, Family, Log, RobotFile, simulate};
+use world::{Case, CaseKind, EffectName, Family, RobotFile, simulate};
 
 /// Cases of one family: all, not `consistent`, and with the truth alone or beside one other.
 #[derive(Default)]
@@ -29,7 +29,6 @@ fn main() {
     let mut number = |default: f64| arguments.next().and_then(|a| a.parse().ok()).unwrap_or(default);
     let (share, first, seeds) = (number(0.06), number(1.0) as u64, number(1.0) as u64);
     let only: Vec<String> = arguments.collect();
-    let folder = tempfile::tempdir().unwrap();
     let text = serde_json::to_string(&model::builtin::husky_a200()).unwrap();
     let (file, robot) = (RobotFile::from_json(&text).unwrap(), Robot::from_json(&text).unwrap());
     let mut kinds = vec![CaseKind::Healthy, CaseKind::Decoy];
@@ -45,8 +44,8 @@ fn main() {
                     continue;
                 }
             };
-            let suspect = read(folder.path(), &simulate(&case.world, &file, &case.drive).unwrap());
-            let healthy = read(folder.path(), &case.reference(&file).unwrap());
+            let suspect = read_back(&simulate(&case.world, &file, &case.drive).unwrap()).recording;
+            let healthy = read_back(&case.reference(&file).unwrap()).recording;
             let began = Instant::now();
             let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
             say(kind, seed, &case, &found, began);
@@ -67,12 +66,6 @@ fn main() {
     for (family, Count { cases, noticed, named }) in counts {
         println!("{family}: {noticed} of {cases} noticed, {named} named in a set of at most two");
     }
-}
-
-fn read(folder: &Path, log: &Log) -> Recording {
-    let path = folder.join("drive.csv");
-    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
-    read_paths(&[path], None).unwrap().0
 }
 
 fn family(kind: CaseKind) -> &'static str {

@@ -7,9 +7,10 @@
 use std::collections::BTreeMap;
 
 use calibration::{Options, PredictedDrives, RunPrediction, calibrate, predict};
+use joulepath_tests::logs::read_back;
 use model::Robot;
-use recording::{Recording, read_path};
-use world::{Case, CaseKind, Drive, DriveKind, Log, RobotFile, World, simulate};
+use recording::Recording;
+use world::{Case, CaseKind, Drive, DriveKind, RobotFile, World, simulate};
 
 fn main() {
     let robot = model::builtin::husky_a200();
@@ -36,7 +37,7 @@ fn main() {
     let file = file(&robot);
     for seed in 0..8 {
         let case = Case::draw(seed, CaseKind::Healthy, 0.0, &file).unwrap();
-        let reference = read(&case.reference(&file).unwrap());
+        let reference = read_back(&case.reference(&file).unwrap()).recording;
         let recording = record(&case.world, &case.drive);
         let found = calibrate(&robot, &reference, &Options::default()).unwrap();
         println!("healthy case {seed}: {:?} on {:?}", case.drive.kind, case.world.terrain);
@@ -50,15 +51,7 @@ fn file(robot: &Robot) -> RobotFile {
 }
 
 fn record(world: &World, drive: &Drive) -> Recording {
-    read(&simulate(world, &file(&model::builtin::husky_a200()), drive).unwrap())
-}
-
-fn read(log: &Log) -> Recording {
-    let path = std::env::temp_dir().join(format!("joulepath-healthy-{}.csv", std::process::id()));
-    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
-    let recording = read_path(&path, None).unwrap().recording;
-    std::fs::remove_file(&path).unwrap();
-    recording
+    read_back(&simulate(world, &file(&model::builtin::husky_a200()), drive).unwrap()).recording
 }
 
 fn say(what: &str, total: &RunPrediction) {

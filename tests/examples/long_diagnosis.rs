@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::{path::Path, time::Instant};
+use std::time::Instant;
 
 use diagnosis::{Question, diagnose};
+use joulepath_tests::logs::read_back;
 use model::Robot;
-use recording::{Recording, read_paths};
+use recording::Recording;
 use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
 
 /// Rows of a second.
@@ -17,10 +18,9 @@ const HEALTHY: f64 = 0.3;
 fn main() {
     let rows: f64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(100_000.0);
     let duration_s = rows / RATE_HZ;
-    let folder = tempfile::tempdir().unwrap();
     let load = Effect { onset_s: duration_s / 2.0, ..Effect::new(EffectName::Payload, 6.0) };
-    let suspect = record(folder.path(), 13, vec![load], duration_s);
-    let healthy = record(folder.path(), 14, vec![], HEALTHY * duration_s);
+    let suspect = record(13, vec![load], duration_s);
+    let healthy = record(14, vec![], HEALTHY * duration_s);
     let robot = model::builtin::husky_a200();
     let began = Instant::now();
     let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
@@ -34,15 +34,10 @@ fn main() {
     println!("{}: {}", found.verdict, found.sentence);
 }
 
-fn record(folder: &Path, seed: u64, effects: Vec<Effect>, duration_s: f64) -> Recording {
+fn record(seed: u64, effects: Vec<Effect>, duration_s: f64) -> Recording {
     let text = format!(r#"{{"terrain": {{"rolling": {{"grade": 0.04}}}}, "seed": {seed}, "robot_seed": 5}}"#);
     let world = World { effects, ..World::from_json(&text).unwrap() };
     let robot: Robot = model::builtin::husky_a200();
     let file = RobotFile::from_json(&serde_json::to_string(&robot).unwrap()).unwrap();
-    let path = folder.join("drive.csv");
-    simulate(&world, &file, &Drive::new(DriveKind::Rich, duration_s, seed))
-        .unwrap()
-        .write_csv(std::fs::File::create(&path).unwrap())
-        .unwrap();
-    read_paths(&[path], None).unwrap().0
+    read_back(&simulate(&world, &file, &Drive::new(DriveKind::Rich, duration_s, seed)).unwrap()).recording
 }

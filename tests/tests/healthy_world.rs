@@ -3,16 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 use calibration::{Options, calibrate, predict};
-use recording::{Recording, read_path};
+use joulepath_tests::logs::read_back;
+use recording::Recording;
 use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
 
-fn record(name: &str, world: &World, drive: &Drive) -> Recording {
+fn record(world: &World, drive: &Drive) -> Recording {
     let robot = serde_json::to_string(&model::builtin::husky_a200()).unwrap();
     let log = simulate(world, &RobotFile::from_json(&robot).unwrap(), drive).unwrap();
-    let path = std::env::temp_dir().join(format!("joulepath-{name}-{}.csv", std::process::id()));
-    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
-    let reading = read_path(&path, None).unwrap();
-    std::fs::remove_file(&path).unwrap();
+    let reading = read_back(&log);
     assert!(reading.report.aside.is_empty(), "every column is known: {:?}", reading.report.aside);
     assert!(reading.report.suspicions.is_empty(), "{:?}", reading.report.suspicions);
     reading.recording
@@ -27,7 +25,7 @@ fn healthy_drives_over_gentle_hills_are_described_after_calibration() {
     let robot = model::builtin::husky_a200();
     for (grade, kind) in [(0.0, DriveKind::Rich), (0.02, DriveKind::Rich), (0.03, DriveKind::LawnMower)] {
         let drive = Drive { runs: 6, ..Drive::new(kind, 300.0, 5) };
-        let recording = record("healthy", &hills(grade), &drive);
+        let recording = record(&hills(grade), &drive);
         let found = calibrate(&robot, &recording, &Options::default()).unwrap();
         let held_out = found.held_out.unwrap();
         // Runs that were not fitted, averaged over a second.
@@ -43,10 +41,10 @@ fn healthy_drives_over_gentle_hills_are_described_after_calibration() {
 fn the_robot_file_itself_describes_a_healthy_robot_and_not_one_that_conceals_a_load() {
     let robot = model::builtin::husky_a200();
     let drive = Drive { runs: 2, ..Drive::new(DriveKind::Rich, 300.0, 5) };
-    let healthy = predict(&robot, &record("plain", &hills(0.02), &drive)).unwrap().prediction.total;
+    let healthy = predict(&robot, &record(&hills(0.02), &drive)).unwrap().prediction.total;
     assert!((healthy.predicted_j / healthy.recorded_j - 1.0).abs() < 0.03, "{healthy:?}");
     let loaded = World { effects: vec![Effect::new(EffectName::Payload, 15.0)], ..hills(0.02) };
-    let loaded = predict(&robot, &record("loaded", &loaded, &drive)).unwrap().prediction.total;
+    let loaded = predict(&robot, &record(&loaded, &drive)).unwrap().prediction.total;
     assert!(loaded.recorded_j > 1.15 * healthy.recorded_j, "{loaded:?}");
     assert!(loaded.predicted_j < 0.92 * loaded.recorded_j, "{loaded:?}");
 }

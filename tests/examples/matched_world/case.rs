@@ -1,12 +1,13 @@
 //! Cases of a world that is the model's own.
 
 use diagnosis::{Applied, Span, imitate};
+use joulepath_tests::logs::read_back;
 use model::{Robot, mechanism::Mechanism};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use recording::{Channel, Recording, read_paths};
-use world::{CaseKind, EffectName, Log, RobotFile, Sensors, simulate};
+use recording::{Channel, Recording};
+use world::{CaseKind, EffectName, RobotFile, Sensors, simulate};
 
 /// What a case is to conceal.
 pub(crate) enum Kind {
@@ -48,8 +49,9 @@ pub(crate) fn draw(seed: u64, kind: &Kind, z: f64) -> Case {
     let scatter = SCATTER[usize::from(is_decoy && random.random_bool(0.5))];
     let robot = scattered(&file, scatter, &mut random);
     let noise = if is_decoy { random.random_range(1.0..4.0) } else { 1.0 };
-    let suspect = read(&simulate(&case.world.without_effects(), &world_file, &case.drive).unwrap());
-    let healthy = read(&case.reference(&world_file).unwrap());
+    let suspect =
+        read_back(&simulate(&case.world.without_effects(), &world_file, &case.drive).unwrap()).recording;
+    let healthy = read_back(&case.reference(&world_file).unwrap()).recording;
     // The way that the model goes, which its headings belong to.
     let plain = imitate(&robot, &suspect, &[]).unwrap();
     let truths: Vec<Applied> =
@@ -61,13 +63,6 @@ pub(crate) fn draw(seed: u64, kind: &Kind, z: f64) -> Case {
         truths,
         robot: file,
     }
-}
-
-fn read(log: &Log) -> Recording {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("drive.csv");
-    log.write_csv(std::fs::File::create(&path).unwrap()).unwrap();
-    read_paths(&[path], None).unwrap().0
 }
 
 /// A robot that differs from its file by shares of the file's uncertainty.

@@ -2,9 +2,10 @@
 
 #![allow(clippy::panic)]
 
+use joulepath_tests::logs::read_back;
 use model::Robot;
-use recording::{Recording, read_paths};
-use world::{Case, CaseKind, Drive, DriveKind, Effect, EffectName, Log, RobotFile, Sensors, World, simulate};
+use recording::Recording;
+use world::{Case, CaseKind, Drive, DriveKind, Effect, EffectName, RobotFile, Sensors, World, simulate};
 
 /// A rich drive of the built-in robot over gentle hills, the same robot and hills whatever the seed.
 ///
@@ -25,7 +26,7 @@ pub(crate) fn drive_of(robot: &Robot, drive: &Drive, effects: Vec<Effect>) -> Re
     let recorded = || -> Result<Recording, Box<dyn std::error::Error>> {
         let robot = RobotFile::from_json(&serde_json::to_string(robot)?)?;
         let world = World { effects, sensors: Sensors::of(&robot), ..World::from_json(&text)? };
-        read(&simulate(&world, &robot, drive)?)
+        Ok(read_back(&simulate(&world, &robot, drive)?).recording)
     };
     recorded().unwrap_or_else(|error| panic!("seed {seed}: {error}"))
 }
@@ -39,15 +40,8 @@ pub(crate) fn drawn(seed: u64, effect: EffectName, share: f64) -> [Recording; 2]
     let recorded = || -> Result<[Recording; 2], Box<dyn std::error::Error>> {
         let robot = RobotFile::from_json(&serde_json::to_string(&model::builtin::husky_a200())?)?;
         let case = Case::draw(seed, CaseKind::One(effect), share, &robot)?;
-        Ok([read(&simulate(&case.world, &robot, &case.drive)?)?, read(&case.reference(&robot)?)?])
+        Ok([simulate(&case.world, &robot, &case.drive)?, case.reference(&robot)?]
+            .map(|log| read_back(&log).recording))
     };
     recorded().unwrap_or_else(|error| panic!("seed {seed}: {error}"))
-}
-
-/// What a file of a log is read as.
-fn read(log: &Log) -> Result<Recording, Box<dyn std::error::Error>> {
-    let folder = tempfile::tempdir()?;
-    let path = folder.path().join("drive.csv");
-    log.write_csv(std::fs::File::create(&path)?)?;
-    Ok(read_paths(&[path], None)?.0)
 }
