@@ -97,14 +97,18 @@ fn goals(board: &Scoreboard) -> String {
             [0.6, f64::MAX],
         ),
         share("Error of an effect's numbers, median", board.parameter_error_median, "≤ 15 %", [0.0, 0.15]),
-        rate("95 % intervals that hold the truth", board.interval_coverage, "90–98 %", [0.9, 0.98]),
+        rate("95 % intervals that hold the truth", board.interval_coverage, "90–98\u{a0}%", [0.9, 0.98]),
         ratio(
             "Held-out error after correction ÷ that of the drive without the effect, median",
             board.rmse_ratio_listed_median,
             "≤ 1.03",
         ),
         ratio("The same of the noise floor, which grows with power", board.noise_ratio_listed_median, ""),
-        ratio("The errors' of effects outside the list", board.rmse_ratio_unlisted_median, ""),
+        ratio(
+            "The same of errors where an effect outside the list acts",
+            board.rmse_ratio_unlisted_median,
+            "",
+        ),
         rate("Said “consistent” although something acted", board.abstained, "", [0.0, 1.0]),
         rate("Diagnoses that failed", board.errors, "0", [0.0, 0.0]),
     ];
