@@ -6,10 +6,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../shared/logs.rs"]
+mod logs;
+
 use std::{collections::BTreeMap, time::Instant};
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};
-use joulepath_tests::logs::read_back;
+use logs::read_back;
 use model::{
     Robot,
     mechanism::{self, Mechanism},

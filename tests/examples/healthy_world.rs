@@ -4,10 +4,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../shared/logs.rs"]
+mod logs;
+
 use std::collections::BTreeMap;
 
 use calibration::{Options, PredictedDrives, RunPrediction, calibrate, predict};
-use joulepath_tests::logs::read_back;
+use logs::read_back;
 use model::Robot;
 use recording::Recording;
 use world::{Case, CaseKind, Drive, DriveKind, RobotFile, World, simulate};

@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../shared/logs.rs"]
+mod logs;
+
 use std::time::Instant;
 
 use diagnosis::{Question, diagnose};
-use joulepath_tests::logs::read_back;
+use logs::read_back;
 use model::Robot;
 use recording::Recording;
 use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};

@@ -5,7 +5,6 @@
 pub mod churn;
 pub mod folder_store;
 pub mod kills;
-pub mod logs;
 pub mod s3;
 
 use std::{

@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../shared/logs.rs"]
+mod logs;
+
 use calibration::{Options, calibrate, predict};
-use joulepath_tests::logs::read_back;
+use logs::read_back;
 use recording::Recording;
 use world::{Drive, DriveKind, Effect, EffectName, RobotFile, World, simulate};
 

@@ -4,6 +4,8 @@
 
 #[path = "../examples/matched_world/case.rs"]
 mod case;
+#[path = "../shared/logs.rs"]
+mod logs;
 #[path = "../examples/matched_world/score.rs"]
 mod score;
 

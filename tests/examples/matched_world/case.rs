@@ -1,7 +1,7 @@
 //! Cases of a world that is the model's own.
 
+use crate::logs::read_back;
 use diagnosis::{Applied, Span, imitate};
-use joulepath_tests::logs::read_back;
 use model::{Robot, mechanism::Mechanism};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

@@ -8,6 +8,8 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod case;
+#[path = "../../shared/logs.rs"]
+mod logs;
 mod score;
 
 use diagnosis::{Diagnosis, Question, Verdict, diagnose};

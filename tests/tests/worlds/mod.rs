@@ -2,7 +2,10 @@
 
 #![allow(clippy::panic)]
 
-use joulepath_tests::logs::read_back;
+#[path = "../../shared/logs.rs"]
+mod logs;
+
+use logs::read_back;
 use model::Robot;
 use recording::Recording;
 use world::{Case, CaseKind, Drive, DriveKind, Effect, EffectName, RobotFile, Sensors, World, simulate};

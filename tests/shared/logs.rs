@@ -1,5 +1,7 @@
 //! What the world wrote, as a file of it is read.
 
+#![allow(clippy::panic)]
+
 use recording::{Reading, read_path};
 use world::Log;
 
@@ -7,7 +9,7 @@ use world::Log;
 ///
 /// # Panics
 /// When there is no room for the file, and when it is no recording.
-pub fn read_back(log: &Log) -> Reading {
+pub(crate) fn read_back(log: &Log) -> Reading {
     let read = || -> Result<Reading, Box<dyn std::error::Error>> {
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("drive.csv");
