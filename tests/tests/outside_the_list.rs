@@ -108,6 +108,14 @@ fn a_fan_that_goes_with_the_voltage_is_no_gain_of_the_meters() {
     assert_eq!(names(&found), ["unknown"], "{}", found.sentence);
 }
 
+/// Where it starts moving it sticks, of which there is too little to say more than that something rolls harder.
+#[test]
+fn what_sticks_at_starts_is_no_soft_soil_that_is_hardly_seen() {
+    let [suspect, healthy] = drawn(1_927_103_851_437_243, EffectName::StickyStart, 0.012);
+    let found = said(&model::builtin::husky_a200(), &suspect, &healthy);
+    assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
+}
+
 /// In lanes with slow turns roll changes more slowly than a load slides: in turns alone a high mass would do what it does not.
 #[test]
 fn a_load_that_slides_in_lanes_is_no_high_mass() {
