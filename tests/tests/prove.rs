@@ -49,18 +49,24 @@ fn a_case_of_each_kind_is_proven_and_the_published_hash_is_that_of_the_keys() {
 #[test]
 fn trials_of_before_are_added_up_and_what_is_no_trial_is_said() {
     let room = tempfile::tempdir().unwrap();
-    let first = room.path().join("first");
-    assert!(prove(&first, &["--cases", "1", "--seed", "3", "--only", "healthy"]).status.success());
+    let [first, second] = [3, 4].map(|seed| {
+        let out = room.path().join(format!("seed-{seed}"));
+        let seed = seed.to_string();
+        assert!(prove(&out, &["--cases", "1", "--seed", &seed, "--only", "healthy"]).status.success());
+        out
+    });
     let together = |folders: &[&Path]| {
         Command::new(program()).args(["prove", "--together"]).args(folders).output().unwrap()
     };
-    let said = String::from_utf8(together(&[&first, &first]).stdout).unwrap();
+    let said = String::from_utf8(together(&[&first, &second]).stdout).unwrap();
     assert!(said.starts_with("false alarms, healthy drives       0 of 2 (0 to 84 %)\n"), "{said}");
     assert!(!said.contains("named"), "what there is no case of is not said: {said}");
     std::fs::write(room.path().join("scoreboard.json"), r#"{"seed": 1}"#).unwrap();
-    for (folder, fault) in
-        [(room.path(), "missing field"), (&room.path().join("none"), "none/scoreboard.json")]
-    {
+    for (folder, fault) in [
+        (room.path(), "missing field"),
+        (&room.path().join("none"), "none/scoreboard.json"),
+        (&first, "name each once"),
+    ] {
         let output = together(&[&first, folder]);
         let message = String::from_utf8(output.stderr).unwrap();
         assert!(!output.status.success() && output.stdout.is_empty(), "{message}");

@@ -28,7 +28,7 @@ pub(crate) fn summary(board: &Scoreboard) -> String {
         ("those of 3 % of power and more", rate(board.unlisted_strong_not_misnamed)),
         ("mismatch explained, median", percent(board.unlisted_explained_median)),
         ("the same where terms are given", percent(board.unlisted_terms_explain_median)),
-        ("held-out error over that without", ratio(board.rmse_ratio_unlisted_median)),
+        ("held-out error, outside the list", ratio(board.rmse_ratio_unlisted_median)),
         ("diagnoses that failed", rate(board.errors)),
     ];
     let shown = lines.into_iter().filter_map(|(what, shown)| Some(format!("{what:<34} {}", shown?)));

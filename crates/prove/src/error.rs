@@ -55,6 +55,12 @@ pub enum Error {
         /// What is wrong with it.
         source: serde_json::Error,
     },
+    /// A trial that is added up twice.
+    #[error("{path}: this trial is among the folders before already; name each once")]
+    Twice {
+        /// Its scoreboard.
+        path: PathBuf,
+    },
     /// No threads could be had.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -17,9 +17,14 @@ struct Part {
 /// One scoreboard of all cases of the trials in some folders; it has the seed of the first and the commitments of all.
 ///
 /// # Errors
-/// Folders without a scoreboard, and files that are none.
+/// Folders without a scoreboard, files that are none, and a trial that is named twice.
 pub fn together<P: AsRef<Path>>(folders: &[P]) -> Result<Scoreboard, Error> {
     let parts: Vec<Part> = folders.iter().map(|folder| part(folder.as_ref())).collect::<Result<_, _>>()?;
+    for (i, part) in parts.iter().enumerate() {
+        if parts[..i].iter().any(|before| before.commitment == part.commitment) {
+            return Err(Error::Twice { path: folders[i].as_ref().join(SCOREBOARD) });
+        }
+    }
     let commitments: Vec<&str> = parts.iter().map(|part| part.commitment.as_str()).collect();
     let (seed, commitment) = (parts.first().map_or(0, |part| part.seed), commitments.join(" "));
     Ok(scoreboard(seed, commitment, parts.into_iter().flat_map(|part| part.scores).collect()))
