@@ -356,7 +356,10 @@ fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
         answer.json()
     };
     let best = ask(json!({}));
-    assert_eq!((&best["search"]["optimal"], &best["search"]["bound"]), (&json!(true), &json!(1.0)));
+    assert_eq!(best["search"]["optimal"], true);
+    // The best of the lattice, to the rounding of costs.
+    let proven = best["search"]["bound"].as_f64().unwrap();
+    assert!((1.0..1.001).contains(&proven), "{proven}");
     let energy = |plan: &Value| plan["energy_j"].as_f64().unwrap();
     assert!(best["refined_energy_j"].as_f64().unwrap() <= energy(&best));
     let (lattice, refined) =

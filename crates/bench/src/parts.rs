@@ -83,7 +83,9 @@ pub(crate) fn measure(scene: &Scene, built: &Built, exact: bool) -> Result<Parts
         let (field, time) =
             timed(|| ExactField::to_goals(&built.table, &built.goals, f64::INFINITY, &Patience::default()));
         let field = field.ok_or_else(|| scene.no_path())?;
-        let walk = (0..REPEATS).map(|_| timed(|| field.walk(&built.table, &scene.starts)).1).min();
+        let walk = (0..REPEATS)
+            .map(|_| timed(|| field.walk(&built.table, &scene.starts, &Patience::default())).1)
+            .min();
         parts.exact_field_ns_per_state = Some(nanoseconds_each(time, scene.states()));
         parts.held_goal_ms = walk.map(|time| time.as_secs_f64() * 1e3);
     }

@@ -47,9 +47,8 @@ pub(crate) fn last_turning_point(
     let surfaces = planner::surface_names(lattice);
     let ways = Homeward::new(planner, route, patience)?;
     let back = |pose: usize| -> Result<Option<TurningPoint>, Error> {
-        let Some(way) = state_at(lattice, route, pose).and_then(|state| ways.from(state)) else {
-            return Ok(None);
-        };
+        let Some(state) = state_at(lattice, route, pose) else { return Ok(None) };
+        let Some(way) = ways.from(state)? else { return Ok(None) };
         let mut journey = Journey::new(lattice.settings.power_model);
         journey.drive(&lattice.robot, &route.steps[..pose], &surfaces)?;
         journey.drive(&lattice.robot, &way.steps, &surfaces)?;
@@ -86,10 +85,11 @@ pub(crate) fn last_turning_point(
 struct Homeward<'p> {
     planner: &'p Planner,
     field: ExactField,
+    patience: &'p Patience,
 }
 
 impl<'p> Homeward<'p> {
-    fn new(planner: &'p Planner, route: &Route, patience: &Patience) -> Result<Self, Error> {
+    fn new(planner: &'p Planner, route: &Route, patience: &'p Patience) -> Result<Self, Error> {
         let [x_m, y_m] = route.poses.first().map_or([f64::NAN; 2], |pose| [pose.x_m, pose.y_m]);
         let states = planner.states_at(Place::Start, [x_m, y_m], None, None)?;
         // All in one cell, so that no height tells them apart.
@@ -97,14 +97,16 @@ impl<'p> Homeward<'p> {
         let table = planner.table(Objective::Energy);
         let field = ExactField::to_goals(table, &goals, f64::INFINITY, patience);
         let field = field.ok_or(planner::Error::Timeout { expanded: 0 })?;
-        Ok(Homeward { planner, field })
+        Ok(Homeward { planner, field, patience })
     }
 
     /// The way from a pose; `None` where none leads home.
-    fn from(&self, state: State) -> Option<Route> {
-        let (start, motions) = self.field.walk(self.planner.table(Objective::Energy), &[state])?;
-        let found = Found { start, motions, expanded: 0, excess: 0.0, bound: Some(1.0), late: false };
-        Some(self.planner.drive(Objective::Energy, &found))
+    fn from(&self, state: State) -> Result<Option<Route>, planner::Error> {
+        let table = self.planner.table(Objective::Energy);
+        let Some((start, motions)) = self.field.walk(table, &[state], self.patience)? else {
+            return Ok(None);
+        };
+        self.planner.drive(Objective::Energy, &Found::along(start, motions), self.patience).map(Some)
     }
 }
 

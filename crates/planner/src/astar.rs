@@ -9,12 +9,12 @@ use crate::{
     labels::Workspace,
     lattice::{Lattice, State},
     layout::{Layout, Shift},
-    patience::Patience,
+    patience::{Patience, work},
     prefetch::prefetch,
     queue::BUCKET_SHIFT,
     table::CostTable,
     tile_builder::{QUAD, code_place},
-    walk_back::walk_back,
+    walk_back::{Walked, walk_back},
 };
 
 /// What to search for.
@@ -44,6 +44,8 @@ pub enum Outcome {
         /// States expanded.
         expanded: u64,
     },
+    /// A goal was reached, but its costs do not lead back to a start; costs that rise along every motion rule it out.
+    Untraceable,
 }
 
 /// A path and what is proven of it.
@@ -55,19 +57,32 @@ pub struct Found {
     pub motions: Vec<usize>,
     /// States expanded.
     pub expanded: u64,
-    /// By how much it may cost more than the least, in the objective's unit; 0 where it is the least.
-    pub excess: f64,
-    /// Proven: its cost is at most so many times the least; 1 where it is the least, `None` where the least may be
-    /// nothing or a gain, which no factor bounds.
+    /// Proven: no path of the lattice takes less of the objective when driven, in its own unit, `besides` included. The
+    /// rounding of the table is taken off, see [`CostTable::proven`].
+    pub least: f64,
+    /// Proven: its cost is at most so many times the least, rounding included; `None` where the least may be nothing or a
+    /// gain, which no factor bounds.
     pub bound: Option<f64>,
+    /// Whether no path costs less in the table.
+    pub optimal: bool,
     /// Whether patience ended before the bound asked for was proven.
     pub late: bool,
+}
+
+impl Found {
+    /// A path along an exact field, which costs the least that the table allows.
+    pub fn along(start: State, motions: Vec<usize>) -> Self {
+        let least = f64::NEG_INFINITY;
+        Found { start, motions, expanded: 0, least, bound: None, optimal: true, late: false }
+    }
 }
 
 /// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost.
 const WEIGHTS: [f64; 3] = [1.2, 1.05, 1.0];
 /// Expansions between two looks at the clock, less than a millisecond.
 const CLOCK_EVERY: u64 = 2048;
+/// Open states that are looked at to prove a bound, even where patience is over.
+const OPEN_AT_LEAST: u64 = 1 << 14;
 /// How many states before its turn a state is asked of memory. Asking for its successors too gained nothing measurable.
 const CODES_AHEAD: usize = 3;
 
@@ -83,8 +98,15 @@ pub fn search(
 ) -> Outcome {
     let lattice = table.lattice();
     let units = |amount: f64| (amount * table.units()) as u32;
-    let goals: HashMap<u32, u32> =
-        query.goals.iter().map(|(state, after)| (lattice.layout.pack(*state), units(*after))).collect();
+    let mut goals = HashMap::with_capacity(query.goals.len());
+    let mut pacer = query.patience.pacer();
+    for (state, after) in query.goals {
+        if pacer.after(work::STATE).is_none() {
+            return Outcome::Timeout { expanded: 0 };
+        }
+        goals.insert(lattice.layout.pack(*state), units(*after));
+    }
+    drop(pacer);
     let mut passes = Passes {
         table,
         field,
@@ -104,9 +126,11 @@ pub fn search(
     let loosest = query.bound.max(WEIGHTS[0]);
     let weights = [loosest].into_iter().chain(WEIGHTS[1..].iter().copied());
     for weight in weights {
-        let ended = passes.run(weight, workspace);
-        if ended == Ended::Late || passes.is_proven() {
-            return passes.outcome(ended == Ended::Late);
+        match passes.run(weight, workspace) {
+            Ended::Astray => return Outcome::Untraceable,
+            Ended::Late => return passes.outcome(true),
+            Ended::Done if passes.is_proven() => break,
+            Ended::Done => {}
         }
     }
     passes.outcome(false)
@@ -140,6 +164,8 @@ enum Ended {
     Done,
     /// Because patience did.
     Late,
+    /// With a path that cannot be traced back.
+    Astray,
 }
 
 /// A motion as the search takes it.
@@ -152,7 +178,9 @@ struct Move {
 impl Passes<'_> {
     /// Searches in the order of cost plus weighted estimate; a state that is reached at less cost is expanded again.
     fn run(&mut self, weight: f64, workspace: &mut Workspace) -> Ended {
-        workspace.clear();
+        if workspace.clear(self.query.patience).is_none() {
+            return Ended::Late;
+        }
         let weighted = Weighted::new(weight);
         let Workspace { labels, queue } = &mut *workspace;
         let layout = &self.table.lattice().layout;
@@ -165,17 +193,40 @@ impl Passes<'_> {
         }
         let limit = self.best.as_ref().map_or(UNREACHED, |best| best.total);
         let (found, ended) = self.expand(&weighted, limit, workspace);
-        // A state that is on the best path and was not expanded at its cost is still in the queue.
-        let key = |state| weighted.key(workspace.labels.cost(state), self.field.units_at(state));
-        let open = workspace.queue.items(key);
-        let open = open.map(|state| workspace.labels.cost(state).saturating_add(self.field.units_at(state)));
         let total = found.map_or(limit, |(total, _)| total.min(limit));
-        self.least = self.least.max(open.min().unwrap_or(UNREACHED).min(total));
-        if let Some((total, goal)) = found.filter(|(total, _)| *total < limit) {
-            let (start, motions) = walk_back(self.table, &workspace.labels, goal);
-            self.best = Some(Best { total, start, motions });
+        self.least = self.least.max(self.least_open(&weighted, workspace).min(total));
+        let Some((total, goal)) = found.filter(|(total, _)| *total < limit) else { return ended };
+        match walk_back(self.table, &workspace.labels, (self.query.starts, goal), self.query.patience) {
+            Walked::Start(start, motions) => self.best = Some(Best { total, start, motions }),
+            Walked::Late => return Ended::Late,
+            Walked::Astray => return Ended::Astray,
         }
         ended
+    }
+
+    /// A lower bound of what any path by an open state costs, from the lowest keys on as far as patience reaches.
+    ///
+    /// A state that is on the best path and was not expanded at its cost is still in the queue. Of states in buckets that are
+    /// not looked at the key is known, and `cost + ahead` is the key over the weight at least.
+    fn least_open(&self, weighted: &Weighted, Workspace { labels, queue }: &Workspace) -> u32 {
+        let (field, mut looked_at) = (self.field, 0);
+        let mut pacer = self.query.patience.pacer();
+        let mut least = UNREACHED;
+        for (state, bucket_key) in queue.items() {
+            looked_at += 1;
+            if pacer.after(work::STATE).is_none() && looked_at > OPEN_AT_LEAST {
+                return least.min(weighted.least_sum(bucket_key));
+            }
+            // A later bucket cannot hold less than this one's keys allow.
+            if weighted.least_sum(bucket_key) >= least {
+                return least;
+            }
+            let (cost, ahead) = (labels.cost(state), field.units_at(state));
+            if queue.is_in(weighted.key(cost, ahead), bucket_key) {
+                least = least.min(cost.saturating_add(ahead));
+            }
+        }
+        least
     }
 
     /// The loop of a pass: the best goal reached below the limit, and why it ended.
@@ -201,15 +252,18 @@ impl Passes<'_> {
                 queue.push(key, state);
                 break;
             }
-            if self.expanded.is_multiple_of(CLOCK_EVERY) && patience.is_over() {
-                queue.push(key, state);
-                return (best, Ended::Late);
+            if self.expanded.is_multiple_of(CLOCK_EVERY) {
+                patience.worked(CLOCK_EVERY * work::STATE);
+                if patience.is_over() {
+                    queue.push(key, state);
+                    return (best, Ended::Late);
+                }
             }
             self.expanded += 1;
             // Only where the field is as low as at a goal is it worth looking the state up.
             if ahead <= self.highest_after
                 && let Some(&after) = self.goals.get(&state)
-                && cost + after < least_total
+                && cost.saturating_add(after) < least_total
             {
                 least_total = cost + after;
                 best = Some((least_total, state));
@@ -254,23 +308,28 @@ impl Passes<'_> {
         best.total <= self.least || self.proven_bound(best).is_some_and(|bound| bound <= self.query.bound)
     }
 
+    /// No path takes less than this when driven, in the objective's unit.
+    fn proven_least(&self) -> f64 {
+        self.table.proven(f64::from(self.least)) + self.query.besides
+    }
+
     /// The best path's cost over the least possible, where that is above nothing.
     fn proven_bound(&self, best: &Best) -> Option<f64> {
-        let whole = |units: u32| f64::from(units) / self.table.units() + self.query.besides;
-        let least = whole(self.least);
-        (least > 0.0).then(|| whole(best.total) / least)
+        let least = self.proven_least();
+        // What follows at the goal is cut to whole units.
+        let most = self.table.at_most(f64::from(best.total) + 1.0) + self.query.besides;
+        (least > 0.0).then(|| most / least)
     }
 
     fn outcome(self, late: bool) -> Outcome {
         let Some(best) = &self.best else {
             return if late { Outcome::Timeout { expanded: self.expanded } } else { Outcome::Unreachable };
         };
-        let is_least = best.total <= self.least;
-        let bound = if is_least { Some(1.0) } else { self.proven_bound(best) };
-        let excess = f64::from(best.total.saturating_sub(self.least)) / self.table.units();
-        let late = late && bound.is_none_or(|bound| bound > self.query.bound);
+        let optimal = best.total <= self.least;
+        let bound = self.proven_bound(best);
+        let late = late && !optimal && bound.is_none_or(|bound| bound > self.query.bound);
         let (expanded, start, motions) = (self.expanded, best.start, best.motions.clone());
-        Outcome::Found(Found { start, motions, expanded, excess, bound, late })
+        Outcome::Found(Found { start, motions, expanded, least: self.proven_least(), bound, optimal, late })
     }
 }
 
@@ -287,6 +346,11 @@ impl Weighted {
 
     fn is_exact(&self) -> bool {
         self.0 == Self::ONE
+    }
+
+    /// Least sum of cost and estimate of a state whose key is at least this: no weight is below 1.
+    fn least_sum(&self, key: u32) -> u32 {
+        (u64::from(key) * Self::ONE / self.0) as u32
     }
 
     /// Place in the order of expansion.

@@ -1,12 +1,17 @@
 //! Costs in sixteen bits: eleven of fraction, five of exponent, always rounded up.
 //!
 //! Costs below 2048 units are whole units. Above, a cost is stored as (2048 + m) · 2^e, as floats are, so rounding adds at
-//! most 1/2048 of it, everywhere on the range.
+//! most 1/2048 of it, everywhere on the range. No motion costs less than one unit, so costs rise strictly along any path:
+//! a walk along them always gets nearer to its end, and no circle is free.
 
 /// The code of a motion that cannot be driven.
 pub(crate) const FORBIDDEN: u16 = u16::MAX;
 /// Largest relative rounding of a cost above 2048 units.
 pub(crate) const LARGEST_ROUNDING: f64 = 1.0 / 2048.0;
+/// Largest relative error of a cost in single precision, its cancellation with lifting work apart.
+pub(crate) const SINGLE_PRECISION: f64 = 1e-4;
+/// Smallest code of a motion that can be driven.
+const SMALLEST: i32 = 1;
 /// Units of the motion that sets the scale: fine enough that a unit is nothing beside any motion, coarse enough that
 /// 65 000 such motions fit 32 bits.
 pub(crate) const UNITS_OF_REFERENCE: f64 = 65_536.0;
@@ -26,7 +31,7 @@ const LARGEST: i32 = ((LARGEST_EXPONENT as i32 + 1) << FRACTION_BITS) - 2;
 /// What [`decode_lanes`] makes of [`FORBIDDEN`]: more than any other code, and twice as much still fits 32 bits.
 pub(crate) const ENDLESS: u32 = (2 * IMPLICIT - 1) << (LARGEST_EXPONENT - 1);
 
-/// Encodes a cost in units; infinity and beyond the range is forbidden.
+/// Encodes a cost in units, at least one; infinity and beyond the range is forbidden.
 #[inline(always)]
 pub(crate) fn encode(units: f32) -> u16 {
     // The exponent and upper fraction of an f32, rounded up, are the code itself, less its bias.
@@ -38,7 +43,7 @@ pub(crate) fn encode(units: f32) -> u16 {
     let up = if near < units { near + 1.0 } else { near };
     let small = (up + ALL_FRACTION).to_bits() as i32 - ALL_FRACTION.to_bits() as i32;
     let code = if is_small { small } else { large };
-    if code > LARGEST { FORBIDDEN } else { code as u16 }
+    if code > LARGEST { FORBIDDEN } else { code.max(SMALLEST) as u16 }
 }
 
 /// The cost in units; meaningless for [`FORBIDDEN`].
@@ -98,8 +103,9 @@ mod tests {
     }
 
     #[test]
-    fn small_costs_are_whole_units_and_endless_ones_forbidden() {
-        assert_eq!(decode(encode(0.0)), 0);
+    fn small_costs_are_whole_units_but_never_none_and_endless_ones_are_forbidden() {
+        assert_eq!(decode(encode(0.0)), 1);
+        assert_eq!(encode(f32::NAN), FORBIDDEN);
         assert_eq!(decode(encode(0.3)), 1);
         assert_eq!(decode(encode(2047.5)), 2048);
         assert_eq!(decode(encode(2048.0)), 2048);

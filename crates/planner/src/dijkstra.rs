@@ -7,7 +7,7 @@ use crate::{
     labels::Labels,
     lattice::State,
     layout::{Layout, Shift},
-    patience::Patience,
+    patience::{Patience, work},
     queue::{BUCKET_SHIFT, BucketQueue},
     table::CostTable,
     tile_builder::{QUAD, code_place},
@@ -46,22 +46,24 @@ struct Step {
 const CLOCK_EVERY: u64 = 2048;
 
 impl<'t> Dijkstra<'t> {
-    /// Seeds come with the cost that lies beyond them, in the table's units.
+    /// Seeds come with the cost that lies beyond them, in the table's units; `None` when patience ends first.
     pub(crate) fn new(
         table: &'t CostTable,
         direction: Direction,
-        seeds: &[(State, u32)],
+        seeds: impl Iterator<Item = (State, u32)>,
         patience: &'t Patience,
-    ) -> Self {
+    ) -> Option<Self> {
         let layout = &table.lattice().layout;
         let mut labels = Labels::unlogged(layout);
         let mut queue = BucketQueue::new(BUCKET_SHIFT);
-        for &(seed, beyond) in seeds {
+        let mut pacer = patience.pacer();
+        for (seed, beyond) in seeds {
+            pacer.after(work::STATE)?;
             if labels.lower(layout.pack(seed), beyond) {
                 queue.push(beyond, layout.pack(seed));
             }
         }
-        Dijkstra { table, patience, direction, steps: steps(table, direction), queue, labels }
+        Some(Dijkstra { table, patience, direction, steps: steps(table, direction), queue, labels })
     }
 
     /// Settles all states that cost up to `limit`; their labels are the least then. `None` when patience ends first.
@@ -86,8 +88,11 @@ impl<'t> Dijkstra<'t> {
                 self.queue.push(cost, state);
                 break;
             }
-            if count.is_multiple_of(CLOCK_EVERY) && self.patience.is_over() {
-                return None;
+            if count.is_multiple_of(CLOCK_EVERY) {
+                self.patience.worked(CLOCK_EVERY * work::STATE);
+                if self.patience.is_over() {
+                    return None;
+                }
             }
             count += 1;
             if count == at_least {
@@ -128,8 +133,9 @@ impl<'t> Dijkstra<'t> {
 
     /// States that were reached and not settled, with the least cost at which steps from settled ones reach them.
     pub(crate) fn open(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let cost = |state| self.labels.cost(state);
-        self.queue.items(cost).map(move |state| (state, cost(state)))
+        let current =
+            |&(state, bucket_key): &(u32, u32)| self.queue.is_in(self.labels.cost(state), bucket_key);
+        self.queue.items().filter(current).map(|(state, _)| (state, self.labels.cost(state)))
     }
 }
 

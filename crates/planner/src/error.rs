@@ -155,6 +155,11 @@ pub enum Error {
         /// States expanded.
         expanded: u64,
     },
+    /// A path whose costs do not lead back to its start, or that cannot be driven; it rules out a wrong answer.
+    #[error(
+        "a path was found, but it could not be followed from start to goal: the costs of this robot on this map lie too close together; raise the friction of its surfaces or change the ends"
+    )]
+    Untraceable,
     /// The map names a surface that the robot has no friction for.
     #[error("the map's ground is `{name}` in places, but the robot knows only {}: add it to the robot's surfaces", known.join(", "))]
     UnknownSurface {

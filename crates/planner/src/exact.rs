@@ -5,15 +5,20 @@ use terrain::Cell;
 use crate::{
     cost::{ENDLESS, FORBIDDEN, decode},
     dijkstra::Direction,
+    error::Error,
     field::UNREACHED,
     heading::Heading,
     lattice::State,
     layout::Layout,
-    patience::Patience,
+    patience::{Patience, work},
     pose_costs::PoseCosts,
     pose_growth::grow,
     table::CostTable,
+    tile_builder::{QUAD, code_place},
 };
+
+/// Work of a step of a walk, which asks memory for all successors.
+const STEP_OF_A_WALK: u64 = 4 * work::STATE;
 
 /// The exact least cost between some poses and every cell and heading: to goals, after which any plan is only a walk, or
 /// from starts, which is what they can reach.
@@ -108,29 +113,61 @@ impl ExactField {
         self.costs.bytes()
     }
 
+    /// The cost of a state in the table's units, see [`ExactField::cost`].
+    pub(crate) fn units_at(&self, state: State) -> Option<u32> {
+        Some(self.units_of(state)).filter(|units| *units != UNREACHED)
+    }
+
     /// The best start and the motions from it to the nearest goal, in a field to goals; `None` where no motions lead there.
-    pub fn walk(&self, table: &CostTable, starts: &[State]) -> Option<(State, Vec<usize>)> {
-        let lattice = table.lattice();
-        let cost = |state: State| self.units_of(state);
-        let start = starts.iter().copied().min_by_key(|start| cost(*start))?;
-        if cost(start) == UNREACHED {
-            return None;
+    ///
+    /// Every motion costs at least one unit, so the cost ahead falls from state to state, and the walk ends.
+    ///
+    /// # Errors
+    /// Patience that ended first.
+    pub fn walk(
+        &self,
+        table: &CostTable,
+        starts: &[State],
+        patience: &Patience,
+    ) -> Result<Option<(State, Vec<usize>)>, Error> {
+        let late = Error::Timeout { expanded: 0 };
+        let Some(start) = starts.iter().copied().min_by_key(|start| self.units_of(*start)) else {
+            return Ok(None);
+        };
+        let (mut state, mut motions, mut ahead) = (start, Vec::new(), self.units_of(start));
+        if ahead == UNREACHED {
+            return Ok(None);
         }
-        let (mut state, mut motions) = (start, Vec::new());
-        let mut ahead = cost(state);
+        let mut pacer = patience.pacer();
         loop {
-            let packed = lattice.layout.pack(state);
-            let ways = (0..lattice.motions_per_state()).filter_map(|motion| {
-                let code = table.code(packed, motion);
-                let next = lattice.successor(state, motion).filter(|_| code != FORBIDDEN)?;
-                let total = cost(next).saturating_add(decode(code));
-                (total <= ahead && cost(next) < ahead).then_some((total, cost(next), next, motion))
-            });
+            pacer.after(STEP_OF_A_WALK).ok_or(late.clone())?;
             // At a goal no motion gets any nearer.
-            let Some((_, less, next, motion)) = ways.min_by_key(|(total, ..)| *total) else { break };
+            let Some((motion, next)) = self.step(table, (state, ahead), patience).ok_or(late.clone())? else {
+                return Ok(Some((start, motions)));
+            };
             motions.push(motion);
-            (state, ahead) = (next, less);
+            (state, ahead) = (next, self.units_of(next));
         }
-        Some((start, motions))
+    }
+
+    /// The motion from a state with the least cost by it; outside `None` where patience ends first, inside at a goal.
+    fn step(
+        &self,
+        table: &CostTable,
+        (state, ahead): (State, u32),
+        patience: &Patience,
+    ) -> Option<Option<(usize, State)>> {
+        let lattice = table.lattice();
+        let packed = lattice.layout.pack(state);
+        let codes = table.codes(Layout::tile(packed), patience)?;
+        let place = code_place(Layout::within(packed), table.stride());
+        let ways = (0..lattice.motions_per_state()).filter_map(|motion| {
+            let code = codes.get(place + motion * QUAD).copied().unwrap_or(FORBIDDEN);
+            let next = lattice.successor(state, motion).filter(|_| code != FORBIDDEN)?;
+            let cost = self.units_of(next);
+            let total = cost.saturating_add(decode(code));
+            (total <= ahead && cost < ahead).then_some((total, (motion, next)))
+        });
+        Some(ways.min_by_key(|(total, _)| *total).map(|(_, way)| way))
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     lattice::State,
     layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
     near::Near,
-    patience::Patience,
+    patience::{Patience, work},
     table::CostTable,
 };
 
@@ -79,18 +79,21 @@ impl GoalField {
         };
         let seeds = match &near {
             Some(near) => near.rim.clone(),
-            None => ends
-                .goals
-                .iter()
-                .map(|(goal, after)| (Layout::cell(layout.pack(*goal)), (after * table.units()) as u32))
-                .collect(),
+            None => {
+                let (mut seeds, mut pacer) = (Vec::with_capacity(ends.goals.len()), patience.pacer());
+                for (goal, after) in ends.goals {
+                    pacer.after(work::CELL)?;
+                    seeds.push((Layout::cell(layout.pack(*goal)), (after * table.units()) as u32));
+                }
+                seeds
+            }
         };
         let mut touched = vec![false; layout.tiles()];
         let start =
             ends.start.map(|cell| Layout::cell(layout.pack(State { cell, heading: Heading::new(0) })));
         if let Some(floor) = field.grow(table, (&seeds, start), &home, &mut touched, patience)? {
             let least = seeds.iter().map(|(_, cost)| *cost).min().unwrap_or(0);
-            field.bound_rest(Beyond::Towards { floor, home, least }, &touched);
+            field.bound_rest(Beyond::Towards { floor, home, least }, &touched, patience)?;
         }
         if let Some(near) = near {
             field.take_near(near);
@@ -111,10 +114,12 @@ impl GoalField {
     }
 
     /// Lets the bound of unsettled cells stand in the tiles that were touched; elsewhere it is worked out when asked for.
-    fn bound_rest(&mut self, beyond: Beyond, touched: &[bool]) {
+    fn bound_rest(&mut self, beyond: Beyond, touched: &[bool], patience: &Patience) -> Option<()> {
+        let mut pacer = patience.pacer();
         let layout = self.layout;
         let tiles = self.complement.chunks_exact_mut(TILE_CELLS).zip(touched).enumerate();
         for (tile, (cells, _)) in tiles.filter(|(_, (_, touched))| **touched) {
+            pacer.after(TILE_CELLS as u64 * work::CELL)?;
             let (tile_row, tile_column) = layout.tile_place(tile);
             for (row, cells) in cells.chunks_exact_mut(TILE).enumerate() {
                 for (column, cell) in cells.iter_mut().enumerate() {
@@ -123,6 +128,7 @@ impl GoalField {
             }
         }
         self.beyond = beyond;
+        Some(())
     }
 
     /// Bytes held, memory that was never touched included.
@@ -146,7 +152,12 @@ impl GoalField {
 
     /// Whether a chain of motions leads to the goal from a cell under some heading.
     pub(crate) fn leads_from(&self, cell: Cell) -> bool {
-        Heading::all().any(|heading| self.units(State { cell, heading }) != UNREACHED)
+        let at = Layout::cell(self.layout.pack(State { cell, heading: Heading::new(0) }));
+        if self.complement[at] != 0 || matches!(self.beyond, Beyond::Towards { .. }) {
+            return true;
+        }
+        !self.near.is_empty()
+            && Heading::all().any(|heading| self.units(State { cell, heading }) != UNREACHED)
     }
 
     /// The same for a packed state.

@@ -9,7 +9,7 @@ use crate::{
     field::{GoalField, UNREACHED},
     front::Front,
     layout::{HEADING_BITS, TILE, TILE_CELLS},
-    patience::Patience,
+    patience::{Patience, work},
     stencil::Stencil,
     sweep::Sweep,
     table::CostTable,
@@ -55,7 +55,9 @@ impl GoalField {
     ) -> Option<Option<u32>> {
         let mut front = Front::new(self.layout.tiles());
         let mut goals = BTreeSet::new();
+        let mut pacer = patience.pacer();
         for &(at, cost) in known {
+            pacer.after(work::STATE)?;
             if cost < ENDLESS && !cost > self.complement[at] {
                 self.complement[at] = !cost;
                 goals.insert(at);
@@ -64,6 +66,7 @@ impl GoalField {
                 front.note(at / TILE_CELLS, key, |change| change.seeded = true);
             }
         }
+        drop(pacer);
         let mut sweeps: Vec<Sweep> =
             (0..ABREAST).map(|_| Sweep::new(Stencil::new(table.displacements()))).collect();
         loop {
@@ -73,19 +76,23 @@ impl GoalField {
                 Ok(taken) => taken,
                 Err(key) => return Some(Some(key)),
             };
-            if patience.is_over() {
-                return None;
-            }
             let least =
                 taken.iter().map(|(tile, _)| table.least(*tile, patience)).collect::<Option<Vec<_>>>()?;
             let field = &*self;
-            taken.par_iter().zip(&mut sweeps).zip(least).for_each(|(((tile, change), sweep), least)| {
-                field.load(*tile, sweep);
-                sweep.take_up(change);
-                let cells = if change.seeded { tile * TILE_CELLS..(tile + 1) * TILE_CELLS } else { 0..0 };
-                goals.range(cells).for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
-                sweep.settle(least);
-            });
+            taken.par_iter().zip(&mut sweeps).zip(least).try_for_each(
+                |(((tile, change), sweep), least)| {
+                    if patience.is_over() {
+                        return None;
+                    }
+                    field.load(*tile, sweep);
+                    sweep.take_up(change);
+                    let cells = if change.seeded { tile * TILE_CELLS..(tile + 1) * TILE_CELLS } else { 0..0 };
+                    goals.range(cells).for_each(|at| sweep.seed(at % TILE_CELLS / TILE, at % TILE));
+                    sweep.settle(least);
+                    patience.worked(sweep.take_work());
+                    Some(())
+                },
+            )?;
             for ((tile, _), sweep) in taken.iter().zip(&mut sweeps) {
                 touched[*tile] = true;
                 self.store(*tile, sweep);

@@ -1,6 +1,8 @@
 //! Least cost found so far of every state a search has reached, in memory that is kept from one search to the next.
 
-use crate::{layout::Layout, prefetch::prefetch, queue::BucketQueue, tile_builder::TILE_STATES};
+use crate::{
+    layout::Layout, patience::Patience, prefetch::prefetch, queue::BucketQueue, tile_builder::TILE_STATES,
+};
 
 /// What a search works with; keep it for the next search over the same lattice, which then starts at once.
 pub struct Workspace {
@@ -24,10 +26,11 @@ impl Workspace {
         self.bytes() as f64 / states.max(1) as f64
     }
 
-    /// Forgets the last search.
-    pub(crate) fn clear(&mut self) {
-        self.labels.clear();
+    /// Forgets the last search; where patience ends first, `None`, and the next search goes on with it.
+    pub(crate) fn clear(&mut self, patience: &Patience) -> Option<()> {
+        self.labels.clear(patience)?;
         self.queue.clear();
+        Some(())
     }
 }
 
@@ -42,6 +45,8 @@ pub(crate) struct Labels {
     log_limit: usize,
 }
 
+/// Work of giving the 64 pages of a tile back.
+const FREEING_A_TILE: u64 = TILE_STATES as u64 / 16;
 /// Up to so many labels are taken back one by one; beyond, their tiles are given back, which costs less.
 const LOG_LIMIT: usize = 1 << 14;
 
@@ -90,15 +95,21 @@ impl Labels {
         }
     }
 
-    fn clear(&mut self) {
+    fn clear(&mut self, patience: &Patience) -> Option<()> {
         if self.log.len() > self.log_limit {
-            self.tiles.fill(None);
+            let mut pacer = patience.pacer();
+            for tile in self.tiles.iter_mut().filter(|tile| tile.is_some()) {
+                // The log stays over its limit meanwhile.
+                pacer.after(FREEING_A_TILE)?;
+                *tile = None;
+            }
         }
         for state in self.log.drain(..) {
             if let Some(tile) = &mut self.tiles[Layout::tile(state)] {
                 tile[Layout::within(state)] = 0;
             }
         }
+        Some(())
     }
 
     /// Bytes held.

@@ -224,7 +224,16 @@ impl Lattice {
 
     /// An objective's weights for this robot.
     pub(crate) fn weights(&self, objective: Objective) -> Weights {
-        objective.weights(&self.level_step())
+        objective.weights(&self.level_step(), self.reference_j())
+    }
+
+    /// Energy of the smallest step that counts: what a friction of 0.02 takes over one cell of level ground [J].
+    ///
+    /// A robot without any friction still needs a scale of costs. Tyres on asphalt roll at 0.01 to 0.02 (Wong, *Theory of
+    /// Ground Vehicles*), and no robot that slips its wheels to turn does better.
+    pub(crate) fn reference_j(&self) -> f64 {
+        const LEAST_FRICTION: f64 = 0.02;
+        LEAST_FRICTION * self.lift_j_per_m() * self.terrain.grid.cell_size_m
     }
 
     /// Cost of a motion that was driven, between places whose height potentials differ by `lifted_j`.

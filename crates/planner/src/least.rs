@@ -2,10 +2,10 @@
 
 use model::{Manoeuvre, PowerModel};
 
-use crate::{edge::Chain, lattice::Lattice, objective::Weights, step::PreparedStep};
-
-/// What single precision may take off a cost of the table, as a share.
-const SINGLE_PRECISION: f64 = 1e-4;
+use crate::{
+    cost::SINGLE_PRECISION, edge::Chain, lattice::Lattice, objective::Weights, primitive::Motion,
+    step::PreparedStep,
+};
 
 /// Least cost per metre between the ends of a motion, over all motions, surfaces and slopes that limits allow, in the
 /// objective's unit.
@@ -21,42 +21,71 @@ const SINGLE_PRECISION: f64 = 1e-4;
 /// allowed and P₀ the standing power: a longer way on a slope and the smaller normal force there cancel. The printed form has
 /// no such floor on friction, and neither has a robot with mechanisms, whose wind may push; its standing power alone counts.
 pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
-    let chains = lattice.chains.iter().zip(&lattice.motions).flat_map(|(chains, motions)| {
-        chains.iter().zip(motions).flat_map(|(variants, motion)| variants.iter().map(move |v| (v, motion)))
-    });
+    let floor = friction_floor(lattice).unwrap_or(0.0) * lattice.robot.limits.max_roll_rad.cos();
     let cell_size_m = lattice.terrain.grid.cell_size_m;
-    let least = chains
+    let least = chains(lattice)
         .filter(|(_, motion)| (motion.columns, motion.rows) != (0, 0))
         .map(|(chain, motion)| {
             let apart_m = f64::from(motion.columns).hypot(f64::from(motion.rows)) * cell_size_m;
-            least_cost(lattice, weights, chain) / apart_m
+            least_cost(lattice, weights, chain, floor) / apart_m
         })
         .fold(f64::INFINITY, f64::min);
     (least * (1.0 - SINGLE_PRECISION)).max(0.0)
 }
 
-fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
-    chain
-        .steps_with_manoeuvres()
-        .map(|(step, manoeuvres, _)| least_of_step(lattice, weights, step, manoeuvres))
-        .sum()
+/// Least cost of any motion, turns on the spot included, in the objective's unit.
+///
+/// Side slopes count up to 84°, where a tenth of the normal force is left. The forms of power without a floor on friction
+/// are taken to keep a sixteenth of what each motion costs on level ground.
+pub(crate) fn least_cost_of_motion(lattice: &Lattice, weights: &Weights) -> f64 {
+    const LEAST_NORMAL: f64 = 0.1;
+    const SHARE_OF_LEVEL: f64 = 1.0 / 16.0;
+    let normal = lattice.robot.limits.max_roll_rad.cos().max(LEAST_NORMAL);
+    let of = |chain: &Chain| match friction_floor(lattice) {
+        Some(floor) => least_cost(lattice, weights, chain, floor * normal),
+        None => SHARE_OF_LEVEL * weights.of(&chain.on_level_ground()),
+    };
+    chains(lattice).map(|(chain, _)| of(chain)).fold(f64::INFINITY, f64::min)
 }
 
-fn least_of_step(lattice: &Lattice, weights: &Weights, step: &PreparedStep, manoeuvres: &[Manoeuvre]) -> f64 {
+/// All variants of all motions.
+pub(crate) fn chains(lattice: &Lattice) -> impl Iterator<Item = (&Chain, &Motion)> {
+    lattice.chains.iter().zip(&lattice.motions).flat_map(|(chains, motions)| {
+        chains.iter().zip(motions).flat_map(|(variants, motion)| variants.iter().map(move |v| (v, motion)))
+    })
+}
+
+/// κ, the least share of friction's work that is drawn, where the form of power has such a floor.
+fn friction_floor(lattice: &Lattice) -> Option<f64> {
     let (robot, settings) = (&lattice.robot, &lattice.settings);
     let is_plain = robot.surfaces.values().all(|surface| !robot.is_adjusted(surface));
-    let holds = settings.power_model == PowerModel::ForceBalance && is_plain;
-    let floor = if holds { lattice.kappa() * robot.limits.max_roll_rad.cos() } else { 0.0 };
-    let steepest = robot.limits.max_roll_rad.tan();
+    (settings.power_model == PowerModel::ForceBalance && is_plain).then(|| lattice.kappa())
+}
+
+fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain, floor: f64) -> f64 {
+    let of_step = |(step, manoeuvres)| least_of_step(lattice, weights, (step, manoeuvres), floor);
+    chain.steps_with_manoeuvres().map(|(step, manoeuvres, _)| of_step((step, manoeuvres))).sum()
+}
+
+fn least_of_step(
+    lattice: &Lattice,
+    weights: &Weights,
+    (step, manoeuvres): (&PreparedStep, &[Manoeuvre]),
+    floor: f64,
+) -> f64 {
+    let steepest = lattice.robot.limits.max_roll_rad.tan();
     let on = |manoeuvre: &Manoeuvre| {
-        let (kernel, speed_mps) = (manoeuvre.kernel(), manoeuvre.motion().speed_mps.abs());
+        let (kernel, motion) = (manoeuvre.kernel(), manoeuvre.motion());
         let left = |tilt| kernel.pull.left_of_skid(tilt, 0.0);
         let skid_n = kernel.skid_n * left(steepest).min(left(-steepest));
-        let rims_mps = manoeuvre.motion().rim_speeds_mps;
+        let rims_mps = motion.rim_speeds_mps;
         let friction_w = (kernel.rolling_n.left - skid_n) * rims_mps.left
             + (kernel.rolling_n.right + skid_n) * rims_mps.right;
         let least_w = (floor * friction_w).max(0.0) + kernel.standing_w;
-        let duration_s = step.horizontal_m / speed_mps;
+        let duration_s = match step.horizontal_m {
+            0.0 => step.turn_rad / motion.yaw_rate_radps,
+            horizontal_m => horizontal_m / motion.speed_mps.abs(),
+        };
         weights.per_j * least_w * duration_s + weights.per_m * step.horizontal_m + weights.per_s * duration_s
     };
     manoeuvres.iter().map(on).fold(f64::INFINITY, f64::min)

@@ -1,6 +1,6 @@
 //! The exact cost to a goal from the poses about it, where the heading that is asked for decides.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::{
     dijkstra::{Dijkstra, Direction},
@@ -8,7 +8,7 @@ use crate::{
     heading::HEADINGS,
     lattice::State,
     layout::Layout,
-    patience::Patience,
+    patience::{Patience, work},
     table::CostTable,
 };
 
@@ -31,23 +31,31 @@ const POSES: u64 = 1 << 12;
 impl Near {
     /// Whether goals leave any heading out, so that turning there matters.
     pub(crate) fn matters(goals: &[(State, f64)]) -> bool {
-        let headings: BTreeSet<usize> = goals.iter().map(|(goal, _)| goal.heading.index()).collect();
-        headings.len() < HEADINGS
+        let mut missing = (1u32 << HEADINGS) - 1;
+        !goals.iter().any(|(goal, _)| {
+            missing &= !(1 << goal.heading.index());
+            missing == 0
+        })
     }
 
     /// Works back from goals, given with what follows there in the objective's unit; `None` when patience ends first.
     pub(crate) fn new(table: &CostTable, goals: &[(State, f64)], patience: &Patience) -> Option<Self> {
-        let goals: Vec<(State, u32)> =
-            goals.iter().map(|(goal, after)| (*goal, (after * table.units()) as u32)).collect();
-        let mut search = Dijkstra::new(table, Direction::ToGoals, &goals, patience);
+        let goals = goals.iter().map(|(goal, after)| (*goal, (after * table.units()) as u32));
+        let mut search = Dijkstra::new(table, Direction::ToGoals, goals, patience)?;
         let mut settled = Vec::new();
         search.settle_first(POSES, |state| settled.push(state))?;
-        let mut costs = BTreeMap::new();
+        let (mut costs, mut pacer) = (BTreeMap::new(), patience.pacer());
         for state in settled {
+            pacer.after(work::STATE)?;
             let cell = costs.entry(Layout::cell(state) as u32).or_insert([UNREACHED; HEADINGS]);
             cell[state as usize % HEADINGS] = search.labels.cost(state);
         }
-        let rim = search.open().map(|(state, cost)| (Layout::cell(state), cost)).collect();
+        let mut rim = Vec::new();
+        for (state, cost) in search.open() {
+            pacer.after(work::STATE)?;
+            rim.push((Layout::cell(state), cost));
+        }
+        drop(pacer);
         Some(Near { costs, rim })
     }
 }

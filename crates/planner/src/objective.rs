@@ -1,6 +1,6 @@
 //! What a path is to have least of, and what that makes of a motion.
 
-use crate::edge::Edge;
+use crate::{cost::UNITS_OF_REFERENCE, edge::Edge};
 
 /// What a path is to have least of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -16,6 +16,9 @@ pub enum Objective {
 
 /// Share of a path's length or time that its energy may weigh on level ground, to choose between equals.
 const TIE_SHARE: f64 = 1e-5;
+/// Share of the reference energy that the time of a step on level ground weighs for a robot without friction, to choose the
+/// fastest of paths that all take nothing: four units of the table, so that lengths of steps are told apart.
+const FRICTIONLESS_TIE_SHARE: f64 = 4.0 / UNITS_OF_REFERENCE;
 
 /// An objective as weights of what a motion takes.
 ///
@@ -31,11 +34,30 @@ pub struct Weights {
 }
 
 impl Objective {
-    /// The objective's weights for a robot that takes `level` for a step on level ground.
-    pub(crate) fn weights(self, level: &Edge) -> Weights {
-        let tie = |amount: f64| if level.energy_j > 0.0 { TIE_SHARE * amount / level.energy_j } else { 0.0 };
+    /// A path's amount of the objective [J, m or s].
+    pub fn amount(self, total: &Edge) -> f64 {
         match self {
-            Objective::Energy => Weights { per_j: 1.0, per_m: 0.0, per_s: 0.0 },
+            Objective::Energy => total.energy_j,
+            Objective::Distance => total.length_m,
+            Objective::Time => total.duration_s,
+        }
+    }
+
+    /// The objective's weights for a robot that takes `level` for a step on level ground, and at least `reference_j` for
+    /// one that counts.
+    ///
+    /// Friction may be nothing or next to it. Ties of length and time then weigh energy by the reference, so that they stay
+    /// ties; and of paths that take no energy the fastest is the best.
+    pub(crate) fn weights(self, level: &Edge, reference_j: f64) -> Weights {
+        let energy_j = level.energy_j.max(reference_j);
+        let tie = |amount: f64| TIE_SHARE * amount / energy_j;
+        let missing_j = (reference_j - level.energy_j).clamp(0.0, reference_j);
+        match self {
+            Objective::Energy => Weights {
+                per_j: 1.0,
+                per_m: 0.0,
+                per_s: FRICTIONLESS_TIE_SHARE * missing_j / level.duration_s,
+            },
             Objective::Distance => Weights { per_j: tie(level.length_m), per_m: 1.0, per_s: 0.0 },
             Objective::Time => Weights { per_j: tie(level.duration_s), per_m: 0.0, per_s: 1.0 },
         }
@@ -51,6 +73,11 @@ impl Weights {
             "a motion gained {friction_j} J besides gravity"
         );
         // Only rounding can have made it negative.
-        self.per_j * friction_j.max(0.0) + self.per_m * edge.length_m + self.per_s * edge.duration_s
+        self.of(&Edge { energy_j: friction_j.max(0.0), ..*edge })
+    }
+
+    /// Weighted sum of a motion's energy, length and time.
+    pub(crate) fn of(&self, edge: &Edge) -> f64 {
+        self.per_j * edge.energy_j + self.per_m * edge.length_m + self.per_s * edge.duration_s
     }
 }

@@ -19,6 +19,7 @@ use crate::{
     labels::Workspace,
     lattice::{Lattice, Settings, State},
     objective::Objective,
+    patience::{Patience, work},
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
     route::Route,
@@ -142,21 +143,19 @@ impl Planner {
         objective: Objective,
         began: Instant,
     ) -> Result<Plan, Error> {
-        let found = match self.walk(ends, objective) {
+        let found = match self.walk(ends, objective, &query.patience)? {
             Some(found) => found,
             None => self.search(ends, query, objective)?,
         };
+        if !joins(&self.lattice, &found, &ends.starts, |end| ends.goals.contains(end)) {
+            return Err(Error::Untraceable);
+        }
         let duration = began.elapsed();
-        let route = Route::drive(&self.lattice, objective, found.start, &found.motions);
+        let path = (found.start, &found.motions[..]);
+        let route = Route::drive(&self.lattice, objective, path, &query.patience)?;
         let refined = query.refine.then(|| refine(&self.lattice, objective, &route, &query.patience).route);
-        let search = SearchReport {
-            expanded: found.expanded,
-            duration,
-            bound: found.bound,
-            excess: found.excess,
-            timed_out: found.late,
-        };
-        Ok(self.answer(ends, query, (route, refined), search))
+        let search = SearchReport::proven(&found, objective, &route.total, duration);
+        self.answer(ends, query, (route, refined), search)
     }
 
     /// Both ends of a question on the lattice.
@@ -169,16 +168,18 @@ impl Planner {
 
     /// The answer that drives chosen motions, each with the variant to drive it in, from a pose between the ends of a
     /// question. It is not refined.
+    ///
+    /// # Errors
+    /// Motions that cannot be driven, or patience that ended on a long path.
     pub fn plan_along(
         &self,
         (ends, query): (&Ends, &Query),
         start: State,
         ways: &[(usize, usize)],
         search: SearchReport,
-    ) -> Plan {
-        let mut variants = ways.iter().map(|(_, variant)| *variant);
-        let motions = ways.iter().map(|(motion, _)| *motion);
-        let route = Route::drive_by(&self.lattice, start, motions, |_, _| variants.next());
+    ) -> Result<Plan, Error> {
+        let ways = ways.iter().map(|&(motion, variant)| (motion, Some(variant)));
+        let route = Route::drive_by(&self.lattice, start, ways, |_, _| None, &query.patience)?;
         self.answer(ends, query, (route, None), search)
     }
 
@@ -189,39 +190,28 @@ impl Planner {
         query: &Query,
         (route, refined): (Route, Option<Route>),
         search: SearchReport,
-    ) -> Plan {
+    ) -> Result<Plan, Error> {
         let lattice = &self.lattice;
-        let energy_interval_j = energy_interval_j(
-            &route,
-            &lattice.robot,
-            lattice.settings.power_model,
-            &surface_names(lattice),
-            lattice.settings.motor_temperature_c,
-        );
-        Plan {
+        let energy_interval_j =
+            energy_interval_j(&route, lattice, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
+        Ok(Plan {
             energy_interval_j,
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
             goal_snap: goal_snap(&route, ends, query),
             route,
             refined,
             search,
-        }
+        })
     }
 
     /// The way to a goal that is held.
-    fn walk(&self, ends: &Ends, objective: Objective) -> Option<Found> {
-        let exact = self.fields.exact(&FieldKey::new(objective, &ends.goals))?;
-        let (start, motions) = exact.walk(self.table(objective), &ends.starts)?;
-        let end = motions.iter().try_fold(start, |state, &motion| self.lattice.successor(state, motion))?;
-        // Where motions cost nothing at all a walk may stop on the way.
-        ends.goals.contains(&end).then_some(Found {
-            start,
-            motions,
-            expanded: 0,
-            excess: 0.0,
-            bound: Some(1.0),
-            late: false,
-        })
+    fn walk(&self, ends: &Ends, objective: Objective, patience: &Patience) -> Result<Option<Found>, Error> {
+        let Some(exact) = self.fields.exact(&FieldKey::new(objective, &ends.goals)) else { return Ok(None) };
+        let table = self.table(objective);
+        let Some((start, motions)) = exact.walk(table, &ends.starts, patience)? else { return Ok(None) };
+        let units = exact.units_at(start).unwrap_or(0);
+        let least = table.proven(f64::from(units)) + ends.besides(&self.lattice, objective);
+        Ok(Some(Found { least, ..Found::along(start, motions) }))
     }
 
     fn search(&self, ends: &Ends, query: &Query, objective: Objective) -> Result<Found, Error> {
@@ -240,8 +230,10 @@ impl Planner {
         match self.with_workspace(|workspace| search(table, &field, &question, workspace)) {
             Outcome::Found(found) => Ok(found),
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
+            Outcome::Untraceable => Err(Error::Untraceable),
             Outcome::Unreachable => {
-                Err(nearest_connected(&self.lattice, &field, ends.start.cell, ends.goal.cell))
+                let cells = [ends.start.cell, ends.goal.cell];
+                Err(nearest_connected(&self.lattice, &field, cells, &query.patience))
             }
         }
     }
@@ -256,16 +248,40 @@ impl Planner {
     }
 }
 
-/// Where the ground that leads to the goal comes nearest to the start.
-pub(crate) fn nearest_connected(lattice: &Lattice, field: &GoalField, start: Cell, goal: Cell) -> Error {
+/// Whether a path begins at one of the starts and its motions lead to a goal.
+pub(crate) fn joins(
+    lattice: &Lattice,
+    found: &Found,
+    starts: &[State],
+    is_goal: impl Fn(&State) -> bool,
+) -> bool {
+    let end = found.motions.iter().try_fold(found.start, |state, &motion| lattice.successor(state, motion));
+    starts.contains(&found.start) && end.is_some_and(|end| is_goal(&end))
+}
+
+/// Where the ground that leads to the goal comes nearest to the start, or that patience ended first.
+pub(crate) fn nearest_connected(
+    lattice: &Lattice,
+    field: &GoalField,
+    [start, goal]: [Cell; 2],
+    patience: &Patience,
+) -> Error {
     let grid = &lattice.terrain.grid;
     let [sx, sy] = grid.center_m(start);
-    let nearest = (0..grid.cells())
-        .map(|i| grid.cell(i))
-        .filter(|&cell| field.leads_from(cell))
-        .map(|cell| grid.center_m(cell))
-        .map(|[x, y]| ((x - sx).hypot(y - sy), x, y))
-        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let mut nearest: Option<(f64, f64, f64)> = None;
+    let mut pacer = patience.pacer();
+    for cell in (0..grid.cells()).map(|i| grid.cell(i)) {
+        if pacer.after(work::CELL).is_none() {
+            return Error::Timeout { expanded: 0 };
+        }
+        if field.leads_from(cell) {
+            let [x, y] = grid.center_m(cell);
+            let gap_m = (x - sx).hypot(y - sy);
+            if nearest.is_none_or(|(least_m, ..)| gap_m < least_m) {
+                nearest = Some((gap_m, x, y));
+            }
+        }
+    }
     let [gx, gy] = grid.center_m(goal);
     let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
     if gap_m == 0.0 {

@@ -5,6 +5,7 @@ use crate::{
     heading::HEADINGS,
     labels::Labels,
     layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
+    patience::{Patience, work},
     pose_sweep::PoseSweep,
     tile_builder::TILE_STATES,
 };
@@ -19,17 +20,18 @@ impl PoseCosts {
         PoseCosts { tiles: vec![None; layout.tiles()] }
     }
 
-    /// The costs that a search left.
-    pub(crate) fn of_labels(layout: &Layout, labels: &Labels) -> Self {
-        let mut costs = Self::new(layout);
+    /// The costs that a search left; `None` when patience ends first.
+    pub(crate) fn of_labels(layout: &Layout, labels: &Labels, patience: &Patience) -> Option<Self> {
+        let (mut costs, mut pacer) = (Self::new(layout), patience.pacer());
         for tile in (0..layout.tiles()).filter(|tile| labels.holds(*tile)) {
+            pacer.after(TILE_STATES as u64 * work::CELL)?;
             let first = (tile * TILE_STATES) as u32;
             let known = costs.tile_mut(tile);
             for state in first..first + TILE_STATES as u32 {
                 known[place(state)] = labels.cost(state).min(ENDLESS);
             }
         }
-        costs
+        Some(costs)
     }
 
     /// Cost of a packed state.

@@ -13,7 +13,7 @@ use crate::{
     heading::HEADINGS,
     lattice::State,
     layout::{Layout, TILE},
-    patience::Patience,
+    patience::{Patience, work},
     pose_codes::CodesAround,
     pose_costs::PoseCosts,
     pose_stencil::PoseStencil,
@@ -24,6 +24,9 @@ use crate::{
 /// Tiles that are settled at the same time, each as if the others stayed as they were; what they change is looked at again
 /// from tile to tile.
 const ABREAST: usize = 8;
+
+/// Costs that are copied in the time in which a cell is looked at.
+const COPIED_IN_A_CELL: u64 = 8;
 
 /// Where costs may fall.
 struct Waiting {
@@ -53,17 +56,20 @@ pub(crate) fn grow(
     let stencil = PoseStencil::new(table.lattice(), table.stride(), direction);
     if stencil.reach > TILE {
         // Arcs over the finest of cells lead past the tiles around.
-        let mut search = Dijkstra::new(table, direction, seeds, patience);
+        let mut search = Dijkstra::new(table, direction, seeds.iter().copied(), patience)?;
         search.settle_within(limit)?;
-        return Some(PoseCosts::of_labels(layout, &search.labels));
+        return PoseCosts::of_labels(layout, &search.labels, patience);
     }
     let mut costs = PoseCosts::new(layout);
     let mut front = Front::new(layout, &stencil);
+    let mut pacer = patience.pacer();
     for &(seed, cost) in seeds {
+        pacer.after(work::STATE)?;
         if cost <= limit && costs.lower(layout.pack(seed), cost) {
             front.seed(seed, cost);
         }
     }
+    drop(pacer);
     let mut sweeps = Vec::new();
     loop {
         let taken = front.pop(ABREAST);
@@ -82,8 +88,8 @@ pub(crate) fn grow(
             }
             sweep.begin(&waiting.pending);
             known.load(&around(layout, *tile), sweep);
-            sweep.settle(&codes);
-            Some(())
+            patience.worked(sweep.costs.len() as u64 / COPIED_IN_A_CELL);
+            sweep.settle(&codes, patience)
         })?;
         for ((tile, _), sweep) in taken.iter().zip(&sweeps) {
             costs.store(*tile, sweep);

@@ -7,9 +7,10 @@ use crate::{
     cost::decode_lanes,
     heading::HEADINGS,
     layout::TILE,
+    patience::Patience,
     pose_codes::{CodesAround, PoseCodes},
     pose_stencil::PoseStencil,
-    tile_builder::RowCodes,
+    tile_builder::{LANES, RowCodes},
 };
 
 /// The costs of a tile's poses and of those around it, and where they have fallen.
@@ -26,6 +27,8 @@ pub(crate) struct PoseSweep {
     pub(crate) fallen: Box<[[u64; TILE]; HEADINGS]>,
     /// Rows by heading in which any cost has fallen.
     pub(crate) lowered: [u64; HEADINGS],
+    /// Rows of headings that were looked at since work was last reported.
+    rows_relaxed: u64,
 }
 
 impl PoseSweep {
@@ -37,6 +40,7 @@ impl PoseSweep {
             limit,
             fallen: Box::new([[0; TILE]; HEADINGS]),
             lowered: [0; HEADINGS],
+            rows_relaxed: 0,
             stencil,
         }
     }
@@ -61,9 +65,18 @@ impl PoseSweep {
         self.codes.clear();
     }
 
-    /// Lowers the costs of the tile's poses until no motion lowers any.
-    pub(crate) fn settle(&mut self, codes: &CodesAround<'_>) {
-        settle(self, codes);
+    /// Lowers the costs of the tile's poses until no motion lowers any; `None` when patience ends first.
+    pub(crate) fn settle(&mut self, codes: &CodesAround<'_>, patience: &Patience) -> Option<()> {
+        while self.pending.iter().any(|headings| *headings != 0) {
+            sweep(self, codes);
+            // A row of a heading takes its motions sixteen cells at a time.
+            let row = (TILE / LANES * self.stencil.motions) as u64;
+            patience.worked(std::mem::take(&mut self.rows_relaxed) * row);
+            if patience.is_over() {
+                return None;
+            }
+        }
+        Some(())
     }
 
     /// All headings of a row, one after the other and round again, until no cost in it falls.
@@ -76,6 +89,7 @@ impl PoseSweep {
             let heading = if ahead != 0 { ahead } else { self.pending[row] }.trailing_zeros() as usize;
             self.pending[row] &= !(1 << heading);
             first = (heading + 1) % HEADINGS;
+            self.rows_relaxed += 1;
             let mut fallen = self.relax(heading, row);
             if fallen != 0 {
                 fallen |= self.run_on(heading, row);
@@ -164,12 +178,10 @@ fn below(costs: &[u32; TILE], others: &[u32; TILE]) -> u64 {
 
 /// Compiled for wider registers too, and chosen by what the machine has; whole numbers are the same on every machine.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
-fn settle(sweep: &mut PoseSweep, codes: &CodesAround<'_>) {
-    while sweep.pending.iter().any(|headings| *headings != 0) {
-        for row in (0..TILE).chain((0..TILE).rev()) {
-            if sweep.pending[row] != 0 {
-                sweep.relax_row(row, codes);
-            }
+fn sweep(sweep: &mut PoseSweep, codes: &CodesAround<'_>) {
+    for row in (0..TILE).chain((0..TILE).rev()) {
+        if sweep.pending[row] != 0 {
+            sweep.relax_row(row, codes);
         }
     }
 }

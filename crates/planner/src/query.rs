@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use crate::{lattice::Settings, patience::Patience, route::Route};
+use crate::{
+    astar::Found, edge::Edge, lattice::Settings, objective::Objective, patience::Patience, route::Route,
+};
 
 /// Where the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,18 +70,37 @@ pub struct SearchReport {
     pub expanded: u64,
     /// Time for preparing and searching.
     pub duration: Duration,
-    /// Proven: the answer has at most so many times the least of the objective; 1 when it is the least. `None` where the least may be nothing or a gain, which no factor bounds.
+    /// Proven: the answer has at most so many times the least of the objective that any path of the lattice takes, with the
+    /// rounding of costs in the table included. `None` where the least may be nothing or a gain, which no factor bounds.
     pub bound: Option<f64>,
-    /// By how much the answer may exceed the least, in the objective's unit; 0 when it is the least.
+    /// By how much the answer may exceed the least, in the objective's unit, rounding included.
     pub excess: f64,
+    /// Whether no path of the lattice costs less, to the rounding of the table.
+    pub optimal: bool,
     /// Whether patience ended before the bound asked for was proven.
     pub timed_out: bool,
 }
 
 impl SearchReport {
-    /// Whether the path is proven to be the best of the lattice.
+    /// What is proven of a path that takes `amount` of the objective, where none takes less than `least`.
+    pub(crate) fn proven(found: &Found, objective: Objective, total: &Edge, duration: Duration) -> Self {
+        let amount = objective.amount(total);
+        SearchReport {
+            expanded: found.expanded,
+            duration,
+            bound: match found.least {
+                least if amount <= least => Some(1.0),
+                least => (least > 0.0).then(|| amount / least),
+            },
+            excess: (amount - found.least).max(0.0),
+            optimal: found.optimal,
+            timed_out: found.late,
+        }
+    }
+
+    /// Whether the path is proven to be the best of the lattice, to the rounding of the table.
     pub fn is_optimal(&self) -> bool {
-        self.excess == 0.0
+        self.optimal
     }
 }
 

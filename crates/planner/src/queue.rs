@@ -71,16 +71,18 @@ impl BucketQueue {
         self.current << self.shift
     }
 
-    /// Items whose key, as `key` tells it, is in the bucket that holds them, in no particular order.
-    pub(crate) fn items<'q>(
-        &'q self,
-        key: impl Fn(u32) -> u32 + Copy + 'q,
-    ) -> impl Iterator<Item = u32> + 'q {
+    /// Items with the least key of the bucket that holds them, stale ones too, from the lowest bucket on.
+    pub(crate) fn items(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         let filled = if self.len == 0 { 0 } else { self.highest - self.current + 1 };
         (self.current..self.current + filled).flat_map(move |bucket| {
             let items = &self.ring[bucket as usize & (self.ring.len() - 1)];
-            items.iter().copied().filter(move |item| key(*item) >> self.shift == bucket)
+            items.iter().map(move |item| (*item, bucket << self.shift))
         })
+    }
+
+    /// Whether a key belongs to the bucket of a least key.
+    pub(crate) fn is_in(&self, key: u32, bucket_key: u32) -> bool {
+        key >> self.shift == bucket_key >> self.shift
     }
 
     /// Forgets all items and starts anew; memory is kept.

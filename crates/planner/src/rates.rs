@@ -17,6 +17,8 @@ const WIDEST_PER_DISTANCE: f64 = 16.0;
 
 /// Radii are settled when moves by this share of a doubling no longer pay: half a per cent.
 const SETTLED_DOUBLINGS: f64 = 1.0 / 128.0;
+/// Most moves; a few dozen settle any radii, and more only follow rounding.
+const MOST_MOVES: usize = 1000;
 /// The cost has valleys along which two arcs just touch; so many of the first radii, each with its best last one, are
 /// settled.
 const SETTLED_SEEDS: usize = 8;
@@ -146,7 +148,10 @@ impl LevelRates {
     /// The best radii near those of a connection of known cost, by moves of either or both that get smaller.
     fn settled(&self, (mut least, mut best): (f64, Connection), ends: &Ends) -> (f64, Connection) {
         let mut size = 1.0 / PER_DOUBLING as f64;
-        while size > SETTLED_DOUBLINGS {
+        for _ in 0..MOST_MOVES {
+            if size <= SETTLED_DOUBLINGS {
+                break;
+            }
             let moved = BENDS.map(|bend| best.bent(bend.map(|way| way * size), self.tightest_m()));
             let cheapest = moved
                 .map(|connection| (self.cost_between(&connection, ends), connection))

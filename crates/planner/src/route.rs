@@ -4,10 +4,12 @@ use model::{Acceleration, Manoeuvre, PowerModel, Robot, Sides};
 
 use crate::{
     edge::Edge,
+    error::Error,
     lattice::{Lattice, State},
     objective::Objective,
+    patience::{Patience, work},
     step::Step,
-    table::cheapest,
+    unlimited::{cheapest, drive_unlimited},
 };
 
 /// One pose along a path, with what the path has cost up to it.
@@ -52,43 +54,74 @@ pub struct Route {
     pub edges: Vec<Edge>,
 }
 
+/// Motions that are driven whether patience is over or not, so that an answer that a search came to at its deadline is not
+/// lost: some ten milliseconds.
+const DRIVEN_AT_LEAST: usize = 1 << 12;
+
 impl Route {
     /// Drives a chain of motions from a state, each in the way that costs least.
-    pub(crate) fn drive(lattice: &Lattice, objective: Objective, start: State, motions: &[usize]) -> Self {
+    ///
+    /// # Errors
+    /// Patience that ends first on a path of more than [`DRIVEN_AT_LEAST`] motions, or one that cannot be driven.
+    pub(crate) fn drive(
+        lattice: &Lattice,
+        objective: Objective,
+        (start, motions): (State, &[usize]),
+        patience: &Patience,
+    ) -> Result<Self, Error> {
         let weights = lattice.weights(objective);
-        Self::drive_by(lattice, start, motions.iter().copied(), |state, motion| {
-            cheapest(lattice, &weights, state, motion).map(|(variant, _)| variant)
-        })
+        let ways = motions.iter().map(|&motion| (motion, None));
+        Self::drive_by(
+            lattice,
+            start,
+            ways,
+            |state, motion| cheapest(lattice, &weights, state, motion),
+            patience,
+        )
     }
 
-    /// Drives a chain of motions from a state, each in the way that `variant` names.
+    /// Drives a chain of motions from a state, each in the variant given with it, or else in that which `choose` names.
+    ///
+    /// # Errors
+    /// As [`Route::drive`].
     pub(crate) fn drive_by(
         lattice: &Lattice,
         start: State,
-        motions: impl Iterator<Item = usize>,
-        mut variant: impl FnMut(State, usize) -> Option<usize>,
-    ) -> Self {
+        ways: impl Iterator<Item = (usize, Option<usize>)>,
+        choose: impl Fn(State, usize) -> Option<usize>,
+        patience: &Patience,
+    ) -> Result<Self, Error> {
         let mut route = Route {
             total: Edge::default(),
             poses: vec![first_pose(lattice, start)],
             steps: Vec::new(),
             edges: Vec::new(),
         };
-        let mut state = start;
-        for motion in motions {
-            let Some(variant) = variant(state, motion) else { break };
-            let Some(end) = lattice.successor(state, motion) else { break };
-            let mut edge = Edge::default();
+        let (mut state, mut steps) = (start, Vec::new());
+        let mut pacer = patience.pacer();
+        for (count, (motion, variant)) in ways.enumerate() {
+            if pacer.after(work::MOTION).is_none() && count > DRIVEN_AT_LEAST {
+                return Err(Error::Timeout { expanded: 0 });
+            }
+            let variant = variant.or_else(|| choose(state, motion)).ok_or(Error::Untraceable)?;
+            let end = lattice.successor(state, motion).ok_or(Error::Untraceable)?;
             let origin_m = lattice.terrain.grid.center_m(state.cell);
             let chain = lattice.chain(state.heading, motion, variant);
-            let _ = chain.drive(lattice, state.cell, |step| {
+            steps.clear();
+            if chain.drive(lattice, state.cell, |step| steps.push(*step)).is_none() {
+                steps.clear();
+                drive_unlimited(lattice, chain, state.cell, |step| steps.push(*step))
+                    .ok_or(Error::Untraceable)?;
+            }
+            let mut edge = Edge::default();
+            for step in &steps {
                 edge.add(step);
                 route.push([origin_m[0] + step.end_m[0], origin_m[1] + step.end_m[1]], step);
-            });
+            }
             route.edges.push(edge);
             state = end;
         }
-        route
+        Ok(route)
     }
 
     /// Adds a step that ends at a place of the map.
@@ -122,16 +155,30 @@ impl Route {
         surfaces: &[String],
         motor_temperature_c: f64,
     ) -> f64 {
+        let forever = Patience::default();
+        self.energy_within_j((robot, model), surfaces, motor_temperature_c, &forever).unwrap_or(f64::NAN)
+    }
+
+    /// The same; `None` where patience ends first.
+    pub(crate) fn energy_within_j(
+        &self,
+        (robot, model): (&Robot, PowerModel),
+        surfaces: &[String],
+        motor_temperature_c: f64,
+        patience: &Patience,
+    ) -> Option<f64> {
         let temperature_c = Sides::both(motor_temperature_c);
-        self.steps
-            .iter()
-            .filter_map(|step| {
-                let surface = robot.surfaces.get(surfaces.get(step.surface)?)?;
+        let (mut energy_j, mut pacer) = (0.0, patience.pacer());
+        for step in &self.steps {
+            pacer.after(work::STATE)?;
+            let surface = surfaces.get(step.surface).and_then(|name| robot.surfaces.get(name));
+            if let Some(surface) = surface {
                 let manoeuvre = Manoeuvre::new(model, robot, surface, step.motion, temperature_c);
                 let power = manoeuvre.power_on_grade(step.grade, Acceleration::NONE);
-                Some(power.bus_w * step.duration_s)
-            })
-            .sum()
+                energy_j += power.bus_w * step.duration_s;
+            }
+        }
+        Some(energy_j)
     }
 }
 

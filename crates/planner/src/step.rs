@@ -102,6 +102,19 @@ impl PreparedStep {
         reverse: bool,
         manoeuvre_on: impl FnOnce(usize) -> &'m Manoeuvre,
     ) -> Option<(Step, f32)> {
+        self.drive_within(lattice, (from, height_m), reverse, manoeuvre_on, &lattice.limits)
+    }
+
+    /// The same within other limits than the robot's.
+    #[inline]
+    pub(crate) fn drive_within<'m>(
+        &self,
+        lattice: &Lattice,
+        (from, height_m): (usize, f32),
+        reverse: bool,
+        manoeuvre_on: impl FnOnce(usize) -> &'m Manoeuvre,
+        limits: &Limits,
+    ) -> Option<(Step, f32)> {
         let terrain = &lattice.terrain;
         let columns = terrain.grid.columns;
         let offset =
@@ -111,7 +124,7 @@ impl PreparedStep {
         let slope = slope::gradient_at(terrain, middle);
         let surface = lattice.surface_index(middle);
         let rise_m = f64::from(end_m - height_m);
-        let step = self.drive(manoeuvre_on(surface), rise_m, slope, reverse, &lattice.limits, surface)?;
+        let step = self.drive(manoeuvre_on(surface), rise_m, slope, reverse, limits, surface)?;
         Some((step, end_m))
     }
 

@@ -25,6 +25,8 @@ pub(crate) struct Sweep {
     rows: u64,
     /// Cells that have fallen since the tile was taken up, by row.
     pub(crate) fallen: [u64; TILE],
+    /// Rows that were looked at since work was last asked for.
+    rows_relaxed: u64,
 }
 
 impl Sweep {
@@ -37,8 +39,15 @@ impl Sweep {
             pending_along: [0; TILE],
             rows: 0,
             fallen: [0; TILE],
+            rows_relaxed: 0,
             stencil,
         }
+    }
+
+    /// Work since it was last asked for: a row's steps, sixteen cells together, and copying costs to and fro.
+    pub(crate) fn take_work(&mut self) -> u64 {
+        let row = (TILE * self.stencil.count).div_ceil(LANES) as u64;
+        std::mem::take(&mut self.rows_relaxed) * row + (self.width * self.width / 4) as u64
     }
 
     /// How far beyond the tile the costs reach.
@@ -126,6 +135,7 @@ impl Sweep {
 
     #[inline(always)]
     fn relax_row(&mut self, row: usize, next_row: usize, least: &[Lanes]) {
+        self.rows_relaxed += 1;
         let count = self.stencil.count;
         let next = &least[next_row * GROUPS * count..][..GROUPS * count];
         let least = &least[row * GROUPS * count..][..GROUPS * count];

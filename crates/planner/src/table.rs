@@ -3,22 +3,24 @@
 use std::{
     ops::Range,
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, Mutex, MutexGuard, OnceLock, TryLockError,
         atomic::{AtomicUsize, Ordering},
     },
+    time::Duration,
 };
 
 use rayon::prelude::*;
 use terrain::CellRange;
 
 use crate::{
-    cost::{FORBIDDEN, LARGEST_ROUNDING, UNITS_OF_REFERENCE, decode},
+    cost::{FORBIDDEN, LARGEST_ROUNDING, SINGLE_PRECISION, UNITS_OF_REFERENCE, decode},
     displacement::Displacement,
     lattice::{Lattice, State},
     layout::{Layout, TILE},
     least::least_cost_per_m,
     objective::{Objective, Weights},
     patience::Patience,
+    proof::Proof,
     tile::TileKernel,
     tile_builder::{Codes, Lanes, Least, QUAD, code_place},
 };
@@ -42,7 +44,11 @@ pub struct CostTable {
     turns: [Mutex<()>; TURNS],
     displacements: Vec<Displacement>,
     least_units_per_cell: f32,
+    proof: Proof,
 }
+
+/// A small part of the time that a tile takes.
+const WAIT_FOR_A_TURN: Duration = Duration::from_micros(50);
 
 /// Tiles that can be evaluated at the same time; more than any machine has cores.
 const TURNS: usize = 256;
@@ -53,7 +59,9 @@ impl CostTable {
 
     /// A table that evaluates a tile when it is first asked for one of its costs.
     pub fn lazy(lattice: &Arc<Lattice>, objective: Objective) -> Self {
-        Self::weighted(lattice, lattice.weights(objective))
+        let table = Self::weighted(lattice, lattice.weights(objective));
+        let proof = Proof::new(lattice, objective, &table.weights, table.units);
+        CostTable { proof, ..table }
     }
 
     /// The same for a sum of energy beyond lifting, length and time, whose unit is that of the weights' products.
@@ -71,6 +79,7 @@ impl CostTable {
             turns: [const { Mutex::new(()) }; TURNS],
             displacements: Displacement::of(lattice),
             least_units_per_cell: (least_cost_per_m(lattice, &weights) * units * cell_size_m) as f32,
+            proof: Proof::NONE,
         }
     }
 
@@ -89,7 +98,7 @@ impl CostTable {
     ///
     /// The lattice must be that of the same robot and settings over a map of the same size.
     pub(crate) fn patched(&self, lattice: &Arc<Lattice>, changed: &CellRange) -> Self {
-        let table = Self::weighted(lattice, self.weights);
+        let table = CostTable { proof: self.proof, ..Self::weighted(lattice, self.weights) };
         let names = |lattice: &Lattice| lattice.terrain.surfaces().map(|s| s.names.clone());
         if names(lattice) != names(&self.lattice) {
             // The surfaces' numbers have changed, so every tile has.
@@ -140,6 +149,17 @@ impl CostTable {
     /// Units per joule, metre or second.
     pub fn units(&self) -> f64 {
         self.units
+    }
+
+    /// The least amount of its objective, in its unit, that a path of at least so many units takes when it is driven; for
+    /// energy without lifting. 0 for a table of weights.
+    pub(crate) fn proven(&self, units: f64) -> f64 {
+        self.proof.least(units)
+    }
+
+    /// The most that a path of so many units costs when it is driven, in the objective's unit.
+    pub(crate) fn at_most(&self, units: f64) -> f64 {
+        units / self.units * (1.0 + SINGLE_PRECISION)
     }
 
     /// Least cost of a motion per cell of distance between its ends, in units.
@@ -204,7 +224,7 @@ impl CostTable {
         if is_held() {
             return Some(());
         }
-        let _turn = self.turns[tile % TURNS].lock().unwrap_or_else(PoisonError::into_inner);
+        let _turn = self.turn(tile, patience)?;
         if is_held() {
             return Some(());
         }
@@ -219,6 +239,18 @@ impl CostTable {
         }
         let _ = self.least[tile].set(least);
         Some(())
+    }
+
+    /// The turn to evaluate a tile; `None` when patience ends before another thread has given it back.
+    fn turn(&self, tile: usize, patience: &Patience) -> Option<MutexGuard<'_, ()>> {
+        loop {
+            match self.turns[tile % TURNS].try_lock() {
+                Ok(turn) => return Some(turn),
+                Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+                Err(TryLockError::WouldBlock) if patience.is_over() => return None,
+                Err(TryLockError::WouldBlock) => std::thread::sleep(WAIT_FOR_A_TURN),
+            }
+        }
     }
 
     /// Steps between cells that motions make.
@@ -256,9 +288,7 @@ const HELD_FOR_FIELDS: usize = 1024;
 
 /// Units per joule, metre or second: one step east on level ground sets the scale.
 fn units_per_cost(lattice: &Lattice, weights: &Weights) -> f64 {
-    let cost = weights.cost(&lattice.level_step(), 0.0);
-    // A robot without any friction still needs a scale: that of lifting it by a thousandth of a cell.
-    let cost = cost.max(1e-3 * lattice.lift_j_per_m() * lattice.terrain.grid.cell_size_m * weights.per_j);
+    let cost = weights.cost(&lattice.level_step(), 0.0).max(lattice.reference_j() * weights.per_j);
     let grid = &lattice.terrain.grid;
     let across = (grid.rows + grid.columns) as f64;
     UNITS_OF_REFERENCE / cost / (across / LONGEST_ACROSS).max(1.0)
@@ -267,19 +297,3 @@ fn units_per_cost(lattice: &Lattice, weights: &Weights) -> f64 {
 /// Rows and columns of a map from which on units grow coarser. Costs stay below 2^31 units, 32 768 steps on level ground
 /// where units are finest, so a path may then cost four times as much as level steps along two sides of the map.
 const LONGEST_ACROSS: f64 = 8192.0;
-
-/// The cheapest way to drive a motion from a state: its variant and cost.
-pub(crate) fn cheapest(
-    lattice: &Lattice,
-    weights: &Weights,
-    state: State,
-    motion: usize,
-) -> Option<(usize, f64)> {
-    let end = lattice.successor(state, motion)?;
-    let lifted_j = lattice.potential_j(end.cell) - lattice.potential_j(state.cell);
-    lattice
-        .variants(state.cell, state.heading, motion)
-        .enumerate()
-        .filter_map(|(variant, edge)| Some((variant, weights.cost(&edge?, lifted_j))))
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-}

@@ -8,7 +8,7 @@ use crate::{
     lattice::State,
     objective::Objective,
     patience::Patience,
-    planner::{Planner, nearest_connected},
+    planner::{Planner, joins, nearest_connected},
     route::Route,
     snap::{Asked, snap},
 };
@@ -75,17 +75,24 @@ impl Planner {
         });
         match outcome {
             Outcome::Found(found) if found.late => Err(Error::Timeout { expanded: found.expanded }),
-            Outcome::Found(found) => Ok(found),
+            Outcome::Found(found) => {
+                let is_goal = |end: &State| target.goals.iter().any(|(goal, _)| goal == end);
+                if joins(lattice, &found, starts, is_goal) { Ok(found) } else { Err(Error::Untraceable) }
+            }
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
+            Outcome::Untraceable => Err(Error::Untraceable),
             Outcome::Unreachable => {
                 let goal = target.goals.first().map_or(first.cell, |(goal, _)| goal.cell);
-                Err(nearest_connected(lattice, &target.field, first.cell, goal))
+                Err(nearest_connected(lattice, &target.field, [first.cell, goal], patience))
             }
         }
     }
 
     /// Drives a path that was found under an objective.
-    pub fn drive(&self, objective: Objective, found: &Found) -> Route {
-        Route::drive(self.lattice(), objective, found.start, &found.motions)
+    ///
+    /// # Errors
+    /// Patience that ends first on a long path.
+    pub fn drive(&self, objective: Objective, found: &Found, patience: &Patience) -> Result<Route, Error> {
+        Route::drive(self.lattice(), objective, (found.start, &found.motions), patience)
     }
 }

@@ -21,14 +21,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [x_m, y_m] = terrain.grid.at_fraction_m(0.5, 0.5);
     let place = Waypoint { x_m, y_m, heading_rad: None };
     println!("{side} × {side} cells × 16 headings, {:.0} kJ", most_j / 1e3);
+    let patience = Patience::default();
     for kind in [Kind::Outward, Kind::Homeward, Kind::OutAndBack] {
         for state in ["cold", "warm"] {
             let began = Instant::now();
-            let found = reach(&planner, &place, kind, most_j, None, &Patience::default())?;
+            let found = reach(&planner, &place, kind, most_j, None, &patience)?;
             let taken_s = began.elapsed().as_secs_f64();
-            let share = found.area_m2(most_j) / (found.grid.cells() as f64 * found.grid.cell_size_m.powi(2));
+            let share = found.area_m2(most_j, &patience)?
+                / (found.grid.cells() as f64 * found.grid.cell_size_m.powi(2));
             let began = Instant::now();
-            let polygons = found.within(most_j / 20.0).len();
+            let polygons = found.within(most_j / 20.0, &patience)?.len();
             println!(
                 "{kind:?} {state}: {taken_s:.2} s, {:.1} % of the map; a contour of {polygons} polygons in {:.0} ms",
                 100.0 * share,

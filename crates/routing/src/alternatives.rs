@@ -28,6 +28,9 @@ pub struct Alternatives {
 /// Amounts that differ by less than this share are the same: more than rounding, less than any motion.
 const SAME: f64 = 1e-8;
 
+/// Gaps that are looked into for each path asked for; as paths push each other out there may be more than paths.
+const MOST_LOOKS_PER_PATH: usize = 16;
+
 /// Up to `count` paths of the trade-off between energy and `against`, spread evenly between its ends where there are more.
 ///
 /// # Errors
@@ -125,7 +128,10 @@ impl Alternatives {
     fn fill_gaps(&mut self, front: &Front<'_>, count: usize) -> Result<(), Error> {
         // Amounts below which the next path is known to be the neighbour.
         let mut closed: Vec<f64> = Vec::new();
-        while self.plans.len() < count && !self.timed_out {
+        for _ in 0..MOST_LOOKS_PER_PATH * count.max(1) {
+            if self.plans.len() >= count || self.timed_out {
+                break;
+            }
             let gap = |pair: &[Plan]| {
                 let [upper, lower] = [0, 1].map(|i| front.amount(&pair[i]));
                 (!closed.contains(&upper)).then_some((upper - lower, upper))

@@ -2,7 +2,7 @@
 
 use planner::{
     CostTable, Ends, FieldEnds, GoalField, Lattice, Objective, Outcome, Planner, Query, Search, State,
-    Workspace, search,
+    Workspace, search, work,
 };
 
 use crate::{
@@ -134,7 +134,9 @@ impl<'q> Bounded<'q> {
     fn along(&self, sum: &Amounts, start: State, motions: &[usize]) -> Option<Way> {
         let lattice = self.planner.lattice();
         let (mut state, mut takes, mut ways) = (start, Amounts::default(), Vec::new());
+        let mut pacer = self.query.patience.pacer();
         for &motion in motions {
+            pacer.after(work::MOTION)?;
             let end = lattice.successor(state, motion)?;
             let (variant, amounts) = variants(lattice, state, end, motion).min_by(|a, b| {
                 crate::limits::weighed(&a.1, sum).total_cmp(&crate::limits::weighed(&b.1, sum))

@@ -1,9 +1,13 @@
 //! The part of the lattice that the best path within limits can run through, as an explicit graph in double precision.
 
-use std::{cmp::Reverse, collections::BinaryHeap};
+use std::{
+    cmp::Reverse,
+    collections::{BinaryHeap, HashMap},
+};
 
-use planner::{ExactField, State};
+use planner::{ExactField, Heading, Lattice, Patience, State, work};
 use rayon::prelude::*;
+use terrain::Cell;
 
 use crate::{
     bounded::{Bounded, TABLE_ROUNDING, variants},
@@ -36,6 +40,10 @@ pub(crate) struct Arc {
     pub(crate) takes: Amounts,
 }
 
+/// Motions that a path may have for each row and column of the map, at a unit of cost each.
+const MOTIONS_PER_SIDE: usize = 16;
+/// States whose arcs are worked out between two looks at the clock.
+const STATES_IN_A_LOOK: usize = 32;
 /// Most states of a corridor: their arcs take 2 GB.
 const MOST_STATES: usize = 1 << 22;
 
@@ -44,8 +52,11 @@ impl Corridor {
     pub(crate) fn new(bounded: &Bounded<'_>, sum: Amounts, most: f64) -> Result<Option<Self>, Error> {
         let patience = &bounded.query.patience;
         let late = || Error::Planner(planner::Error::Timeout { expanded: 0 });
-        let most = most * (1.0 + 2.0 * TABLE_ROUNDING);
         let table = bounded.table(sum);
+        let grid = &bounded.planner.lattice().terrain.grid;
+        // Where motions cost next to nothing they still have a unit each.
+        let units = (MOTIONS_PER_SIDE * (grid.rows + grid.columns)) as f64;
+        let most = most * (1.0 + 2.0 * TABLE_ROUNDING) + units / table.units();
         let seeds: Vec<(State, f64)> = bounded.ends.starts.iter().map(|start| (*start, 0.0)).collect();
         let goals = bounded.goals_in(&sum);
         let (from, to) = rayon::join(
@@ -57,20 +68,20 @@ impl Corridor {
         let holds = |state: &State| {
             from.cost(*state).zip(to.cost(*state)).is_some_and(|(before, after)| before + after <= most)
         };
-        let states: Vec<State> =
-            (0..lattice.states()).into_par_iter().map(|i| lattice.state(i)).filter(holds).collect();
-        if states.len() > MOST_STATES {
-            return Ok(None);
-        }
-        let mut node = vec![u32::MAX; lattice.states()];
+        let Some(states) = states_that(lattice, holds, patience).ok_or_else(late)? else { return Ok(None) };
+        let mut node = HashMap::with_capacity(states.len());
+        let mut pacer = patience.pacer();
         for (i, state) in states.iter().enumerate() {
-            node[lattice.index(*state)] = i as u32;
+            pacer.after(work::STATE).ok_or_else(late)?;
+            node.insert(lattice.index(*state), i as u32);
         }
+        drop(pacer);
+        let at = |state: State| node.get(&lattice.index(state)).copied();
         let leaving = |state: &State| -> Vec<Arc> {
             let arcs = (0..lattice.motions_per_state()).flat_map(|motion| {
                 let end =
                     lattice.successor(*state, motion).filter(|_| table.cost(*state, motion).is_finite());
-                let end = end.map(|end| (end, node[lattice.index(end)])).filter(|(_, to)| *to != u32::MAX);
+                let end = end.and_then(|end| Some((end, at(end)?)));
                 end.into_iter().flat_map(move |(end, to)| {
                     variants(lattice, *state, end, motion).map(move |(variant, takes)| Arc {
                         to,
@@ -82,17 +93,32 @@ impl Corridor {
             });
             arcs.collect()
         };
-        let arcs: Vec<Vec<Arc>> = states.par_iter().map(leaving).collect();
-        let at = |state: &State| Some(node[lattice.index(*state)]).filter(|node| *node != u32::MAX);
-        let starts = bounded.ends.starts.iter().filter_map(at).collect();
-        let goals = bounded.goals.iter().filter_map(|(goal, after_j)| Some((at(goal)?, *after_j))).collect();
-        Ok(Some(Self::of(states, starts, goals, &arcs)))
+        let some = |states: &[State]| -> Option<Vec<Vec<Arc>>> {
+            if patience.is_over() {
+                return None;
+            }
+            patience.worked(states.len() as u64 * lattice.motions_per_state() as u64 * work::MOTION);
+            Some(states.iter().map(leaving).collect())
+        };
+        let arcs: Vec<Vec<Vec<Arc>>> =
+            states.par_chunks(STATES_IN_A_LOOK).map(some).collect::<Option<_>>().ok_or_else(late)?;
+        let starts = bounded.ends.starts.iter().filter_map(|start| at(*start)).collect();
+        let goals = bounded.goals.iter().filter_map(|(goal, after_j)| Some((at(*goal)?, *after_j))).collect();
+        let arcs = arcs.into_iter().flatten().collect::<Vec<_>>();
+        Ok(Some(Self::of(states, (starts, goals), &arcs, patience).ok_or_else(late)?))
     }
 
-    fn of(states: Vec<State>, starts: Vec<u32>, goals: Vec<(u32, f64)>, arcs: &[Vec<Arc>]) -> Self {
+    fn of(
+        states: Vec<State>,
+        (starts, goals): (Vec<u32>, Vec<(u32, f64)>),
+        arcs: &[Vec<Arc>],
+        patience: &Patience,
+    ) -> Option<Self> {
+        let mut pacer = patience.pacer();
         let mut first = vec![0u32];
         let mut first_into = vec![0u32; arcs.len() + 1];
         for leaving in arcs {
+            pacer.after(work::STATE)?;
             first.push(first.last().copied().unwrap_or(0) + leaving.len() as u32);
             for arc in leaving {
                 first_into[arc.to as usize + 1] += 1;
@@ -101,17 +127,24 @@ impl Corridor {
         for i in 0..arcs.len() {
             first_into[i + 1] += first_into[i];
         }
-        let arcs: Vec<Arc> = arcs.concat();
+        let mut all = Vec::with_capacity(first.last().map_or(0, |count| *count as usize));
+        for leaving in arcs {
+            pacer.after(work::STATE)?;
+            all.extend_from_slice(leaving);
+        }
+        let arcs = all;
         let mut into = vec![(0, 0); arcs.len()];
         let mut next = first_into.clone();
         for node in 0..states.len() {
+            pacer.after(work::STATE)?;
             for at in first[node]..first[node + 1] {
                 let slot = &mut next[arcs[at as usize].to as usize];
                 into[*slot as usize] = (node as u32, at);
                 *slot += 1;
             }
         }
-        Corridor { states, starts, goals, first, arcs, first_into, into }
+        drop(pacer);
+        Some(Corridor { states, starts, goals, first, arcs, first_into, into })
     }
 
     /// The arcs that leave a node.
@@ -124,8 +157,8 @@ impl Corridor {
         &self.leaving(node)[usize::from(position)]
     }
 
-    /// Least of a weighted sum from every node to a goal, by Dijkstra's search.
-    pub(crate) fn least_ahead(&self, sum: &Amounts) -> Ahead {
+    /// Least of a weighted sum from every node to a goal, by Dijkstra's search; `None` where patience ends first.
+    pub(crate) fn least_ahead(&self, sum: &Amounts, patience: &Patience) -> Option<Ahead> {
         let nowhere = AheadOf { least: f64::INFINITY, takes: Amounts::default(), arc: NO_ARC };
         let mut nodes = vec![nowhere; self.states.len()];
         let mut open = BinaryHeap::new();
@@ -136,7 +169,9 @@ impl Corridor {
                 open.push(Reverse((Ordered(after), *goal)));
             }
         }
+        let mut pacer = patience.pacer();
         while let Some(Reverse((Ordered(least), node))) = open.pop() {
+            pacer.after(2 * work::STATE)?;
             let here = nodes[node as usize];
             if least > here.least {
                 continue;
@@ -152,7 +187,8 @@ impl Corridor {
                 }
             }
         }
-        Ahead { nodes }
+        drop(pacer);
+        Some(Ahead { nodes })
     }
 
     /// The motions of the best way on from a node.
@@ -164,6 +200,39 @@ impl Corridor {
         }
         motions
     }
+}
+
+/// States of a lattice that pass, in their order; `None` inside where they are too many, outside where patience ends first.
+fn states_that(
+    lattice: &Lattice,
+    passes: impl Fn(&State) -> bool + Sync,
+    patience: &Patience,
+) -> Option<Option<Vec<State>>> {
+    let grid = &lattice.terrain.grid;
+    let of_row = |row: usize| {
+        if patience.is_over() {
+            return None;
+        }
+        let (mut states, mut pacer) = (Vec::new(), patience.pacer());
+        for column in 0..grid.columns {
+            pacer.after(work::STATE)?;
+            let cell = Cell { row, column };
+            states.extend(Heading::all().map(|heading| State { cell, heading }).filter(&passes));
+        }
+        Some(states)
+    };
+    let rows: Vec<Vec<State>> = (0..grid.rows).into_par_iter().map(of_row).collect::<Option<_>>()?;
+    let count: usize = rows.iter().map(Vec::len).sum();
+    if count > MOST_STATES {
+        return Some(None);
+    }
+    let (mut states, mut pacer) = (Vec::with_capacity(count), patience.pacer());
+    for row in rows {
+        pacer.after(row.len() as u64 * work::CELL)?;
+        states.extend(row);
+    }
+    drop(pacer);
+    Some(Some(states))
 }
 
 impl Arc {

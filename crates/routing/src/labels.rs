@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use planner::Patience;
+use planner::{Pacer, Patience, work};
 use rayon::prelude::*;
 
 use crate::{
@@ -60,8 +60,8 @@ struct Best {
 const ROUNDING: f64 = 1e-10;
 /// Most labels: 3 GB.
 const MOST_LABELS: usize = 1 << 26;
-/// Labels between two looks at the clock, about a millisecond.
-const CLOCK_EVERY: u64 = 256;
+/// Work of taking up a label: a place in the queue and those it leads to.
+const LABEL: u64 = 8 * work::STATE;
 
 impl Labelling<'_> {
     /// Searches in the order of the lower bound for a path with less of the objective than `known`.
@@ -71,7 +71,9 @@ impl Labelling<'_> {
     /// path known. So what the first label in turn is bounded by is the least there is. Each label is also tried with the
     /// ways on that are best for one amount or the sum: the paths that this makes prune the rest.
     pub(crate) fn search(&self, known: f64) -> Labelled {
-        let mut run = Run::new(self, known);
+        let Some(mut run) = Run::new(self, known) else {
+            return Labelled { path: None, least: f64::NEG_INFINITY, expanded: 0, late: true };
+        };
         for &start in &self.corridor.starts {
             let from = run.labels.len() as u32;
             run.take(Label { node: start, from, arc: 0, dominated: false, takes: Amounts::default() }, 0.0);
@@ -86,7 +88,7 @@ impl Labelling<'_> {
             {
                 return run.ended(least.min(found), false);
             }
-            let is_late = run.expanded.is_multiple_of(CLOCK_EVERY) && self.patience.is_over();
+            let is_late = run.pacer.after(run.work()).is_none();
             if is_late || run.labels.len() >= MOST_LABELS {
                 return run.ended(least, true);
             }
@@ -113,19 +115,25 @@ struct Run<'r> {
     open: BinaryHeap<Reverse<(Ordered, u32)>>,
     best: Option<Best>,
     expanded: u64,
+    /// Labels that were compared since the last look at the work done.
+    compared: u64,
+    pacer: Pacer<'r>,
 }
 
 impl<'r> Run<'r> {
-    fn new(labelling: &'r Labelling<'r>, known: f64) -> Self {
+    /// The ways on from all nodes; `None` where patience ends first.
+    fn new(labelling: &'r Labelling<'r>, known: f64) -> Option<Self> {
         let Labelling { corridor, objective, most, .. } = labelling;
         let limited = (0..3).filter(|at| at != objective && most[*at].is_finite());
         let active: Vec<usize> = [*objective].into_iter().chain(limited).collect();
         let sums: Vec<Amounts> = active.iter().map(|at| only(*at)).chain([labelling.bound.0]).collect();
         let scale = |at: usize| if at == *objective { known.min(most[at]) } else { most[at] };
         let finite = |scale: f64| if scale.is_finite() { scale.abs() } else { 0.0 };
-        Run {
+        let patience = labelling.patience;
+        let ahead = sums.par_iter().map(|sum| corridor.least_ahead(sum, patience)).collect::<Option<_>>()?;
+        Some(Run {
             labelling,
-            ahead: sums.par_iter().map(|sum| corridor.least_ahead(sum)).collect(),
+            ahead,
             active,
             tolerance: std::array::from_fn(|at| ROUNDING * finite(scale(at))),
             known,
@@ -134,7 +142,14 @@ impl<'r> Run<'r> {
             open: BinaryHeap::new(),
             best: None,
             expanded: 0,
-        }
+            compared: 0,
+            pacer: patience.pacer(),
+        })
+    }
+
+    /// Work since it was last asked for.
+    fn work(&mut self) -> u64 {
+        LABEL + std::mem::take(&mut self.compared) * 2 * work::CELL
     }
 
     /// Less than this of the objective is worth looking for.
@@ -163,6 +178,7 @@ impl<'r> Run<'r> {
         let no_worse = |a: &Amounts, b: &Amounts| active.iter().all(|at| a[*at] <= b[*at] + tolerance[*at]);
         let labels = &mut self.labels;
         let here = &mut self.at_node[label.node as usize];
+        self.compared += here.len() as u64;
         if here.iter().any(|other| no_worse(&labels[*other as usize].takes, &label.takes)) {
             return;
         }

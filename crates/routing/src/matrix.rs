@@ -92,7 +92,7 @@ fn entry(
     use planner::Error as E;
     match planner.path_to(target, starts, &question.patience) {
         Ok(found) => {
-            let total = planner.drive(question.objective, &found).total;
+            let total = planner.drive(question.objective, &found, &question.patience)?.total;
             Ok(Ok([total.energy_j, total.duration_s, total.length_m]))
         }
         Err(reason @ (E::NoPath { .. } | E::NoRoomToTurn { .. })) => Ok(Err(reason)),

@@ -3,6 +3,7 @@
 //! Isolines between cell centres, as libraries draw them, would cut through cells of which all is known; here a contour runs
 //! along the edges of cells, and a cell lies inside exactly when its value does.
 
+use planner::{Pacer, Patience, work};
 use terrain::Grid;
 
 /// A polygon on the map: rings of x and y [m], each closed, its last point the first again.
@@ -16,30 +17,37 @@ pub struct Polygon {
     pub holes: Vec<Vec<[f64; 2]>>,
 }
 
+/// Work of a step along an edge, with the cells on either side.
+const CORNER: u64 = 4 * work::CELL;
+
 /// A corner of the grid, by column and row of the cell to its north-east.
 type Corner = (usize, usize);
 
 /// Polygons of the cells, by row-major position, that are inside: one for each set of cells that hang together by edges.
-pub fn outline(grid: &Grid, inside: impl Fn(usize) -> bool) -> Vec<Polygon> {
-    let labels = Labels::new(grid, inside);
+/// `None` where patience ends first.
+pub fn outline(grid: &Grid, inside: impl Fn(usize) -> bool, patience: &Patience) -> Option<Vec<Polygon>> {
+    let mut pacer = patience.pacer();
+    let labels = Labels::new(grid, inside, &mut pacer)?;
     let mut walk = Walk { labels: &labels, seen: vec![false; grid.cells()] };
     let mut polygons: Vec<Polygon> = vec![Polygon { exterior: Vec::new(), holes: Vec::new() }; labels.count];
     for row in 0..grid.rows {
         for column in 0..grid.columns {
+            pacer.after(work::CELL)?;
             let label = labels.at(column as isize, row as isize);
             let is_southern_edge = label != 0 && labels.at(column as isize, row as isize - 1) == 0;
             if !is_southern_edge || walk.seen[row * grid.columns + column] {
                 continue;
             }
             let polygon = &mut polygons[label as usize - 1];
-            for ring in simple_rings(walk.ring((column, row))) {
-                let is_exterior = doubled_area(&ring) > 0;
-                let ring = in_metres(grid, &ring);
+            let ring = walk.ring((column, row), &mut pacer)?;
+            for ring in simple_rings(ring, &mut pacer)? {
+                let is_exterior = doubled_area(&ring, &mut pacer)? > 0;
+                let ring = in_metres(grid, &ring, &mut pacer)?;
                 if is_exterior { polygon.exterior = ring } else { polygon.holes.push(ring) }
             }
         }
     }
-    polygons
+    Some(polygons)
 }
 
 /// Cells by the set that they belong to.
@@ -53,11 +61,16 @@ struct Labels {
 
 impl Labels {
     /// Numbers the sets of cells that hang together by edges.
-    fn new(grid: &Grid, inside: impl Fn(usize) -> bool) -> Self {
+    fn new(grid: &Grid, inside: impl Fn(usize) -> bool, pacer: &mut Pacer<'_>) -> Option<Self> {
         const UNSEEN: u32 = u32::MAX;
-        let mut label: Vec<u32> = (0..grid.cells()).map(|i| if inside(i) { UNSEEN } else { 0 }).collect();
+        let mut label = vec![0; grid.cells()];
+        for (index, label) in label.iter_mut().enumerate() {
+            pacer.after(work::CELL)?;
+            *label = if inside(index) { UNSEEN } else { 0 };
+        }
         let (mut count, mut open) = (0, Vec::new());
         for first in 0..label.len() {
+            pacer.after(work::CELL)?;
             if label[first] != UNSEEN {
                 continue;
             }
@@ -65,6 +78,7 @@ impl Labels {
             label[first] = count as u32;
             open.push(first);
             while let Some(at) = open.pop() {
+                pacer.after(CORNER)?;
                 let (row, column) = (at / grid.columns, at % grid.columns);
                 let beside = [
                     (column > 0).then(|| at - 1),
@@ -80,7 +94,7 @@ impl Labels {
                 }
             }
         }
-        Labels { rows: grid.rows as isize, columns: grid.columns as isize, label, count }
+        Some(Labels { rows: grid.rows as isize, columns: grid.columns as isize, label, count })
     }
 
     /// The set of a cell; none beyond the grid.
@@ -101,15 +115,16 @@ struct Walk<'l> {
 
 impl Walk<'_> {
     /// The ring that runs east along the southern edge of a cell, corner by corner.
-    fn ring(&mut self, (column, row): (usize, usize)) -> Vec<Corner> {
+    fn ring(&mut self, (column, row): (usize, usize), pacer: &mut Pacer<'_>) -> Option<Vec<Corner>> {
         let mut ring = Vec::new();
         let (mut x, mut y) = (column as isize, row as isize);
         let (mut dx, mut dy) = (1, 0);
         loop {
+            pacer.after(CORNER)?;
             if (dx, dy) == (1, 0) {
                 let at = (y * self.labels.columns + x) as usize;
                 if std::mem::replace(&mut self.seen[at], true) {
-                    return ring;
+                    return Some(ring);
                 }
             }
             ring.push((x as usize, y as usize));
@@ -130,14 +145,16 @@ impl Walk<'_> {
 }
 
 /// Takes a ring apart where it comes back to a corner, so that none touches itself.
-fn simple_rings(ring: Vec<Corner>) -> Vec<Vec<Corner>> {
+fn simple_rings(ring: Vec<Corner>, pacer: &mut Pacer<'_>) -> Option<Vec<Vec<Corner>>> {
     let mut rings = Vec::new();
     let mut path: Vec<Corner> = Vec::new();
     let mut at = std::collections::HashMap::new();
     for corner in ring {
+        pacer.after(work::STATE)?;
         if let Some(&from) = at.get(&corner) {
             let part = path.split_off(from);
             for corner in &part {
+                pacer.after(work::STATE)?;
                 at.remove(corner);
             }
             rings.push(part);
@@ -146,22 +163,26 @@ fn simple_rings(ring: Vec<Corner>) -> Vec<Vec<Corner>> {
         path.push(corner);
     }
     rings.push(path);
-    rings
+    Some(rings)
 }
 
 /// Twice the area of a ring of corners, positive when it runs counter-clockwise [cells].
-fn doubled_area(ring: &[Corner]) -> i64 {
-    let pairs = ring.iter().zip(ring.iter().cycle().skip(1));
-    pairs.map(|(a, b)| a.0 as i64 * b.1 as i64 - b.0 as i64 * a.1 as i64).sum()
+fn doubled_area(ring: &[Corner], pacer: &mut Pacer<'_>) -> Option<i64> {
+    let mut doubled = 0;
+    for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+        pacer.after(work::CELL)?;
+        doubled += a.0 as i64 * b.1 as i64 - b.0 as i64 * a.1 as i64;
+    }
+    Some(doubled)
 }
 
 /// The ring's corners on the map, without those on a straight line, and closed.
-fn in_metres(grid: &Grid, ring: &[Corner]) -> Vec<[f64; 2]> {
+fn in_metres(grid: &Grid, ring: &[Corner], pacer: &mut Pacer<'_>) -> Option<Vec<[f64; 2]>> {
     let count = ring.len();
-    let bends = (0..count).filter(|&i| {
+    let bends = |i: usize| {
         let (before, here, after) = (ring[(i + count - 1) % count], ring[i], ring[(i + 1) % count]);
         !(before.0 == here.0 && here.0 == after.0 || before.1 == here.1 && here.1 == after.1)
-    });
+    };
     let place = |i: usize| {
         let (column, row) = ring[i];
         [
@@ -169,9 +190,15 @@ fn in_metres(grid: &Grid, ring: &[Corner]) -> Vec<[f64; 2]> {
             grid.origin_m[1] + row as f64 * grid.cell_size_m,
         ]
     };
-    let mut points: Vec<[f64; 2]> = bends.map(place).collect();
+    let mut points = Vec::new();
+    for i in 0..count {
+        pacer.after(work::CELL)?;
+        if bends(i) {
+            points.push(place(i));
+        }
+    }
     points.extend(points.first().copied());
-    points
+    Some(points)
 }
 
 #[cfg(test)]
@@ -187,7 +214,7 @@ mod tests {
     /// Rows as text, northernmost first.
     fn drawn(picture: &[&str]) -> Vec<Polygon> {
         let cells: Vec<bool> = picture.iter().rev().flat_map(|row| row.chars().map(|c| c == '#')).collect();
-        outline(&grid(picture.len(), picture[0].len()), |i| cells[i])
+        outline(&grid(picture.len(), picture[0].len()), |i| cells[i], &Patience::default()).unwrap()
     }
 
     fn area(ring: &[[f64; 2]]) -> f64 {
@@ -229,7 +256,7 @@ mod tests {
             let grid = grid(random.random_range(1..14), random.random_range(1..14));
             let share = f64::from(case) / 60.0;
             let cells: Vec<bool> = (0..grid.cells()).map(|_| random.random_bool(share)).collect();
-            let polygons = outline(&grid, |i| cells[i]);
+            let polygons = outline(&grid, |i| cells[i], &Patience::default()).unwrap();
             for polygon in &polygons {
                 assert!(area(&polygon.exterior) > 0.0);
                 assert!(polygon.holes.iter().all(|hole| area(hole) < 0.0));

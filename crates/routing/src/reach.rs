@@ -1,8 +1,8 @@
 //! What can be reached from a place, or can reach it, or both, and at what energy.
 
-use planner::{ExactField, Heading, Lattice, Objective, Patience, Place, Planner, State};
+use planner::{ExactField, Heading, Lattice, Objective, Patience, Place, Planner, State, work};
 use rayon::prelude::*;
-use terrain::Grid;
+use terrain::{Cell, Grid};
 
 use crate::{
     error::Error,
@@ -63,22 +63,24 @@ pub fn reach(
     // Costs are E − Δφ, so a budget of energy becomes one of cost with the potentials that can come off it.
     let out = |limit_j: f64| ExactField::from_starts(table, &seeds, limit_j, patience).ok_or_else(late);
     let back = |limit_j: f64| ExactField::to_goals(table, &seeds, limit_j, patience).ok_or_else(late);
+    let cells = Cells { lattice, most_j, patience };
     let energy_j = match kind {
         Kind::Outward => {
             let out = out(room_j(most_j, home_j))?;
-            least_by_cell(lattice, most_j, |state, height_j| Some(out.cost(state)? + height_j - home_j))
+            cells.least(|state, height_j| Some(out.cost(state)? + height_j - home_j))
         }
         Kind::Homeward => {
-            let back = back(room_j(most_j, highest_j(lattice) - home_j))?;
-            least_by_cell(lattice, most_j, |state, height_j| Some(back.cost(state)? + home_j - height_j))
+            let highest_j = cells.highest_j().ok_or_else(late)?;
+            let back = back(room_j(most_j, highest_j - home_j))?;
+            cells.least(|state, height_j| Some(back.cost(state)? + home_j - height_j))
         }
         Kind::OutAndBack => {
             let (out, back) = rayon::join(|| out(room_j(most_j, 0.0)), || back(room_j(most_j, 0.0)));
             let (out, back) = (out?, back?);
-            least_by_cell(lattice, most_j, |state, _| Some(out.cost(state)? + back.cost(state)?))
+            cells.least(|state, _| Some(out.cost(state)? + back.cost(state)?))
         }
     };
-    Ok(Reach { grid: lattice.terrain.grid, energy_j })
+    Ok(Reach { grid: lattice.terrain.grid, energy_j: energy_j.ok_or_else(late)? })
 }
 
 /// A limit of cost that leaves out nothing within a budget, to rounding.
@@ -88,38 +90,74 @@ fn room_j(most_j: f64, potential_j: f64) -> f64 {
     (most_j + potential_j.max(0.0)) * (1.0 + ROUNDING)
 }
 
-/// The highest potential on the map [J].
-fn highest_j(lattice: &Lattice) -> f64 {
-    let grid = &lattice.terrain.grid;
-    let heights_j = (0..grid.cells()).map(|i| lattice.potential_j(grid.cell(i)));
-    heights_j.filter(|height_j| !height_j.is_nan()).fold(0.0, f64::max)
+/// The cells of a map, looked at one after the other.
+struct Cells<'c> {
+    lattice: &'c Lattice,
+    most_j: f64,
+    patience: &'c Patience,
 }
 
-/// Least energies by cell, given that of a state with the height potential of its cell.
-fn least_by_cell(
-    lattice: &Lattice,
-    most_j: f64,
-    energy_j: impl Fn(State, f64) -> Option<f64> + Sync,
-) -> Vec<f64> {
-    let grid = &lattice.terrain.grid;
-    let one = |index: usize| {
-        let cell = grid.cell(index);
-        let height_j = lattice.potential_j(cell);
-        let energies_j = Heading::all().filter_map(|heading| energy_j(State { cell, heading }, height_j));
-        energies_j.filter(|energy_j| *energy_j <= most_j).reduce(f64::min).unwrap_or(f64::NAN)
-    };
-    (0..grid.cells()).into_par_iter().map(one).collect()
+impl Cells<'_> {
+    /// The highest potential on the map [J]; `None` where patience ends first.
+    fn highest_j(&self) -> Option<f64> {
+        let grid = &self.lattice.terrain.grid;
+        let (mut highest_j, mut pacer) = (0.0f64, self.patience.pacer());
+        for index in 0..grid.cells() {
+            pacer.after(work::CELL)?;
+            // Unknown ground is NaN, which is never the greater.
+            highest_j = highest_j.max(self.lattice.potential_j(grid.cell(index)));
+        }
+        Some(highest_j)
+    }
+
+    /// Least energies by cell, given that of a state with the height potential of its cell; `None` where patience ends
+    /// first.
+    fn least(&self, energy_j: impl Fn(State, f64) -> Option<f64> + Sync) -> Option<Vec<f64>> {
+        let grid = &self.lattice.terrain.grid;
+        let one = |cell: Cell| {
+            let height_j = self.lattice.potential_j(cell);
+            let energies_j = Heading::all().filter_map(|heading| energy_j(State { cell, heading }, height_j));
+            energies_j.filter(|energy_j| *energy_j <= self.most_j).reduce(f64::min).unwrap_or(f64::NAN)
+        };
+        // Memory that is zero need not be touched before its row is.
+        let mut least_j = vec![0.0; grid.cells()];
+        let rows = least_j.par_chunks_mut(grid.columns).enumerate();
+        rows.try_for_each(|(row, least_j)| {
+            if self.patience.is_over() {
+                return None;
+            }
+            let mut pacer = self.patience.pacer();
+            for (column, least_j) in least_j.iter_mut().enumerate() {
+                pacer.after(work::STATE)?;
+                *least_j = one(Cell { row, column });
+            }
+            Some(())
+        })?;
+        Some(least_j)
+    }
 }
 
 impl Reach {
     /// The ground within an energy, as polygons along the edges of its cells.
-    pub fn within(&self, energy_j: f64) -> Vec<Polygon> {
-        outline(&self.grid, |index| self.energy_j[index] <= energy_j)
+    ///
+    /// # Errors
+    /// Patience that ended first.
+    pub fn within(&self, energy_j: f64, patience: &Patience) -> Result<Vec<Polygon>, Error> {
+        let polygons = outline(&self.grid, |index| self.energy_j[index] <= energy_j, patience);
+        polygons.ok_or(Error::Planner(planner::Error::Timeout { expanded: 0 }))
     }
 
     /// Area of the ground within an energy [m²].
-    pub fn area_m2(&self, energy_j: f64) -> f64 {
-        let cells = self.energy_j.iter().filter(|least_j| **least_j <= energy_j).count();
-        cells as f64 * self.grid.cell_size_m.powi(2)
+    ///
+    /// # Errors
+    /// Patience that ended first.
+    pub fn area_m2(&self, energy_j: f64, patience: &Patience) -> Result<f64, Error> {
+        let (mut cells, mut pacer) = (0usize, patience.pacer());
+        for row in self.energy_j.chunks(self.grid.columns) {
+            let late = Error::Planner(planner::Error::Timeout { expanded: 0 });
+            pacer.after(row.len() as u64 * work::CELL).ok_or(late)?;
+            cells += row.iter().filter(|least_j| **least_j <= energy_j).count();
+        }
+        Ok(cells as f64 * self.grid.cell_size_m.powi(2))
     }
 }

@@ -78,6 +78,7 @@ pub(crate) fn best_within(
         // A path exactly at the limit of the objective itself will do.
         let known = if found.is_some() { known } else { f64::INFINITY };
         report = labelling.search(known);
+        report.least = report.least.max(least);
         if let Some((start, motions)) = report.path.take() {
             let (start, takes) = (corridor.states[start as usize], [0.0; 3]);
             found = Some(Way { start, motions, takes });
@@ -94,9 +95,10 @@ pub(crate) fn best_within(
         duration: began.elapsed(),
         bound: None,
         excess: report.least,
+        optimal: false,
         timed_out: report.late,
     };
-    let mut plan = planner.plan_along((&ends, query), way.start, &way.motions, report);
+    let mut plan = planner.plan_along((&ends, query), way.start, &way.motions, report)?;
     prove(&bounded, &mut plan);
     Ok(plan)
 }
@@ -108,6 +110,7 @@ fn prove(bounded: &Bounded<'_>, plan: &mut Plan) {
     let least = bounded.whole(bounded.objective, plan.search.excess);
     // Sums in another order differ by rounding.
     let is_least = amount - least <= 1e-7 * amount.abs().max(1.0);
+    plan.search.optimal = is_least;
     plan.search.excess = if is_least { 0.0 } else { amount - least };
     plan.search.bound = match is_least {
         true => Some(1.0),

@@ -165,12 +165,12 @@ fn whole(planner: &Planner, place: &Waypoint, kind: Kind) -> Vec<f64> {
 fn sets_are_the_whole_field_cut_off_cell_by_cell_and_grow_with_the_energy() {
     for seed in 0..6 {
         let (planner, places) = places(seed, 40, 2);
+        let patience = Patience::default();
         for kind in [Kind::Outward, Kind::Homeward, Kind::OutAndBack] {
             let whole = whole(&planner, &places[0], kind);
             let mut inside_before = 0;
             for most_j in [150.0, 600.0, 2500.0, 10_000.0] {
-                let found =
-                    reach(&planner, &places[0], kind, most_j, Some(0.0), &Patience::default()).unwrap();
+                let found = reach(&planner, &places[0], kind, most_j, Some(0.0), &patience).unwrap();
                 for (index, (held_j, whole_j)) in found.energy_j.iter().zip(&whole).enumerate() {
                     if *whole_j <= most_j {
                         // Their sums are in another order.
@@ -186,8 +186,11 @@ fn sets_are_the_whole_field_cut_off_cell_by_cell_and_grow_with_the_energy() {
                     }
                 }
                 let inside = whole.iter().filter(|energy_j| **energy_j <= most_j).count();
-                let area_m2: f64 = found.within(most_j).iter().map(area).sum();
-                assert!((area_m2 - inside as f64).abs() < 1e-6 && found.area_m2(most_j) == inside as f64);
+                let area_m2: f64 = found.within(most_j, &patience).unwrap().iter().map(area).sum();
+                assert!(
+                    (area_m2 - inside as f64).abs() < 1e-6
+                        && found.area_m2(most_j, &patience).unwrap() == inside as f64
+                );
                 assert!(inside >= inside_before);
                 inside_before = inside;
             }

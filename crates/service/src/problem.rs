@@ -223,6 +223,7 @@ impl Problem {
             }
             E::NoPath { .. } | E::NoRoomToTurn { .. } => (ProblemType::NoPath, None),
             E::Timeout { .. } => (ProblemType::Timeout, None),
+            E::Untraceable => (ProblemType::InvalidRequest, Some("/robot/surfaces".into())),
             E::UnknownSurface { .. } => (ProblemType::UnknownSurface, Some("/robot/surfaces".into())),
             E::ConflictingTolerance { .. } => (ProblemType::InvalidRequest, Some("/goal/tolerance_m".into())),
             E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, Some(pointer(field))),

@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = plan.patience(&patience()).map_err(Refused)?;
     let began = Instant::now();
     let found = Found::of(&planner, &request, &patience).map_err(Refused)?;
-    let contours = found.contours();
+    let contours = found.contours(&patience).map_err(Refused)?;
     let taken_s = began.elapsed().as_secs_f64();
     if let Some(path) = &arguments.tiff {
         let raster = found.raster().map_err(Refused)?;

@@ -36,10 +36,10 @@ pub(crate) fn joined(
     let mut starts: Vec<State> =
         goals.into_iter().filter(|(_, after)| *after == 0.0).map(|(s, _)| s).collect();
     for field in fields.iter().rev() {
-        let Some((start, motions)) = field.walk(table, &starts) else { return Ok(None) };
+        let Some((start, motions)) = field.walk(table, &starts, patience)? else { return Ok(None) };
         let end = motions.iter().try_fold(start, |state, motion| lattice.successor(state, *motion));
-        let found = Found { start, motions, expanded: 0, excess: 0.0, bound: Some(1.0), late: false };
-        routes.push(planner.drive(Objective::Energy, &found));
+        let found = Found::along(start, motions);
+        routes.push(planner.drive(Objective::Energy, &found, patience)?);
         starts = end.into_iter().collect();
     }
     Ok(Some(routes))

@@ -154,7 +154,7 @@ pub(crate) async fn handler(
         if as_raster {
             return Ok(([(header::CONTENT_TYPE, "image/tiff")], found.raster()?).into_response());
         }
-        Ok(([(header::CONTENT_TYPE, form)], Json(found.contours())).into_response())
+        Ok(([(header::CONTENT_TYPE, form)], Json(found.contours(patience)?)).into_response())
     })
     .await
 }
@@ -242,24 +242,25 @@ impl Found {
     }
 
     /// The contours as GeoJSON.
-    pub fn contours(&self) -> ReachableAnswer {
-        let feature = |&(energy_j, charge): &(f64, Option<f64>)| ContourFeature {
-            kind: "Feature".to_owned(),
-            geometry: ContourGeometry {
-                kind: "MultiPolygon".to_owned(),
-                coordinates: self.reach.within(energy_j).into_iter().map(rings).collect(),
-            },
-            properties: ContourProperties {
-                kind: self.kind,
-                energy_j,
-                charge,
-                area_m2: self.reach.area_m2(energy_j),
-            },
+    ///
+    /// # Errors
+    /// Time that ran out.
+    pub fn contours(&self, patience: &Patience) -> Result<ReachableAnswer, Problem> {
+        let feature = |&(energy_j, charge): &(f64, Option<f64>)| {
+            let late = |error| Problem::no_routing(&error);
+            let polygons = self.reach.within(energy_j, patience).map_err(late)?;
+            let area_m2 = self.reach.area_m2(energy_j, patience).map_err(late)?;
+            Ok(ContourFeature {
+                kind: "Feature".to_owned(),
+                geometry: ContourGeometry {
+                    kind: "MultiPolygon".to_owned(),
+                    coordinates: polygons.into_iter().map(rings).collect(),
+                },
+                properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
+            })
         };
-        ReachableAnswer {
-            kind: "FeatureCollection".to_owned(),
-            features: self.energies_j.iter().map(feature).collect(),
-        }
+        let features = self.energies_j.iter().map(feature).collect::<Result<_, Problem>>()?;
+        Ok(ReachableAnswer { kind: "FeatureCollection".to_owned(), features })
     }
 
     /// The least energy of every cell as a GeoTIFF [J].

@@ -92,12 +92,12 @@ pub struct SearchAnswer {
     pub expanded: u64,
     /// Time for preparing and searching [ms].
     pub duration_ms: f64,
-    /// Whether the path is proven to be the best of the lattice.
+    /// Whether the path is proven to be the best of the lattice, to the rounding of costs by 1/2048.
     pub optimal: bool,
-    /// Proven: the path has at most so many times the least of its objective that the lattice allows; 1 when it is the
-    /// least, null where the least may be a gain, which no factor bounds.
+    /// Proven: the path has at most so many times the least of its objective that the lattice allows, rounding included;
+    /// null where the least may be nothing or a gain, which no factor bounds.
     pub bound: Option<f64>,
-    /// By how much the path may exceed the least of its objective; in J, m or s.
+    /// By how much the path may exceed the least of its objective, rounding included; in J, m or s.
     pub excess_at_most: f64,
     /// Whether time ran out before the bound asked for was proven.
     pub timed_out: bool,

@@ -202,9 +202,8 @@ function Charge({ plan }: { plan: Plan }) {
 function Proof() {
   const search = state.comparison.value?.energy.search;
   if (!search) return null;
-  const isLeast = search.bound === null || search.bound <= 1.0005;
   const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
-  const text = isLeast
+  const text = search.optimal || search.bound === null
     ? "Proven: no path of the planner's lattice takes less."
     : state.isDragging.value
       ? `${near}, which follows.`

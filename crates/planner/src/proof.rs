@@ -1,0 +1,126 @@
+//! What costs of the table prove of amounts in double precision.
+
+use crate::{
+    cost::{LARGEST_ROUNDING, SINGLE_PRECISION},
+    lattice::Lattice,
+    least::{chains, least_cost_of_motion},
+    objective::{Objective, Weights},
+    step::Limits,
+};
+
+/// A lower bound of an objective's amount along any path, from a lower bound of its cost in the table.
+///
+/// A motion that costs c when driven in double precision has `t` units in the table. With `U` units to the objective's unit, the
+/// relative error σ of single precision, the error `a` in units of taking lifting work off energy, and the rounding ρ,
+///
+/// ```text
+/// t ≤ (U c (1 + σ) + a) (1 + ρ)     from 2048 units on
+/// t ≤  U c (1 + σ) + a + 1          below, where costs are rounded up to whole units
+/// ```
+///
+/// so that of a motion of at least `t₀` units, and therefore of every path of `T` units in all,
+///
+/// ```text
+/// U c ≥ q t      q = (1 − ρ)(1 − σ) − (1 + a) / t₀
+/// C   ≥ q T / U
+/// ```
+///
+/// What follows at the goal is rounded down, the estimate ahead never exceeds the table's costs, and energy's height potential
+/// between the ends is added in double precision, so `q T / U` plus it bounds the energy that is reported.
+///
+/// Length and time have a share of energy among their costs, to choose between equals. Of a path with length ℓ it is at most
+/// `τ ℓ + τ₀`: the largest share of any motion that leads on, and eight turns on the spot, the most that the shortest of
+/// paths needs in one place, for each cell and once more. A robot without friction has time among its costs of energy, which
+/// proves nothing of energy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proof {
+    /// Amount proven by a unit of cost, 0 or more.
+    per_unit: f64,
+    /// What is taken off.
+    off: f64,
+}
+
+impl Proof {
+    /// Of nothing but that no amount is negative.
+    pub(crate) const NONE: Proof = Proof { per_unit: 0.0, off: 0.0 };
+
+    pub(crate) fn new(lattice: &Lattice, objective: Objective, weights: &Weights, units: f64) -> Self {
+        if objective == Objective::Energy && weights.per_s > 0.0 {
+            return Proof::NONE;
+        }
+        let least_units = least_cost_of_motion(lattice, weights) * units;
+        let allowed = 1.0 + cancellation(lattice, weights) * units;
+        let share = (1.0 - LARGEST_ROUNDING) * (1.0 - SINGLE_PRECISION) - allowed / least_units;
+        let tie = Tie::new(lattice, objective, weights);
+        Proof { per_unit: share.max(0.0) / units / (1.0 + tie.share), off: tie.once / (1.0 + tie.share) }
+    }
+
+    /// The least amount of a path that costs at least so many units.
+    pub(crate) fn least(&self, units: f64) -> f64 {
+        (units * self.per_unit - self.off).max(0.0)
+    }
+}
+
+/// Largest error of a motion's cost that comes from taking lifting work off energy in single precision, in the objective's
+/// unit: eight roundings of the work of the longest motion up the steepest slope.
+fn cancellation(lattice: &Lattice, weights: &Weights) -> f64 {
+    const ROUNDINGS: f64 = 8.0;
+    /// On steeper ground hardly any weight is left on the wheels [m/m].
+    const STEEPEST: f64 = 100.0;
+    let grade = lattice.limits.pitch_grade.abs().min(STEEPEST);
+    let longest = chains(lattice).map(|(_, motion)| f64::from(motion.columns).hypot(f64::from(motion.rows)));
+    let longest_m = longest.fold(0.0, f64::max) * lattice.terrain.grid.cell_size_m;
+    ROUNDINGS * f64::from(f32::EPSILON / 2.0) * weights.per_j * lattice.lift_j_per_m() * grade * longest_m
+}
+
+/// What the energy among costs of length or time comes to at most.
+struct Tie {
+    /// Share of the amount.
+    share: f64,
+    /// Once for a path, in the objective's unit.
+    once: f64,
+}
+
+impl Tie {
+    /// Most turns on the spot that the shortest of paths has in one place: half a circle.
+    const TURNS_IN_PLACE: f64 = 8.0;
+
+    fn new(lattice: &Lattice, objective: Objective, weights: &Weights) -> Self {
+        if objective == Objective::Energy || weights.per_j == 0.0 {
+            return Tie { share: 0.0, once: 0.0 };
+        }
+        let (mut share, mut turn) = (0.0f64, 0.0f64);
+        for (chain, _) in chains(lattice) {
+            for (step, manoeuvres, reverse) in chain.steps_with_manoeuvres() {
+                for (surface, manoeuvre) in manoeuvres.iter().enumerate() {
+                    for [grade, side_grade] in slopes(lattice) {
+                        let (cos, sin) = step.travel;
+                        let slope = (grade * cos - side_grade * sin, grade * sin + side_grade * cos);
+                        let rise_m = grade * step.horizontal_m;
+                        let driven = step.drive(manoeuvre, rise_m, slope, reverse, &Limits::NONE, surface);
+                        let Some(done) = driven else { continue };
+                        let lifted_j = done.rise_m * lattice.lift_j_per_m();
+                        let energy = weights.per_j * (done.energy_j() - lifted_j).max(0.0);
+                        let amount = weights.per_m * done.length_m + weights.per_s * done.duration_s;
+                        if amount > 0.0 {
+                            share = share.max(energy / amount);
+                        } else {
+                            turn = turn.max(energy);
+                        }
+                    }
+                }
+            }
+        }
+        let once = Self::TURNS_IN_PLACE * turn;
+        Tie { share: share + once / lattice.terrain.grid.cell_size_m, once }
+    }
+}
+
+/// Level ground and the steepest that limits allow, up, down and to either side.
+fn slopes(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
+    /// Beyond, a robot's weight is all on the slope and costs hardly change [m/m].
+    const STEEPEST: f64 = 100.0;
+    let steepest = |grade: f64| [-1.0, 0.0, 1.0].map(|sign| sign * grade.abs().min(STEEPEST));
+    let (pitches, rolls) = (steepest(lattice.limits.pitch_grade), steepest(lattice.limits.roll_grade));
+    pitches.into_iter().flat_map(move |pitch| rolls.map(|roll| [pitch, roll]))
+}
