@@ -68,12 +68,14 @@ impl PoseSweep {
     /// Lowers the costs of the tile's poses until no motion lowers any; `None` when patience ends first.
     pub(crate) fn settle(&mut self, codes: &CodesAround<'_>, patience: &Patience) -> Option<()> {
         while self.pending.iter().any(|headings| *headings != 0) {
-            sweep(self, codes);
-            // A row of a heading takes its motions sixteen cells at a time.
-            let row = (TILE / LANES * self.stencil.motions) as u64;
-            patience.worked(std::mem::take(&mut self.rows_relaxed) * row);
-            if patience.is_over() {
-                return None;
+            for is_upwards in [true, false] {
+                sweep(self, codes, is_upwards);
+                // A row of a heading takes its motions sixteen cells at a time.
+                let row = (TILE / LANES * self.stencil.motions) as u64;
+                patience.worked(std::mem::take(&mut self.rows_relaxed) * row);
+                if patience.is_over() {
+                    return None;
+                }
             }
         }
         Some(())
@@ -178,8 +180,9 @@ fn below(costs: &[u32; TILE], others: &[u32; TILE]) -> u64 {
 
 /// Compiled for wider registers too, and chosen by what the machine has; whole numbers are the same on every machine.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
-fn sweep(sweep: &mut PoseSweep, codes: &CodesAround<'_>) {
-    for row in (0..TILE).chain((0..TILE).rev()) {
+fn sweep(sweep: &mut PoseSweep, codes: &CodesAround<'_>, is_upwards: bool) {
+    for i in 0..TILE {
+        let row = if is_upwards { i } else { TILE - 1 - i };
         if sweep.pending[row] != 0 {
             sweep.relax_row(row, codes);
         }

@@ -88,7 +88,8 @@ impl Labelling<'_> {
             {
                 return run.ended(least.min(found), false);
             }
-            let is_late = run.pacer.after(run.work()).is_none();
+            let work = run.work();
+            let is_late = run.pacer.after(work).is_none();
             if is_late || run.labels.len() >= MOST_LABELS {
                 return run.ended(least, true);
             }
