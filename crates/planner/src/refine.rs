@@ -30,10 +30,13 @@ pub struct Refined {
 ///
 /// The result is a local optimum, the same on every run unless patience ends; then it is the best so far.
 pub fn refine(lattice: &Lattice, objective: Objective, route: &Route, patience: &Patience) -> Refined {
+    if patience.is_over() {
+        return Refined { route: route.clone(), finished: false };
+    }
     let ground = FreeGround::new(lattice, objective);
     let rates = LevelRates::new(&ground);
     let given = Course::of(&ground, route);
-    let direct = if patience.is_over() { None } else { direct(&ground, &rates, &given) };
+    let direct = direct(&ground, &rates, &given);
     let mut courses: Vec<Course> =
         direct.into_iter().chain([shortcut(&ground, &rates, &given, patience)]).collect();
     for course in &mut courses {

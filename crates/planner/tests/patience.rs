@@ -39,7 +39,7 @@ fn hills(side: usize) -> Terrain {
 fn winding(side: usize) -> Terrain {
     let grid = Grid { rows: side, columns: side, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
     let wall = |cell: Cell| {
-        let open = if cell.row / 4 % 2 == 0 { cell.column + 3 >= side } else { cell.column < 3 };
+        let open = if (cell.row / 4).is_multiple_of(2) { cell.column + 3 >= side } else { cell.column < 3 };
         cell.row % 4 == 3 && !open
     };
     let z: Vec<f64> = (0..grid.cells()).map(|i| if wall(grid.cell(i)) { f64::NAN } else { 0.0 }).collect();
