@@ -25,6 +25,7 @@ fn arrows() -> BTreeMap<String, Vec<String>> {
 #[test]
 fn arrows_only_point_up_the_list_of_crates() {
     let order = [
+        "joulepath-document",
         "joulepath-model",
         "joulepath-terrain",
         "joulepath-world",
@@ -54,14 +55,14 @@ fn arrows_only_point_up_the_list_of_crates() {
 #[test]
 fn the_model_the_terrain_and_the_recording_know_nothing_of_each_other() {
     let arrows = arrows();
-    assert!(arrows["joulepath-model"].is_empty());
-    assert!(arrows["joulepath-terrain"].is_empty());
-    assert!(arrows["joulepath-recording"].is_empty());
+    for name in ["joulepath-model", "joulepath-terrain", "joulepath-recording"] {
+        assert_eq!(arrows[name], ["joulepath-document"], "{name}");
+    }
 }
 
 /// The world has to be seen through by what shares nothing with it but the ground.
 #[test]
-fn the_world_shares_only_the_ground_with_what_it_tests() {
+fn the_world_shares_only_the_ground_and_the_form_of_files_with_what_it_tests() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).exec().unwrap();
     let resolve = metadata.resolve.as_ref().unwrap();
     let id = |name: &str| metadata.packages.iter().find(|p| p.name == name).unwrap().id.clone();
@@ -77,7 +78,7 @@ fn the_world_shares_only_the_ground_with_what_it_tests() {
     }
     let names = reached.iter().map(|id| metadata[id].name.to_string());
     let ours: Vec<String> = names.filter(|name| name.starts_with("joulepath")).collect();
-    assert_eq!(ours, ["joulepath-world", "joulepath-terrain"]);
+    assert_eq!(ours, ["joulepath-world", "joulepath-document", "joulepath-terrain"]);
 }
 
 /// What judges the diagnosis must not be made of it.
@@ -91,6 +92,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
     let metadata = MetadataCommand::new().manifest_path(file("Cargo.toml")).no_deps().exec().unwrap();
     for package in metadata.packages {
         let below = [
+            "joulepath-document",
             "joulepath-model",
             "joulepath-terrain",
             "joulepath-world",

@@ -181,7 +181,7 @@ fn wrong_requests_are_refused_with_the_pointer_to_the_field() {
         ("/colour", json!("red"), 400, "invalid-request", "/colour"),
         ("/start/x", json!(1), 400, "invalid-request", "/start/x"),
         ("/start/x_m", json!("far"), 400, "invalid-request", "/start/x_m"),
-        ("/start/x_m", Value::Null, 400, "invalid-request", "/start"),
+        ("/start/x_m", Value::Null, 400, "invalid-request", "/start/x_m"),
         ("/objective", json!("beauty"), 400, "invalid-request", "/objective"),
         ("/map/elevation_m", json!([["high"]]), 400, "invalid-request", "/map/elevation_m/0/0"),
         ("/map", ragged, 400, "invalid-map", "/map/elevation_m/1"),

@@ -47,6 +47,9 @@ impl FromStr for Place {
         }
         match values[..] {
             [x, y] => Ok(Place { x, y, fraction, heading_deg: None }),
+            [_, _, heading] if heading.abs() > 360.0 => {
+                Err(format!("the heading of `{text}` is {heading}, but must lie in -360 to 360 degrees"))
+            }
             [x, y, heading] => Ok(Place { x, y, fraction, heading_deg: Some(heading) }),
             _ => Err(wrong()),
         }
@@ -119,7 +122,7 @@ pub(crate) struct PathLimits {
     /// The path may be no longer [m]
     #[arg(long)]
     max_distance_m: Option<f64>,
-    /// Steepest climb, descent or sideways tilt on the way [rad]
+    /// Steepest climb, descent or sideways tilt on the way, up to 1.571 [rad]
     #[arg(long)]
     max_slope_rad: Option<f64>,
 }
@@ -238,6 +241,7 @@ mod tests {
         assert_eq!(at("3,-4"), [3.0, -4.0]);
         assert_eq!(at("@0.5,1"), [105.0, 0.0]);
         assert_eq!("1,2,90".parse::<Place>().unwrap().heading_deg, Some(90.0));
+        assert!("1,2,361".parse::<Place>().unwrap_err().contains("-360 to 360 degrees"));
         for wrong in ["", "1", "1,2,3,4", "a,b", "@", "1,nan", "1;2"] {
             assert!(wrong.parse::<Place>().unwrap_err().contains("X,Y"), "{wrong}");
         }

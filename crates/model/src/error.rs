@@ -5,13 +5,8 @@
 #[non_exhaustive]
 pub enum Error {
     /// The text is not the JSON that a robot file needs.
-    #[error("{path}: {message}")]
-    Json {
-        /// Where in the document, as `surfaces.marble.mu_roll`; `.` for the document itself.
-        path: String,
-        /// What the parser found there.
-        message: String,
-    },
+    #[error(transparent)]
+    Json(#[from] document::Error),
     /// A value lies outside what is physically sensible, most often because of its unit.
     #[error("{field} is {value}, but must lie in {min} to {max}: {hint}")]
     OutOfRange {
@@ -74,7 +69,7 @@ impl Error {
     /// The field at fault, as `motors.left.k2`, where the error lies in one.
     pub fn field(&self) -> Option<&str> {
         match self {
-            Error::Json { path, .. } if path != "." => Some(path),
+            Error::Json(error) => error.field(),
             Error::OutOfRange { field, .. } | Error::Mechanism { field, .. } => Some(field),
             Error::UnknownSurface { .. } => Some("default_surface"),
             _ => None,

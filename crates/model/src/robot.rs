@@ -238,10 +238,7 @@ impl Robot {
     /// [`Error::Json`] names the place of a missing, unknown or mistyped field; [`Error::OutOfRange`] and
     /// [`Error::UnknownSurface`] name the field whose value cannot be right.
     pub fn from_json(text: &str) -> Result<Self, Error> {
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let file: RobotFile = serde_path_to_error::deserialize(&mut deserializer)
-            .map_err(|e| Error::Json { path: e.path().to_string(), message: e.inner().to_string() })?;
-        deserializer.end().map_err(|e| Error::Json { path: ".".into(), message: e.to_string() })?;
+        let file: RobotFile = document::from_json(text.as_bytes())?;
         Robot::try_from(file)
     }
 

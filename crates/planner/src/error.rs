@@ -168,6 +168,17 @@ pub enum Error {
         /// The robot's surfaces.
         known: Vec<String>,
     },
+    /// A heading beyond a full turn, most often in degrees.
+    #[error(
+        "the heading of the {place} is {heading_rad} rad, but must lie in -{0} to {0} rad, a full turn: give radians, 1.571 for 90 degrees",
+        crate::heading::MAX_HEADING_RAD
+    )]
+    Heading {
+        /// Which place.
+        place: Place,
+        /// The heading found [rad].
+        heading_rad: f64,
+    },
     /// A number in the query that cannot be.
     #[error("{field} is {value}, but must lie in {min} to {max}")]
     OutOfRange {

@@ -3,6 +3,9 @@
 /// Number of headings.
 pub const HEADINGS: usize = 16;
 
+/// Largest heading of a question: a full turn, 2π rounded up, either way [rad]. Degrees are nearly always beyond it.
+pub(crate) const MAX_HEADING_RAD: f64 = 6.3;
+
 /// Columns and rows to the next cell centre straight ahead, counter-clockwise from east.
 const STEPS: [(i32, i32); HEADINGS] = [
     (1, 0),

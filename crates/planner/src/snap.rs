@@ -4,7 +4,7 @@ use terrain::Cell;
 
 use crate::{
     error::{Blocked, Error, Place},
-    heading::{Heading, turn_rad},
+    heading::{Heading, MAX_HEADING_RAD, turn_rad},
     lattice::{Lattice, State},
 };
 
@@ -33,6 +33,9 @@ pub(crate) struct Snapped {
 pub(crate) fn snap(lattice: &Lattice, asked: &Asked) -> Result<Snapped, Error> {
     let grid = &lattice.terrain.grid;
     let Asked { place, x_m, y_m, .. } = *asked;
+    if let Some(heading_rad) = asked.heading_rad.filter(|heading| !(heading.abs() <= MAX_HEADING_RAD)) {
+        return Err(Error::Heading { place, heading_rad });
+    }
     let home = grid.cell_at(x_m, y_m).ok_or(Error::OutsideMap {
         place,
         x_m,

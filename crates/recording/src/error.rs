@@ -23,7 +23,10 @@ pub enum Error {
         /// The ending found.
         ending: String,
     },
-    /// The map file is not the JSON that a map is.
+    /// The map file is not the JSON that a map needs.
+    #[error("map, {0}")]
+    Json(#[from] document::Error),
+    /// A field of the map contradicts another or names what does not exist.
     #[error("map, {path}: {message}")]
     Map {
         /// Where in the document, as `sources[3].unit`.

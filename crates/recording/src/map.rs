@@ -150,10 +150,18 @@ impl Map {
     /// # Errors
     /// The place of whatever is missing, unknown, contradictory or in a unit that its channel cannot have.
     pub fn from_json(text: &str) -> Result<Map, Error> {
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let file: MapFile = serde_path_to_error::deserialize(&mut deserializer)
-            .map_err(|e| Error::Map { path: e.path().to_string(), message: e.inner().to_string() })?;
-        deserializer.end().map_err(|e| Error::Map { path: ".".into(), message: e.to_string() })?;
+        Map::checked(document::from_json(text.as_bytes())?)
+    }
+
+    /// Reads and checks a map that is part of a document parsed before.
+    ///
+    /// # Errors
+    /// As [`Map::from_json`].
+    pub fn from_value(value: &serde_json::Value) -> Result<Map, Error> {
+        Map::checked(document::from_value(value)?)
+    }
+
+    fn checked(file: MapFile) -> Result<Map, Error> {
         for (path, value) in [("wheel_radius_m", file.wheel_radius_m), ("max_gap_s", file.max_gap_s)] {
             if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
                 return Err(Error::Map { path: path.into(), message: "must be positive".into() });

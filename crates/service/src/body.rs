@@ -1,22 +1,16 @@
 //! Reading what a request carries: bounded, with the place of every mistake.
 
-use std::marker::PhantomData;
-
 use axum::{
     body::{Bytes, to_bytes},
     extract::{FromRequest, FromRequestParts, Path, Request},
     http::{header, request::Parts},
 };
-use serde::{
-    Deserialize, Deserializer,
-    de::{DeserializeOwned, MapAccess, Visitor, value::MapAccessDeserializer},
-};
-use serde_path_to_error::Segment;
+use serde::de::DeserializeOwned;
 
 use crate::{
     Engine,
     layers::TOO_SLOW,
-    problem::{Problem, ProblemType, escaped},
+    problem::{Problem, ProblemType},
 };
 
 /// A JSON body.
@@ -86,65 +80,9 @@ pub(crate) fn broken(error: &axum::Error) -> Problem {
     Problem::new(ProblemType::InvalidRequest, format!("the body ended early or cannot be unpacked: {error}"))
 }
 
-/// Parses a JSON object and names the place of a mistake.
+/// Parses a JSON document and names the place of every mistake.
 pub(crate) fn from_json<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Problem> {
-    let mut deserializer = serde_json::Deserializer::from_slice(bytes);
-    let value: Object<T> = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-        let place = error.path().to_string();
-        let shown = if place == "." { String::new() } else { format!("{place}: ") };
-        let problem = Problem::new(ProblemType::InvalidRequest, format!("{shown}{}", error.inner()));
-        if error.inner().is_data() { problem.at(pointer_of(error.path())) } else { problem }
-    })?;
-    deserializer
-        .end()
-        .map_err(|error| Problem::new(ProblemType::InvalidRequest, format!("after the document: {error}")))?;
-    Ok(value.0)
-}
-
-/// The JSON pointer of a place that serde tracked.
-fn pointer_of(path: &serde_path_to_error::Path) -> String {
-    path.iter()
-        .map(|segment| match segment {
-            Segment::Seq { index } => format!("/{index}"),
-            Segment::Map { key } => format!("/{}", escaped(key)),
-            Segment::Enum { variant } => format!("/{}", escaped(variant)),
-            Segment::Unknown => String::new(),
-        })
-        .collect()
-}
-
-/// A value that must be written as a JSON object: serde would also take its fields in order, as an array, and then no
-/// unknown field could be noticed.
-struct Object<T>(T);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        object(deserializer).map(Object)
-    }
-}
-
-/// Takes a field only as a JSON object.
-pub(crate) fn object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<T, D::Error> {
-    struct OnlyMap<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for OnlyMap<T> {
-        type Value = T;
-
-        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("an object")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-            T::deserialize(MapAccessDeserializer::new(map))
-        }
-    }
-    deserializer.deserialize_map(OnlyMap(PhantomData))
-}
-
-/// Takes an optional field only as a JSON object or null.
-pub(crate) fn optional_object<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
-    deserializer: D,
-) -> Result<Option<T>, D::Error> {
-    Ok(Option::<Object<T>>::deserialize(deserializer)?.map(|object| object.0))
+    document::from_json(bytes).map_err(|error| Problem::invalid_document(&error, ""))
 }
 
 /// The last part of a path, as an id.

@@ -4,14 +4,19 @@ use serde_json::{Value, json};
 
 use crate::routes::plan::PlanAnswer;
 
-/// A path as a 3-D line string with its totals; coordinates are the map's projected metres.
+/// A path with its totals: a 3-D line string or, where start and goal are one place, a point. Coordinates are the map's
+/// projected metres. A line has two positions or more (RFC 7946, 3.1.4).
 pub(crate) fn path(plan: &PlanAnswer) -> Value {
-    let line: Vec<[f64; 3]> = plan.poses.iter().map(|p| [p.x_m, p.y_m, p.z_m]).collect();
+    let positions: Vec<[f64; 3]> = plan.poses.iter().map(|p| [p.x_m, p.y_m, p.z_m]).collect();
+    let geometry = match positions.as_slice() {
+        [position] => json!({ "type": "Point", "coordinates": position }),
+        line => json!({ "type": "LineString", "coordinates": line }),
+    };
     json!({
         "type": "FeatureCollection",
         "features": [{
             "type": "Feature",
-            "geometry": { "type": "LineString", "coordinates": line },
+            "geometry": geometry,
             "properties": {
                 "energy_j": plan.energy_j,
                 "energy_interval_j": plan.energy_interval_j,

@@ -81,6 +81,17 @@ impl Problem {
         self
     }
 
+    /// A JSON document that cannot be read; `under` is where it stands in the request.
+    pub(crate) fn invalid_document(error: &document::Error, under: &str) -> Self {
+        let mut problem = Problem::new(ProblemType::InvalidRequest, error.to_string());
+        let in_fields = error.mistakes().iter().filter(|mistake| !mistake.pointer.is_empty());
+        problem.errors.extend(in_fields.map(|mistake| FieldError {
+            pointer: format!("{under}{}", mistake.pointer),
+            detail: mistake.message.clone(),
+        }));
+        problem
+    }
+
     /// A map that cannot be used; `under` is where it stands in the request.
     pub fn invalid_map(error: &terrain::Error, under: &str) -> Self {
         let kind = match error {
@@ -108,10 +119,9 @@ impl Problem {
     pub fn invalid_recording(error: &recording::Error) -> Self {
         use recording::Error as E;
         match error {
-            E::Map { path, .. } => {
-                let place = if path == "." { String::new() } else { pointer(path) };
-                Problem::new(ProblemType::InvalidRequest, error.to_string()).at(format!("/map{place}"))
-            }
+            E::Json(error) => Problem::invalid_document(error, "/map"),
+            E::Map { path, .. } => Problem::new(ProblemType::InvalidRequest, error.to_string())
+                .at(format!("/map{}", pointer(path))),
             E::Unit { index, .. } => Problem::new(ProblemType::InvalidRequest, error.to_string())
                 .at(format!("/map/sources/{index}/unit")),
             E::Io(_) => Problem::new(ProblemType::Internal, format!("the stored recording: {error}")),
@@ -227,6 +237,7 @@ impl Problem {
             E::UnknownSurface { .. } => (ProblemType::UnknownSurface, Some("/robot/surfaces".into())),
             E::ConflictingTolerance { .. } => (ProblemType::InvalidRequest, Some("/goal/tolerance_m".into())),
             E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, Some(pointer(field))),
+            E::Heading { place: end, .. } => (ProblemType::InvalidRequest, Some(place(end) + "/heading_rad")),
             E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
             E::TooManyStates { .. } => (ProblemType::TooLarge, Some("/map".into())),
             _ => (ProblemType::Internal, None),
@@ -243,15 +254,9 @@ impl Problem {
 pub(crate) fn pointer(path: &str) -> String {
     let mut pointer = String::new();
     for part in path.split(['.', '[']).map(|part| part.trim_end_matches(']')).filter(|p| !p.is_empty()) {
-        pointer.push('/');
-        pointer.push_str(&escaped(part));
+        pointer.push_str(&document::pointer(part));
     }
     pointer
-}
-
-/// A name as part of a JSON pointer.
-pub(crate) fn escaped(name: &str) -> String {
-    name.replace('~', "~0").replace('/', "~1")
 }
 
 impl IntoResponse for Problem {

@@ -88,7 +88,7 @@ impl RecordingStore {
 /// A map by the name of a built-in one, or in full.
 pub(crate) fn map_from(choice: &Value) -> Result<Map, Problem> {
     let Value::String(name) = choice else {
-        return Map::from_json(&choice.to_string()).map_err(|error| Problem::invalid_recording(&error));
+        return Map::from_value(choice).map_err(|error| Problem::invalid_recording(&error));
     };
     Map::built_in(name).ok_or_else(|| {
         let known = Map::BUILT_IN.join(", ");

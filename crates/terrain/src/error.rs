@@ -5,13 +5,8 @@
 #[non_exhaustive]
 pub enum Error {
     /// The text is not the JSON that a map needs.
-    #[error("{path}: {message}")]
-    Json {
-        /// Where in the document, as `elevation_m[3][2]`; `.` for the document itself.
-        path: String,
-        /// What the parser found there.
-        message: String,
-    },
+    #[error(transparent)]
+    Json(#[from] document::Error),
     /// A grid with no cells.
     #[error("{field} is {value}: a map needs at least one row and one column")]
     Empty {
@@ -226,7 +221,7 @@ impl Error {
     /// The field at fault, as `elevation_m[3][2]`, where the error lies in one.
     pub fn field(&self) -> Option<String> {
         Some(match self {
-            Error::Json { path, .. } if path != "." => path.clone(),
+            Error::Json(error) => error.field()?.to_owned(),
             Error::Empty { field, .. } => (*field).into(),
             Error::TooManyCells { .. } => "rows".into(),
             Error::RowCount { layer, .. } => (*layer).into(),

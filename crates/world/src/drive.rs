@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, error::read_json, limits::within};
+use crate::{Error, limits::within};
 
 /// What the robot is told to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,9 +88,13 @@ impl Drive {
     /// # Errors
     /// The place of whatever is missing, unknown or out of range.
     pub fn from_json(text: &str) -> Result<Self, Error> {
-        let document: serde_json::Value = read_json(text)?;
+        let document: serde_json::Value = document::from_json(text.as_bytes())?;
         let is_plan = document.get("kind").is_none() && document.get("poses").is_some();
-        let drive = if is_plan { Self::of_plan(&read_json(text)?) } else { read_json(text)? };
+        let drive = if is_plan {
+            Self::of_plan(&document::from_json(text.as_bytes())?)
+        } else {
+            document::from_json(text.as_bytes())?
+        };
         drive.check()?;
         Ok(drive)
     }
@@ -119,6 +123,9 @@ impl Drive {
             let field = if i < self.poses.len() { format!("poses[{i}]") } else { "start".into() };
             within(format!("{field}.x_m"), pose.x_m, FAR_M, "give metres")?;
             within(format!("{field}.y_m"), pose.y_m, FAR_M, "give metres")?;
+            if let Some(heading_rad) = pose.heading_rad {
+                within(format!("{field}.heading_rad"), heading_rad, [-10.0, 10.0], "give radians")?;
+            }
         }
         if self.kind == DriveKind::Path && self.poses.len() < 2 {
             return Err(Error::Missing { field: "poses".into(), hint: "a path needs two poses or more" });

@@ -5,13 +5,8 @@
 #[non_exhaustive]
 pub enum Error {
     /// The text is not the JSON that is needed.
-    #[error("{path}: {message}")]
-    Json {
-        /// Where in the document, as `effects[0].strength`; `.` for the document itself.
-        path: String,
-        /// What the parser found there.
-        message: String,
-    },
+    #[error(transparent)]
+    Json(#[from] document::Error),
     /// A value that cannot be right, most often because of its unit.
     #[error("{field} is {value}, but must lie in {min} to {max}: {hint}")]
     OutOfRange {
@@ -68,15 +63,10 @@ pub enum Error {
 }
 
 impl Error {
-    /// A document that does not parse, with the place in it.
-    pub(crate) fn json(error: &serde_path_to_error::Error<serde_json::Error>) -> Self {
-        Error::Json { path: error.path().to_string(), message: error.inner().to_string() }
-    }
-
     /// The field at fault, as `effects[0].strength`, where the error lies in one.
     pub fn field(&self) -> Option<&str> {
         match self {
-            Error::Json { path, .. } if path != "." => Some(path),
+            Error::Json(error) => error.field(),
             Error::OutOfRange { field, .. }
             | Error::UnknownSurface { field, .. }
             | Error::Missing { field, .. } => Some(field),
@@ -84,12 +74,4 @@ impl Error {
             _ => None,
         }
     }
-}
-
-/// Reads one JSON document; unknown fields are named with their place.
-pub(crate) fn read_json<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, Error> {
-    let mut deserializer = serde_json::Deserializer::from_str(text);
-    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| Error::json(&error))?;
-    deserializer.end().map_err(|e| Error::Json { path: ".".into(), message: e.to_string() })?;
-    Ok(value)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, error::read_json, limits::within};
+use crate::{Error, limits::within};
 
 /// What a robot file says of a healthy robot. Fields and units are those of the file; see there for their meaning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -129,7 +129,7 @@ impl RobotFile {
     /// # Errors
     /// The place of whatever is missing, unknown or out of range.
     pub fn from_json(text: &str) -> Result<Self, Error> {
-        let robot: RobotFile = read_json(text)?;
+        let robot: RobotFile = document::from_json(text.as_bytes())?;
         robot.check()?;
         Ok(robot)
     }

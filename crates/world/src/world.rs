@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Effect, Error, Sensors, error::read_json, limits::within};
+use crate::{Effect, Error, Sensors, limits::within};
 
 /// Where a robot drives, with which sensors, and what is concealed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -101,7 +101,7 @@ impl World {
     /// # Errors
     /// The place of whatever is missing, unknown or out of range.
     pub fn from_json(text: &str) -> Result<Self, Error> {
-        let world: World = read_json(text)?;
+        let world: World = document::from_json(text.as_bytes())?;
         world.check()?;
         Ok(world)
     }
@@ -133,7 +133,8 @@ impl World {
     pub fn check(&self) -> Result<(), Error> {
         match &self.terrain {
             Relief::Level | Relief::Map(_) => {}
-            Relief::Plane { grade, .. } => {
+            Relief::Plane { grade, uphill_rad, .. } => {
+                within("terrain.plane.uphill_rad", *uphill_rad, [-10.0, 10.0], "give radians")?;
                 within("terrain.plane.grade", *grade, [0.0, 0.6], "rise over run")?;
             }
             Relief::Rolling { grade, length_m, .. } => {

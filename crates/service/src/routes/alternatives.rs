@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Engine,
-    body::{JsonBody, object, optional_object},
+    body::JsonBody,
     problem::{Problem, ProblemType},
 };
 
@@ -21,17 +21,14 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub struct AlternativesRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Where the robot stands.
-    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// Where it is to go.
-    #[serde(deserialize_with = "object")]
     pub goal: GoalPose,
     /// What energy is weighed against. Default: `time`.
     #[serde(default)]
@@ -53,8 +50,8 @@ pub struct AlternativesRequest {
     /// No path may be longer. Default: no limit [m].
     #[schema(exclusive_minimum = 0.0)]
     pub max_distance_m: Option<f64>,
-    /// Steepest climb, descent or sideways tilt. Default: the robot's limits [rad].
-    #[schema(exclusive_minimum = 0.0)]
+    /// Steepest climb, descent or sideways tilt, up to π/2. Default: the robot's limits [rad].
+    #[schema(exclusive_minimum = 0.0, maximum = 1.5707963267948966)]
     pub max_slope_rad: Option<f64>,
     /// Forward speed; lowered where the outer wheel would be too fast. Default: half the wheels' top speed [m/s].
     pub speed_mps: Option<f64>,

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     Engine, Limits,
-    body::{JsonBody, optional_object},
+    body::JsonBody,
     problem::{Problem, ProblemType},
 };
 
@@ -23,7 +23,6 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub struct MatrixRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,

@@ -13,25 +13,19 @@ use super::{
     range::{SpreadAnswer, full, stalled},
     robots::RobotChoice,
 };
-use crate::{
-    Engine,
-    body::{JsonBody, object, optional_object},
-    problem::Problem,
-};
+use crate::{Engine, body::JsonBody, problem::Problem};
 
 /// Waypoints to visit on a charge.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MissionRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, id of a stored one, or a robot; it needs a battery.
     pub robot: RobotChoice,
     /// Where the robot sets out.
-    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// What it is to visit; of up to 12 the order is proven best.
     #[schema(min_items = 1, max_items = 40)]
@@ -97,7 +91,8 @@ pub struct WaypointRequest {
     pub x_m: f64,
     /// North [m].
     pub y_m: f64,
-    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any [rad].
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
+    #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
     /// How long the robot works there. Default: 0 [s].
     #[serde(default)]
@@ -106,7 +101,6 @@ pub struct WaypointRequest {
     #[serde(default)]
     pub service_power_w: f64,
     /// Charging there, after the work. Default: none.
-    #[serde(default, deserialize_with = "optional_object")]
     pub recharge: Option<RechargeRequest>,
 }
 
@@ -129,7 +123,8 @@ pub struct ChargerRequest {
     pub x_m: f64,
     /// North [m].
     pub y_m: f64,
-    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any [rad].
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
+    #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
     /// Power at the battery, beyond the hotel load; cells may take less [W].
     pub power_w: f64,

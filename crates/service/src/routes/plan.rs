@@ -4,6 +4,7 @@ mod document;
 mod work;
 
 use std::{
+    f64::consts::FRAC_PI_2,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -25,7 +26,7 @@ use super::robots::RobotChoice;
 use crate::{
     Engine,
     accept::preferred,
-    body::{JsonBody, object, optional_object},
+    body::JsonBody,
     geojson,
     metrics::CacheLabels,
     problem::{Problem, ProblemType},
@@ -40,17 +41,14 @@ pub(crate) use work::with_planner;
 #[serde(deny_unknown_fields)]
 pub struct PlanRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, id of a stored one, or a robot.
     pub robot: RobotChoice,
     /// Where the robot stands.
-    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// Where it is to go.
-    #[serde(deserialize_with = "object")]
     pub goal: GoalPose,
     /// What the path is to have least of. Default: `energy`.
     #[serde(default)]
@@ -88,8 +86,8 @@ pub struct PlanRequest {
     /// The path may be no longer. Default: no limit [m].
     #[schema(exclusive_minimum = 0.0)]
     pub max_distance_m: Option<f64>,
-    /// Steepest climb, descent or sideways tilt on the way. Default: the robot's limits [rad].
-    #[schema(exclusive_minimum = 0.0)]
+    /// Steepest climb, descent or sideways tilt on the way, up to π/2. Default: the robot's limits [rad].
+    #[schema(exclusive_minimum = 0.0, maximum = 1.5707963267948966)]
     pub max_slope_rad: Option<f64>,
 }
 
@@ -101,7 +99,8 @@ pub struct StartPose {
     pub x_m: f64,
     /// North [m].
     pub y_m: f64,
-    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: the planner chooses [rad].
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: the planner chooses; −6.3 to 6.3 [rad].
+    #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
 }
 
@@ -113,7 +112,8 @@ pub struct GoalPose {
     pub x_m: f64,
     /// North [m].
     pub y_m: f64,
-    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any [rad].
+    /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
+    #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
     /// Any pose this close will do. Default: 0, the goal's own cell [m].
     #[serde(default)]
@@ -266,8 +266,10 @@ impl PlanRequest {
     fn limited_robot(&self) -> Result<Robot, Problem> {
         let mut robot = self.robot.robot()?;
         if let Some(max_slope_rad) = self.max_slope_rad {
-            if max_slope_rad.is_nan() || max_slope_rad <= 0.0 {
-                let detail = format!("max_slope_rad is {max_slope_rad}, but must be above 0");
+            if !(max_slope_rad > 0.0 && max_slope_rad <= FRAC_PI_2) {
+                let detail = format!(
+                    "max_slope_rad is {max_slope_rad}, but must be above 0 and at most 1.571 (pi/2): give radians, 0.35 for 20 degrees"
+                );
                 return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/max_slope_rad"));
             }
             let limits = &mut robot.limits;

@@ -13,28 +13,21 @@ use super::{
     plan::{GoalPose, PlanRequest, StartPose, with_planner},
     robots::RobotChoice,
 };
-use crate::{
-    Engine,
-    body::{JsonBody, object, optional_object},
-    problem::Problem,
-};
+use crate::{Engine, body::JsonBody, problem::Problem};
 
 /// Whether, how likely, and with what charge left a robot gets to a goal and back.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RangeRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, id of a stored one, or a robot; it needs a battery.
     pub robot: RobotChoice,
     /// Where the robot stands.
-    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// Where it is to go. Default: the farthest place that the charge reaches.
-    #[serde(default, deserialize_with = "optional_object")]
     pub goal: Option<GoalPose>,
     /// Whether the way back to the start is part of the question. Default: false.
     #[serde(default, rename = "return")]

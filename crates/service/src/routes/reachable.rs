@@ -20,7 +20,7 @@ use super::{
 use crate::{
     Engine,
     accept::preferred,
-    body::{JsonBody, object, optional_object},
+    body::JsonBody,
     problem::{Problem, ProblemType},
 };
 
@@ -29,14 +29,12 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub struct ReachableRequest {
     /// The map itself; give this or `map_id`.
-    #[serde(default, deserialize_with = "optional_object")]
     pub map: Option<MapFile>,
     /// Id of a stored map; give this or `map`.
     pub map_id: Option<String>,
     /// Name of a built-in robot, id of a stored one, or a robot; charges need its battery.
     pub robot: RobotChoice,
     /// The place that ways start from or lead to. With a heading, the robot departs and arrives with it.
-    #[serde(deserialize_with = "object")]
     pub start: StartPose,
     /// From the place, to it, or there and back. Default: `outward`.
     #[serde(default)]

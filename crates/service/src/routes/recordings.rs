@@ -119,7 +119,7 @@ pub(crate) async fn create(
 ) -> Result<(StatusCode, Json<RecordingAnswer>), Problem> {
     let format = format_of(&content_type(&request))?;
     let ReadingQuery { map, name } = query(request.uri())?;
-    let map = map.map(|text| serde_json::from_str(&text).unwrap_or(Value::String(text)));
+    let map = map.map(map_choice).transpose()?;
     map.as_ref().map(map_from).transpose()?;
     let (parts, body) = request.into_parts();
     let received = receive(&engine, &parts.headers, body).await?;
@@ -129,6 +129,14 @@ pub(crate) async fn create(
     let (note, received) = engine.work(move |left| checked(received, note, left)).await?;
     let new = engine.recordings().keep(received, &note).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
+}
+
+/// The map of a query: an object in full, or the name of a built-in one.
+fn map_choice(text: String) -> Result<Value, Problem> {
+    if !text.trim_start().starts_with(['{', '[']) {
+        return Ok(Value::String(text));
+    }
+    document::from_json(text.as_bytes()).map_err(|error| Problem::invalid_document(&error, "/map"))
 }
 
 /// Reads what was received, and notes what it is if it is a recording.

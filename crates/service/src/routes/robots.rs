@@ -57,7 +57,7 @@ impl<'de> Deserialize<'de> for RobotChoice {
             type Value = RobotChoice;
 
             fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a robot's name or a robot")
+                f.write_str("the name or id of a robot, or a robot as an object")
             }
 
             fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<RobotChoice, E> {

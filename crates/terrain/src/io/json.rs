@@ -36,10 +36,7 @@ pub struct MapFile {
 /// # Errors
 /// The place of whatever is missing, unknown, ragged or out of range.
 pub fn read(text: &str) -> Result<Terrain, Error> {
-    let mut deserializer = serde_json::Deserializer::from_str(text);
-    let file: MapFile = serde_path_to_error::deserialize(&mut deserializer)
-        .map_err(|e| Error::Json { path: e.path().to_string(), message: e.inner().to_string() })?;
-    deserializer.end().map_err(|e| Error::Json { path: ".".into(), message: e.to_string() })?;
+    let file: MapFile = document::from_json(text.as_bytes())?;
     Terrain::try_from(file)
 }
 

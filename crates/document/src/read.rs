@@ -1,0 +1,107 @@
+//! Reading a document.
+
+use serde::{Deserializer, de::DeserializeOwned};
+use serde_json::Value;
+use serde_path_to_error::Path;
+
+use crate::{
+    error::{Error, Mistake},
+    fault::Fault,
+    place::{beneath, pointer, shown, tracked_pointer},
+    strict::{Reading, Strict},
+};
+
+/// Most missing fields that are reported together; each takes another reading of the document.
+const MOST_MISSING: usize = 32;
+
+/// Reads a document.
+///
+/// # Errors
+/// The place of whatever is no JSON, mistyped, unknown or given twice, or all missing fields.
+pub fn from_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
+    if text.trim_ascii().is_empty() {
+        return Err(Error::of(whole("the document is empty".to_owned())));
+    }
+    read(|filled| {
+        let mut parser = serde_json::Deserializer::from_slice(text);
+        let value = attempt(&mut parser, filled)?;
+        parser.end().map_err(|error| {
+            let fault = Reading::default().carrier.take(&error);
+            Failed { fault: fault.to_string(), missing: None, path: String::new(), pointer: String::new() }
+        })?;
+        Ok(value)
+    })
+}
+
+/// Reads a part of a document that was parsed before.
+///
+/// # Errors
+/// As [`from_json`], without lines and columns.
+pub fn from_value<T: DeserializeOwned>(value: &Value) -> Result<T, Error> {
+    read(|filled| attempt(value, filled))
+}
+
+/// A reading that failed, with the place in the document.
+struct Failed {
+    fault: String,
+    missing: Option<(usize, &'static str)>,
+    path: String,
+    pointer: String,
+}
+
+fn attempt<'de, T, D>(inner: D, filled: &[(usize, &'static str)]) -> Result<T, Failed>
+where
+    T: DeserializeOwned,
+    D: Deserializer<'de>,
+{
+    let reading = Reading::new(filled);
+    serde_path_to_error::deserialize(Strict { inner, reading: &reading }).map_err(|error| {
+        let (fault, path): (&Fault, _) = (error.inner(), error.path());
+        let place = |of: fn(&Path) -> String| if fault.is_syntax() { String::new() } else { of(path) };
+        Failed {
+            fault: fault.to_string(),
+            missing: fault.missing(),
+            path: place(shown),
+            pointer: place(tracked_pointer),
+        }
+    })
+}
+
+/// Reads; where a field is missing, reads again as though it were there, until no other is missing.
+fn read<T>(attempt: impl Fn(&[(usize, &'static str)]) -> Result<T, Failed>) -> Result<T, Error> {
+    let mut filled = Vec::new();
+    let mut mistakes = Vec::new();
+    loop {
+        let failed = match attempt(&filled) {
+            Ok(value) if mistakes.is_empty() => return Ok(value),
+            Ok(_) => return Err(Error { mistakes }),
+            Err(failed) => failed,
+        };
+        match failed.missing {
+            Some((object, field)) if mistakes.len() < MOST_MISSING => {
+                filled.push((object, field));
+                mistakes.push(Mistake {
+                    path: beneath(&failed.path, field),
+                    pointer: failed.pointer + &pointer(field),
+                    message: format!("missing field `{field}`"),
+                    is_missing: true,
+                });
+            }
+            // What follows may be a mistake of the filling alone.
+            _ if !mistakes.is_empty() => return Err(Error { mistakes }),
+            _ => {
+                return Err(Error::of(Mistake {
+                    path: failed.path,
+                    pointer: failed.pointer,
+                    message: failed.fault,
+                    is_missing: false,
+                }));
+            }
+        }
+    }
+}
+
+/// A mistake of the document as a whole.
+fn whole(message: String) -> Mistake {
+    Mistake { path: String::new(), pointer: String::new(), message, is_missing: false }
+}
