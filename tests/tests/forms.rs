@@ -112,6 +112,12 @@ fn broken_json_is_located_in_requests_and_in_maps_of_columns() {
     assert!(said.contains("trailing comma") && said.contains("line 3, column 1"), "{said}");
     let said = detail("/v1/recordings?map=%7B%22name%22:%22m%22,%7D", "text/csv", b"t_s\n1\n");
     assert!(said.contains("trailing comma"), "{said}");
+    let said = detail(
+        "/v1/recordings?map=%7B%22name%22:%22m%22,%22sources%22:%5B%5B%22power_w%22%5D%5D%7D",
+        "text/csv",
+        b"t_s\n1\n",
+    );
+    assert!(said.contains("sources[0]: expected an object"), "{said}");
     let said = detail("/v1/recordings?map=%7B%22name%22:%22m%22%7D", "text/csv", b"t_s\n1\n");
     assert!(said.contains("missing field `sources`"), "{said}");
 }
@@ -193,6 +199,47 @@ fn the_command_line_words_mistakes_in_files_like_the_service() {
         robot(r#"{"name": "x", "mass": 17}"#).contains("mass: unknown field `mass`: did you mean `mass_kg`?")
     );
     assert!(robot("").contains("the document is empty"));
+}
+
+#[test]
+fn worlds_and_drives_are_read_as_strictly_as_requests() {
+    let folder = tempfile::tempdir().unwrap();
+    let simulated = |world: &str, drive: &str| {
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("world.json"), world).unwrap();
+        std::fs::write(at("drive.json"), drive).unwrap();
+        let output = Command::new(program())
+            .args(["simulate", "--world"])
+            .arg(at("world.json"))
+            .arg("--drive")
+            .arg(at("drive.json"))
+            .arg("--out")
+            .arg(at("out.csv"))
+            .output()
+            .unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (world, drive) = (r#"{"terrain": "level"}"#, r#"{"kind": "straight", "duration_s": 5}"#);
+    for (world, drive, expected) in [
+        (r#"{"terrain": "level", "wind": [3, 0]}"#, drive, "wind: expected an object"),
+        (r#"{"terrain": {"level": null}}"#, drive, "expected a name as a string"),
+        (r#"{"terrain": {"plane": [0.1, 0]}}"#, drive, "terrain.plane: expected an object"),
+        (r#"{"terrain": {"plane": {"grade": 0.1, "uphill_rad": 90}}}"#, drive, "give radians"),
+        (r#"{"terrain": "level", "effects": [["payload", 5]]}"#, drive, "effects[0]: expected an object"),
+        (world, r#"{"kind": "straight", "duration_s": 5, "start": [1, 2]}"#, "start: expected an object"),
+        (
+            world,
+            r#"{"kind": "straight", "duration_s": 5, "start": {"x_m": 1, "y_m": 2, "heading_rad": 90}}"#,
+            "radians",
+        ),
+        (world, r#"["straight", 5]"#, "expected an object"),
+        (world, "{}", "missing fields `kind`, `duration_s`"),
+    ] {
+        let (code, said) = simulated(world, drive);
+        assert_eq!(code, Some(2), "{world} {drive}: {said}");
+        assert!(said.contains(expected), "{world} {drive}: {said}");
+    }
+    assert_eq!(simulated(world, drive).0, Some(0));
 }
 
 #[test]

@@ -211,7 +211,13 @@ impl Carrier {
         let kept = self.0.borrow_mut().take();
         let said = error.to_string();
         let (message, place) = split_place(&said);
-        let fault = kept.unwrap_or_else(|| Fault::new(Kind::Syntax(message.to_owned())));
+        let fault = kept.unwrap_or_else(|| {
+            Fault::new(match message {
+                // A mistake of one value, whose path says the most.
+                "number out of range" => Kind::Other("the number is too large to be represented".into()),
+                _ => Kind::Syntax(message.to_owned()),
+            })
+        });
         match place {
             Some((line, column)) => fault.at(line, column),
             None => fault,

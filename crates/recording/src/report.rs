@@ -112,6 +112,7 @@ pub struct AlignmentReport {
     /// The method in words.
     pub method: String,
     /// For each other topic, how far neighbours may lie apart to be interpolated across \[s\].
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<serde_json::Value>>))]
     pub max_gap_s: Vec<(String, f64)>,
 }
 

@@ -1,4 +1,10 @@
-//! The part of the description that holds for all paths: what the layers add to every answer.
+//! The part of the description that holds for all paths: ids, examples, and what the layers add to every answer.
+
+mod examples;
+mod forms;
+mod operation_id;
+
+use std::collections::HashSet;
 
 use axum::http::Method;
 use utoipa::openapi::{
@@ -10,14 +16,19 @@ use utoipa::openapi::{
     security::{HttpAuthScheme, HttpBuilder, SecurityRequirement, SecurityScheme},
 };
 
+use self::{
+    forms::{describe_answers, describe_body},
+    operation_id::operation_id,
+};
 use crate::layers::is_tagged;
 
 /// Name of the security scheme.
 const TOKEN: &str = "token";
 
-/// Adds to each operation what its layers may answer, and the headers that they read and write.
+/// Adds to each operation its id, its examples, what its layers may answer, and the headers that they read and write.
 pub(crate) fn with_layers(mut description: OpenApi, wants_token: impl Fn(&str) -> bool) -> OpenApi {
     let mut any_token = false;
+    let all: HashSet<String> = description.paths.paths.keys().cloned().collect();
     for (path, item) in &mut description.paths.paths {
         let operations = [
             (Method::GET, &mut item.get),
@@ -30,6 +41,7 @@ pub(crate) fn with_layers(mut description: OpenApi, wants_token: impl Fn(&str) -
             let secured = wants_token(path);
             any_token |= secured;
             describe(operation, &method, secured, is_tagged(path));
+            name(operation, operation_id(&method, path, all.contains(&format!("{path}/{{id}}"))));
         }
     }
     if any_token {
@@ -40,6 +52,19 @@ pub(crate) fn with_layers(mut description: OpenApi, wants_token: impl Fn(&str) -
             .add_security_scheme(TOKEN, SecurityScheme::Http(scheme));
     }
     description
+}
+
+/// Gives an operation its id and its examples.
+fn name(operation: &mut Operation, id: String) {
+    describe_answers(operation);
+    describe_body(operation, &id);
+    for parameter in operation.parameters.iter_mut().flatten() {
+        if let RefOr::T(parameter) = parameter {
+            let example = examples::parameter(&id, &parameter.name);
+            *parameter = ParameterBuilder::from(parameter.clone()).example(example).build();
+        }
+    }
+    operation.operation_id = Some(id);
 }
 
 fn describe(operation: &mut Operation, method: &Method, secured: bool, tagged: bool) {
@@ -58,6 +83,11 @@ fn describe(operation: &mut Operation, method: &Method, secured: bool, tagged: b
     }
     if operation.request_body.is_some() {
         add(operation, "408", "The body came too slowly");
+        add_header(
+            operation,
+            "x-request-id",
+            "An id for the request, which the answer and the log repeat. Default: a new one",
+        );
     }
     add(operation, "500", "A fault of the service");
     add(operation, "503", "Too much to do; `Retry-After` says when to try again");
@@ -85,16 +115,21 @@ fn describe(operation: &mut Operation, method: &Method, secured: bool, tagged: b
 
 /// Adds how a client asks for what it has not got yet.
 fn add_condition(operation: &mut Operation) {
+    add_header(operation, "if-none-match", "Tags of answers that the client has");
+    let unchanged = ResponseBuilder::new().description("The client has the answer already").build();
+    operation.responses.responses.insert("304".into(), RefOr::T(unchanged));
+}
+
+/// Adds a header that a request may have.
+fn add_header(operation: &mut Operation, name: &str, description: &str) {
     let parameter = ParameterBuilder::new()
-        .name("if-none-match")
+        .name(name)
         .parameter_in(ParameterIn::Header)
         .required(Required::False)
-        .description(Some("Tags of answers that the client has"))
+        .description(Some(description))
         .schema(Some(text()))
         .build();
     operation.parameters.get_or_insert_default().push(RefOr::T(parameter));
-    let unchanged = ResponseBuilder::new().description("The client has the answer already").build();
-    operation.responses.responses.insert("304".into(), RefOr::T(unchanged));
 }
 
 /// Adds a failure, unless the operation tells of it itself.

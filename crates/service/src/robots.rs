@@ -50,7 +50,7 @@ impl RobotStore {
 }
 
 /// The hash of a robot's JSON, which has every field in the same order.
-fn content_id(robot: &Robot) -> Result<String, Problem> {
+pub(crate) fn content_id(robot: &Robot) -> Result<String, Problem> {
     let bytes = serde_json::to_vec(robot).map_err(|error| {
         Problem::new(ProblemType::Internal, format!("the robot cannot be written: {error}"))
     })?;

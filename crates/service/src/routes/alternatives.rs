@@ -102,7 +102,7 @@ pub struct AlternativesAnswer {
     post, path = "/v1/alternatives", tag = "plan",
     request_body = AlternativesRequest,
     responses(
-        (status = 200, body = AlternativesAnswer),
+        (status = 200, description = "The paths", body = AlternativesAnswer),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),

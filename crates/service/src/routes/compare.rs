@@ -27,7 +27,7 @@ pub struct CompareAnswer {
     post, path = "/v1/compare", tag = "plan",
     request_body = PlanRequest,
     responses(
-        (status = 200, body = CompareAnswer),
+        (status = 200, description = "The three paths", body = CompareAnswer),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),

@@ -25,7 +25,7 @@ impl Health {
 }
 
 /// Is the service alive? It is until it has ended, however much there is to do.
-#[utoipa::path(get, path = "/healthz", tag = "service", responses((status = 200, body = Health)))]
+#[utoipa::path(get, path = "/healthz", tag = "service", responses((status = 200, description = "The process answers", body = Health)))]
 pub(crate) async fn healthz() -> Json<Health> {
     Health::ok()
 }
@@ -34,7 +34,7 @@ pub(crate) async fn healthz() -> Json<Health> {
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
     responses(
-        (status = 200, body = Health),
+        (status = 200, description = "The service can take requests", body = Health),
         (status = 503, description = "It is about to end, or its store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]

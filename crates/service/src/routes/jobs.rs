@@ -85,7 +85,7 @@ impl JobAnswer {
     get, path = "/v1/jobs/{id}", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job")),
     responses(
-        (status = 200, body = JobAnswer),
+        (status = 200, description = "The job", body = JobAnswer),
         (status = 404, body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )

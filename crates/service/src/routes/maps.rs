@@ -154,7 +154,7 @@ pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Proble
 #[utoipa::path(
     get, path = "/v1/maps", tag = "maps",
     responses(
-        (status = 200, body = MapList),
+        (status = 200, description = "The stored maps", body = MapList),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
@@ -164,6 +164,7 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<MapList>, 
 
 /// How many cells to send.
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct CellsQuery {
     /// Most cells of an answer in bytes: of a larger map every so many are sent. Default: all.

@@ -81,7 +81,7 @@ pub struct UnreachableAnswer {
     post, path = "/v1/matrix", tag = "plan",
     request_body = MatrixRequest,
     responses(
-        (status = 200, body = MatrixAnswer),
+        (status = 200, description = "What the paths take", body = MatrixAnswer),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, description = "Too many entries, or too large a map", body = Problem, content_type = "application/problem+json"),

@@ -218,7 +218,7 @@ pub struct MissionSearch {
     post, path = "/v1/mission", tag = "battery",
     request_body = MissionRequest,
     responses(
-        (status = 200, body = MissionAnswer),
+        (status = 200, description = "The mission", body = MissionAnswer),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),

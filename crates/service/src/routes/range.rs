@@ -223,7 +223,7 @@ pub struct CarriesAnswer {
     post, path = "/v1/range", tag = "battery",
     request_body = RangeRequest,
     responses(
-        (status = 200, body = RangeAnswer),
+        (status = 200, description = "How likely the robot arrives, and on what charge", body = RangeAnswer),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),

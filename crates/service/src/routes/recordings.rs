@@ -185,7 +185,7 @@ fn format_of(kind: &str) -> Result<Format, Problem> {
 #[utoipa::path(
     get, path = "/v1/recordings", tag = "recordings",
     responses(
-        (status = 200, body = RecordingList),
+        (status = 200, description = "The stored recordings", body = RecordingList),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
@@ -199,7 +199,7 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingL
     get, path = "/v1/recordings/{id}", tag = "recordings",
     params(("id" = String, Path, description = "Content hash of the recording")),
     responses(
-        (status = 200, body = RecordingAnswer),
+        (status = 200, description = "The recording", body = RecordingAnswer),
         (status = 404, body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )

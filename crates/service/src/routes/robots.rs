@@ -120,7 +120,7 @@ pub(crate) async fn create(
 #[utoipa::path(
     get, path = "/v1/robots", tag = "robots",
     responses(
-        (status = 200, body = RobotList),
+        (status = 200, description = "The robots", body = RobotList),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
@@ -137,7 +137,7 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RobotList>
     get, path = "/v1/robots/{id}", tag = "robots",
     params(("id" = String, Path, description = "Name of a built-in robot or id of a stored one", example = "husky-a200")),
     responses(
-        (status = 200, body = Robot),
+        (status = 200, description = "The robot", body = Robot),
         (status = 404, body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )

@@ -70,7 +70,7 @@ impl From<&Limits> for LimitsAnswer {
 #[utoipa::path(
     get, path = "/v1/status", tag = "service",
     responses(
-        (status = 200, body = Status),
+        (status = 200, description = "The state of the service", body = Status),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
