@@ -19,9 +19,13 @@ fn plan() -> Value {
     json!({ "map": level_map(), "robot": "husky-a200", "start": pose(), "goal": { "x_m": 6.5, "y_m": 6.5 } })
 }
 
+/// The document with one value replaced or added.
 fn with(mut document: Value, pointer: &str, value: Value) -> Value {
     let (parent, field) = pointer.rsplit_once('/').unwrap();
-    document.pointer_mut(parent).unwrap()[field] = value;
+    match document.pointer_mut(parent).unwrap() {
+        Value::Array(elements) => elements[field.parse::<usize>().unwrap()] = value,
+        parent => parent[field] = value,
+    }
     document
 }
 

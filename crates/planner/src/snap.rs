@@ -33,7 +33,8 @@ pub(crate) struct Snapped {
 pub(crate) fn snap(lattice: &Lattice, asked: &Asked) -> Result<Snapped, Error> {
     let grid = &lattice.terrain.grid;
     let Asked { place, x_m, y_m, .. } = *asked;
-    if let Some(heading_rad) = asked.heading_rad.filter(|heading| !(heading.abs() <= MAX_HEADING_RAD)) {
+    let sensible = -MAX_HEADING_RAD..=MAX_HEADING_RAD;
+    if let Some(heading_rad) = asked.heading_rad.filter(|heading_rad| !sensible.contains(heading_rad)) {
         return Err(Error::Heading { place, heading_rad });
     }
     let home = grid.cell_at(x_m, y_m).ok_or(Error::OutsideMap {

@@ -134,7 +134,7 @@ fn charge_of(pack: &Pack, charge: f64, energy_j: f64, duration_s: f64) -> f64 {
 pub(crate) fn named(nodes: &[Node], error: routing::Error) -> MissionError {
     use planner::{Error as E, Place};
     let routing::Error::Planner(mut error) = error else { return MissionError::Routing(error) };
-    if let E::OutsideMap { place, .. } | E::PlaceBlocked { place, .. } = &mut error
+    if let E::OutsideMap { place, .. } | E::PlaceBlocked { place, .. } | E::Heading { place, .. } = &mut error
         && let Place::Listed { index, .. } = *place
     {
         *place = match nodes.get(index).map(|node| node.role) {

@@ -124,7 +124,7 @@ pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<R
         ("last-event-id" = Option<String>, Header, description = "The id of the last event seen")
     ),
     responses(
-        (status = 200, description = "Events until the job ends", body = JobAnswer, content_type = "text/event-stream"),
+        (status = 200, description = "Events until the job ends, each with a `JobAnswer` as its data", body = String, content_type = "text/event-stream"),
         (status = 204, description = "The last event was seen already: there will be no more"),
         (status = 404, body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
