@@ -36,14 +36,14 @@ impl Drives {
     /// The averages of one stretch.
     fn seconds(&self, stretch: &Stretch) -> Vec<Average> {
         let rhythm_s = rhythm_s(&self.rows[stretch.rows.clone()]);
-        let seconds_in = |row: usize| (self.rows[row].t_s + 1e-6) / AVERAGE_S;
+        let second_of = |row: &Row| ((row.t_s + 1e-6) / AVERAGE_S).floor();
+        let rows = &self.rows[stretch.rows.clone()];
         let mut seconds = Vec::new();
-        let mut start = stretch.rows.start;
-        while start < stretch.rows.end {
-            let second = seconds_in(start).floor();
-            let here = second..second + 1.0;
-            let end = (start..stretch.rows.end).find(|&r| !here.contains(&seconds_in(r)));
-            let end = end.unwrap_or(stretch.rows.end);
+        let mut end = stretch.rows.start;
+        // Every piece has a row, so that this ends whatever the times are.
+        for piece in rows.chunk_by(|a, b| second_of(a) == second_of(b)) {
+            let (start, second) = (end, second_of(&piece[0]));
+            end += piece.len();
             let used = self.rows[start..end].iter().filter(|row| row.used && !row.stuck).count();
             if used > 0 {
                 seconds.push(Average {
@@ -55,7 +55,6 @@ impl Drives {
                     t_s: second * AVERAGE_S,
                 });
             }
-            start = end;
         }
         seconds
     }
@@ -108,5 +107,31 @@ fn rhythm_s(rows: &[Row]) -> f64 {
     match rows {
         [first, .., last] => (last.t_s - first.t_s) / (rows.len() - 1) as f64,
         _ => AVERAGE_S,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn averages(t_s: &[f64]) -> Vec<Average> {
+        let rows: Vec<Row> = t_s.iter().map(|t_s| Row { t_s: *t_s, used: true, ..Row::default() }).collect();
+        let stretches = vec![Stretch { run: 0, surface: 0, rows: 0..rows.len() }];
+        let mut drives = Drives { rows, stretches, ..Drives::default() };
+        drives.average();
+        drives.averages
+    }
+
+    #[test]
+    fn rows_of_a_second_are_averaged_and_times_without_seconds_end_all_the_same() {
+        let t_s: Vec<f64> = (0..25).map(|row| 3.0 + f64::from(row) * 0.1).collect();
+        let found: Vec<(f64, usize)> = averages(&t_s).iter().map(|a| (a.t_s, a.used)).collect();
+        assert_eq!(found, [(3.0, 10), (4.0, 10), (5.0, 5)]);
+        for start_s in [1.7e18, -1.7e18, 1e300] {
+            let step_s = start_s.abs() * 1e-10;
+            let t_s: Vec<f64> = (0..50).map(|row| start_s + f64::from(row) * step_s).collect();
+            let found = averages(&t_s);
+            assert_eq!(found.iter().map(|a| a.used).sum::<usize>(), 50, "{start_s}");
+        }
     }
 }

@@ -11,8 +11,8 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
-    room::Room,
     topic::{Schema, Topics},
+    watch::Budget,
 };
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
@@ -48,10 +48,15 @@ impl<'b> Header<'b> {
 }
 
 /// Reads a bag front to back; its index is not needed, so one that was cut off is read as far as it goes.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
+pub(crate) fn read(
+    source: impl Read,
+    name: &str,
+    map: Option<&Map>,
+    budget: Budget,
+) -> Result<Reading, Error> {
     let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
     let mut source = opened(source, MAGIC, "ROS 1 bag", older)?;
-    let mut topics = topics(map, room)?;
+    let mut topics = topics(map, budget)?;
     let mut header = Vec::new();
     let (mut body, mut plain) = (Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
@@ -103,6 +108,7 @@ fn part(source: &mut impl Read, bytes: &mut Vec<u8>) -> Result<Ended, Error> {
 }
 
 fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) -> Result<(), Error> {
+    topics.looks().worked(1)?;
     let connection = header.number("conn").map(u32::from_le_bytes);
     match (header.operation(), connection) {
         (Some(MESSAGE), Some(connection)) => {
@@ -140,7 +146,7 @@ fn chunk(
         topics.tell(at, "a chunk does not say how it is compressed; it was left out");
         return Ok(());
     };
-    match decompress(compression, body, u64::from(u32::from_le_bytes(size)), plain) {
+    match decompress(compression, body, u64::from(u32::from_le_bytes(size)), plain, topics.looks())? {
         Err(reason) => topics.tell(at, &format!("{reason}; the chunk was left out")),
         Ok(false) if whole => topics.tell(at, UNPACKABLE),
         Ok(_) => {

@@ -41,6 +41,11 @@ impl Coarse {
         before.sum::<usize>() + row.saturating_sub(self.weight.len())
     }
 
+    /// Rows of the file that a row stands for at most.
+    pub(crate) fn rows_per_row(&self) -> u32 {
+        self.per_row
+    }
+
     /// Whether any row stands for several.
     pub(crate) fn is_joined(&self) -> bool {
         self.per_row > 1

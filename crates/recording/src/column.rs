@@ -3,9 +3,10 @@
 use std::mem;
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Recording,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording,
+    clock::{TimeSource, check_time},
     coarse::period,
-    divide::{check_order, divide},
+    divide::divide,
     error::Position,
     label_column::LabelColumn,
     map::{Place, Target},
@@ -160,21 +161,20 @@ impl Plan {
         position: impl Fn(usize) -> Position,
     ) -> Result<(Recording, ReadingReport), Error> {
         table.settle()?;
+        let looks = table.looks().clone();
         let Table { mut columns, coarse, .. } = table;
         let position = |row: usize| position(coarse.first_in_file(row));
-        let (t_s, time_column) = self.take_time(&mut columns)?;
+        let (t_s, time_column, map_unit) = self.take_time(&mut columns)?;
         if t_s.is_empty() {
             return Err(Error::Empty {
                 found: format!("a header of {} columns and no row", self.headers.len()),
             });
         }
-        if let Some(row) = t_s.iter().position(|t| !t.is_finite()) {
-            return Err(Error::NoTime { position: position(row), column: time_column });
-        }
         let mut recording = Recording { t_s, ..Recording::default() };
         let mut report = ReadingReport::default();
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
+            looks.go_on()?;
             match self.combined(&entry, &mut columns) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
                     runs = Some(labels.into_labels());
@@ -198,22 +198,49 @@ impl Plan {
         if let (None, Some(surface)) = (&recording.surface, &self.surface) {
             recording.surface = Some(Labels::constant(surface, recording.rows()));
         }
-        let order = divide(&mut recording, runs, name, &mut report);
-        check_order(&recording, |row| position(order.as_ref().map_or(row, |order| order[row])))?;
+        let order = divide(&mut recording, runs, name, &mut report, &looks)?;
+        let source = TimeSource {
+            column: &time_column,
+            map_unit: map_unit.as_deref(),
+            rows_per_row: coarse.rows_per_row(),
+            position: &|row| position(order.as_ref().map_or(row, |order| order[row])),
+        };
+        check_time(&recording, &source)?;
         report.ignored = self.ignored;
         report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
     }
 
-    /// The time column of the file, in seconds.
-    fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String), Error> {
+    /// Takes note that a column of the file stores times in a unit of its own type, from which it is read in seconds. A map that
+    /// names the same unit does not apply it again.
+    ///
+    /// # Errors
+    /// [`Error::TypedUnit`] where a map names another unit.
+    pub(crate) fn typed_time(&mut self, column: usize, own: &'static str) -> Result<(), Error> {
+        let is_time = |entry: &&mut Entry| entry.target == Target::Time && entry.columns.contains(&column);
+        let Some(entry) = self.entries.iter_mut().find(is_time) else { return Ok(()) };
+        if entry.unit == own {
+            let unit = Conversion::from_unit(Quantity::Time, own, None).unwrap_or(Conversion::IDENTITY);
+            entry.conversion.factor /= unit.factor;
+        } else if entry.unit != units::si_unit(Quantity::Time) {
+            let (column, unit) = (self.headers[column].clone(), entry.unit.clone());
+            return Err(Error::TypedUnit { column, unit, own });
+        }
+        Ok(())
+    }
+
+    /// The time column of the file in seconds, its name, and the unit that a map gave unless that is seconds.
+    fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String, Option<String>), Error> {
         let Some(at) = self.entries.iter().position(|entry| entry.target == Target::Time) else {
             return Err(Error::missing_names(&["t_s".into()], &["t_s"], &self.headers));
         };
         let entry = self.entries.remove(at);
         let name = self.names(&entry);
         match self.combined(&entry, columns) {
-            Ok(Column::Numbers(t_s)) => Ok((t_s, name)),
+            Ok(Column::Numbers(t_s)) => {
+                let is_seconds = entry.unit == units::si_unit(Quantity::Time);
+                Ok((t_s, name, (!is_seconds).then_some(entry.unit)))
+            }
             Ok(Column::Unusable(reason)) | Err(reason) => Err(Error::Field {
                 topic: "of the table".into(),
                 field: name,

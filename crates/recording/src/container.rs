@@ -5,7 +5,7 @@ use std::{
     sync::LazyLock,
 };
 
-use crate::{Error, Map, reading::read_up_to, room::Room, topic::Topics};
+use crate::{Error, Map, reading::read_up_to, topic::Topics, watch::Budget};
 
 /// Bytes read at a time.
 const BUFFER_BYTES: usize = 1 << 20;
@@ -38,7 +38,7 @@ pub(crate) fn opened<R: Read>(
 }
 
 /// The topics that a map names, or those of a Husky.
-pub(crate) fn topics(map: Option<&Map>, room: Room) -> Result<Topics<'_>, Error> {
+pub(crate) fn topics(map: Option<&Map>, budget: Budget) -> Result<Topics<'_>, Error> {
     let map = map.or(HUSKY.as_ref()).ok_or(Error::Empty { found: "no map".into() })?;
-    Ok(Topics::new(map, room))
+    Ok(Topics::new(map, budget))
 }

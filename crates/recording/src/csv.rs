@@ -10,15 +10,20 @@ use crate::{
     error::{Position, excerpt},
     label_column::MOST_NAMES,
     reading::{Part, Reading},
-    room::Room,
     table::Table,
+    watch::Budget,
 };
 
 /// Bytes read at a time: large enough that calls to the system do not matter, small against any file that takes long.
 const BUFFER_BYTES: usize = 1 << 20;
 
 /// Reads comma-, semicolon- or tab-separated text with a header line, in one pass.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
+pub(crate) fn read(
+    source: impl Read,
+    name: &str,
+    map: Option<&Map>,
+    budget: Budget,
+) -> Result<Reading, Error> {
     let mut source = BufReader::with_capacity(BUFFER_BYTES, source);
     let beginning = source.fill_buf()?;
     let delimiter = delimiter(beginning);
@@ -33,7 +38,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room)
         Err(error) => return Err(csv_error(&error)),
     };
     let plan = Plan::new(headers.clone(), map)?;
-    let mut table = Table::new(&plan, room);
+    let mut table = Table::new(&plan, budget.clone());
     let mut lines = Lines::default();
     let mut repairs = Vec::new();
     while reader.read_byte_record(&mut record).map_err(|error| csv_error(&error))? {
@@ -60,7 +65,7 @@ pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room)
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(repairs);
     let found = headers;
-    Reading::finish(Part { recording, report, found, format: "CSV" }, name, map)
+    Reading::finish(Part { recording, report, found, format: "CSV" }, name, map, &budget.looks)
 }
 
 /// The delimiter that the header line has most of; the comma when it has none.

@@ -2,7 +2,7 @@
 
 use std::{mem, ops::Range};
 
-use crate::{Error, Labels, ReadingReport, Recording, Repair, Run, error::Position};
+use crate::{Error, Labels, ReadingReport, Recording, Repair, Run, watch::Looks};
 
 /// Divides the rows into runs. Rows of one run that lie apart are brought together, in their order; then the place of each
 /// row in the file is returned.
@@ -11,35 +11,39 @@ pub(crate) fn divide(
     runs: Option<Labels>,
     name: &str,
     report: &mut ReadingReport,
-) -> Option<Vec<usize>> {
+    looks: &Looks,
+) -> Result<Option<Vec<usize>>, Error> {
     let rows = recording.rows();
     let Some(mut labels) = runs else {
         recording.runs = vec![Run::new(name.to_owned(), 0..rows, &recording.t_s, None)];
-        return None;
+        return Ok(None);
     };
     if labels.index.contains(&Labels::NONE) {
         let unnamed = u32::try_from(labels.names.len()).unwrap_or(Labels::NONE);
         labels.names.push("unnamed".into());
         labels.index.iter_mut().filter(|index| **index == Labels::NONE).for_each(|index| *index = unnamed);
     }
-    let order = scattered(&labels).then(|| {
+    let order = if scattered(&labels) {
         let mut order: Vec<usize> = (0..rows).collect();
         order.sort_by_key(|&row| labels.index[row]);
         report.repairs.push(Repair {
             place: "column `run`".into(),
             what: "the rows of a run lie apart in the file; they were brought together".into(),
         });
-        reorder(recording, &order);
+        reorder(recording, &order, looks)?;
         labels.index = order.iter().map(|&row| labels.index[row]).collect();
-        order
-    });
+        Some(order)
+    } else {
+        None
+    };
+    looks.go_on()?;
     recording.runs = stretches(&labels.index)
         .map(|(index, rows)| {
             let name = labels.names.get(index as usize).cloned().unwrap_or_default();
             Run::new(name, rows, &recording.t_s, None)
         })
         .collect();
-    order
+    Ok(order)
 }
 
 fn scattered(labels: &Labels) -> bool {
@@ -58,28 +62,15 @@ fn stretches(index: &[u32]) -> impl Iterator<Item = (u32, Range<usize>)> {
     })
 }
 
-fn reorder(recording: &mut Recording, order: &[usize]) {
+fn reorder(recording: &mut Recording, order: &[usize], looks: &Looks) -> Result<(), Error> {
     let sorted = |values: &[f64]| -> Vec<f64> { order.iter().map(|&row| values[row]).collect() };
     recording.t_s = sorted(&recording.t_s);
     for values in recording.channels.values_mut().chain(recording.aside.values_mut()) {
+        looks.go_on()?;
         *values = sorted(values);
     }
     if let Some(surface) = &mut recording.surface {
         surface.index = order.iter().map(|&row| surface.index[row]).collect();
-    }
-}
-
-pub(crate) fn check_order(recording: &Recording, position: impl Fn(usize) -> Position) -> Result<(), Error> {
-    for run in &recording.runs {
-        let t_s = &recording.t_s[run.rows.clone()];
-        if let Some(at) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Error::TimeOrder {
-                position: position(run.rows.start + at + 1),
-                run: run.name.clone(),
-                t_s: t_s[at + 1],
-                previous_s: t_s[at],
-            });
-        }
     }
     Ok(())
 }

@@ -1,6 +1,9 @@
 //! What can be wrong with a recording or a map of one.
 
-use crate::Channel;
+use crate::{
+    Channel,
+    clock::{TimeEvidence, remedy},
+};
 
 /// An error of the recording crate; the message names file, place and channel, and says how to mend it.
 #[derive(Debug, thiserror::Error)]
@@ -103,6 +106,47 @@ pub enum Error {
         t_s: f64,
         /// The time before it \[s\].
         previous_s: f64,
+    },
+    /// Times that cannot be in seconds.
+    #[error(
+        "{position}, run `{run}`: {evidence}: `{column}` must be in seconds; {}",
+        remedy(*evidence, column, map_unit.as_deref())
+    )]
+    NotSeconds {
+        /// Line or row of the first such time.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time column.
+        column: String,
+        /// The evidence.
+        evidence: TimeEvidence,
+        /// The unit that a map gave for the column, if one did.
+        map_unit: Option<String>,
+    },
+    /// Messages whose steps are not those of a drive log.
+    #[error(
+        "topic {topic}: {evidence}; name another topic as `base` in a map, or try the map with `\"stamp\": \"{other}\"`"
+    )]
+    TopicSteps {
+        /// The topic whose stamps become the rows.
+        topic: String,
+        /// The evidence.
+        evidence: TimeEvidence,
+        /// The other clock that the map may ask for.
+        other: &'static str,
+    },
+    /// A unit in a map that contradicts the type of the column.
+    #[error(
+        "map: the unit of column `{column}` is given as `{unit}`, but the file stores it in `{own}` by its type; leave the unit out"
+    )]
+    TypedUnit {
+        /// The column.
+        column: String,
+        /// The unit in the map.
+        unit: String,
+        /// The unit of its type.
+        own: &'static str,
     },
     /// A row without a time.
     #[error("{position}: there is no time in column `{column}`; remove the row or fill it in")]

@@ -7,8 +7,10 @@
 //! stays a gap; nothing is extrapolated. This crate knows nothing of models.
 
 pub mod align;
+mod arrow_schema;
 mod bag;
 mod channel;
+mod clock;
 mod coarse;
 mod column;
 mod combine;
@@ -42,6 +44,7 @@ mod walk;
 mod watch;
 
 pub use channel::{Channel, Quantity};
+pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, TimeUnit};
 pub use combine::Combine;
 pub use error::Error;
 pub use map::{Map, Place, Source, Stamp, Target};

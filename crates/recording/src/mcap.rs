@@ -11,8 +11,8 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
-    room::Room,
     topic::{Schema, Topics},
+    watch::Budget,
 };
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -41,9 +41,14 @@ struct Reader<'m> {
 }
 
 /// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
-pub(crate) fn read(source: impl Read, name: &str, map: Option<&Map>, room: Room) -> Result<Reading, Error> {
+pub(crate) fn read(
+    source: impl Read,
+    name: &str,
+    map: Option<&Map>,
+    budget: Budget,
+) -> Result<Reading, Error> {
     let mut source = opened(source, MAGIC, "MCAP", "it does not begin with the MCAP magic")?;
-    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map, room)?, plain: Vec::new() };
+    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map, budget)?, plain: Vec::new() };
     let mut bytes = Vec::new();
     let mut at = MAGIC.len() as u64;
     loop {
@@ -90,6 +95,7 @@ impl Reader<'_> {
 
     /// Reads a record. What a broken one says is told, not trusted.
     fn record(&mut self, opcode: u8, body: &[u8], at: u64, whole: bool) -> Result<(), Error> {
+        self.topics.looks().worked(1)?;
         if opcode == CHUNK {
             return self.chunk(body, at, whole);
         }
@@ -172,7 +178,7 @@ impl Reader<'_> {
         let packed = cursor.rest();
         let packed = packed.get(..packed_bytes).unwrap_or(packed);
         let mut plain = std::mem::take(&mut self.plain);
-        match decompress(compression, packed, claimed_bytes, &mut plain) {
+        match decompress(compression, packed, claimed_bytes, &mut plain, self.topics.looks())? {
             Err(reason) => self.tell(at, &format!("{reason}; the chunk was left out")),
             Ok(true) if checksum != 0 && crc32fast::hash(&plain) != checksum => {
                 self.tell(at, "a chunk fails its checksum; it was left out");

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use crate::{
     Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
     align::{Between, interpolate},
+    clock::implausible_steps,
     gap,
     map::{Place, Target},
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
-    stream::Stream,
+    stream::{BY_HEADER, Stream},
     topic::{Topic, Topics},
 };
 
@@ -19,6 +20,7 @@ impl Topics<'_> {
         let mut report = ReadingReport::default();
         let mut streams = Vec::new();
         for topic in std::mem::take(&mut self.topics) {
+            self.looks().go_on()?;
             if let Some(reason) = &topic.first_bad {
                 self.refuse_or_tell(&topic, reason)?;
             }
@@ -48,11 +50,13 @@ impl Topics<'_> {
             return Err(Error::Empty { found });
         }
         let base = self.base(&streams, &chosen)?;
-        let recording = self.align(&streams, &chosen, base, name, &mut report);
+        check_steps(&streams[base])?;
+        let recording = self.align(&streams, &chosen, base, name, &mut report)?;
+        let looks = self.looks().clone();
         report.ignored = self.ignored;
         report.repairs = self.repairs;
         let part = Part { recording, report, found: self.names, format };
-        Reading::finish(part, name, Some(self.map))
+        Reading::finish(part, name, Some(self.map), &looks)
     }
 
     fn refuse_or_tell(&mut self, topic: &Topic, reason: &str) -> Result<(), Error> {
@@ -119,12 +123,13 @@ impl Topics<'_> {
         base: usize,
         name: &str,
         report: &mut ReadingReport,
-    ) -> Recording {
+    ) -> Result<Recording, Error> {
         let origin_ns = streams[base].stream.t_ns.first().copied().unwrap_or(0);
         let t_s = streams[base].stream.t_s(origin_ns);
         let mut recording = Recording::default();
         let mut max_gaps = BTreeMap::new();
         for &(source, at, column) in chosen {
+            self.looks().go_on()?;
             let (source, named) = (&self.map.sources[source], &streams[at]);
             let values = &named.stream.columns[column];
             let values = if at == base {
@@ -162,7 +167,19 @@ impl Topics<'_> {
         recording.surface = self.map.surface.as_ref().map(|surface| Labels::constant(surface, t_s.len()));
         recording.t_s = t_s;
         report.alignment = Some(alignment(&streams[base].topic, max_gaps));
-        recording
+        Ok(recording)
+    }
+}
+
+/// Refuses stamps whose steps are not those of a drive log.
+fn check_steps(base: &Named) -> Result<(), Error> {
+    let origin_ns = base.stream.t_ns.first().copied().unwrap_or(0);
+    match implausible_steps(&base.stream.t_s(origin_ns), base.stream.messages_each) {
+        None => Ok(()),
+        Some(evidence) => {
+            let other = if base.stream.clock == BY_HEADER { "log" } else { "header" };
+            Err(Error::TopicSteps { topic: base.topic.clone(), evidence, other })
+        }
     }
 }
 

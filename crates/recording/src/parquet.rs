@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ::parquet::{
-    basic::{LogicalType, TimeUnit, Type as Physical},
+    basic::{ConvertedType, LogicalType, TimeUnit, Type as Physical},
     column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader},
     data_type::{ByteArray, DataType},
     file::reader::{ChunkReader, FileReader, SerializedFileReader},
@@ -11,14 +11,14 @@ use ::parquet::{
 };
 
 use crate::{
-    Error, Map,
+    Conversion, Error, Map, Quantity, arrow_schema,
     column::{Column, Kind, Plan},
     error::Position,
     label_column::{LabelColumn, MOST_NAMES},
     pages::Pages,
     reading::{Part, Reading},
-    room::Room,
     table::Table,
+    watch::Budget,
 };
 
 /// Rows read at a time: small enough to stay in the cache while they are widened.
@@ -33,11 +33,11 @@ pub(crate) fn read(
     source: impl ChunkReader + 'static,
     name: &str,
     map: Option<&Map>,
-    room: Room,
+    budget: Budget,
 ) -> Result<Reading, Error> {
     // The library asserts some of what a damaged file may say (negative offsets among it). Nothing of it outlives the
     // closure, so that stopping in the middle leaves nothing half done.
-    let read = AssertUnwindSafe(|| read_file(source, name, map, room));
+    let read = AssertUnwindSafe(|| read_file(source, name, map, budget));
     catch_unwind(read).unwrap_or_else(|_| Err(damaged()))
 }
 
@@ -50,19 +50,24 @@ fn read_file(
     source: impl ChunkReader + 'static,
     name: &str,
     map: Option<&Map>,
-    room: Room,
+    budget: Budget,
 ) -> Result<Reading, Error> {
     let file_bytes = source.len();
     let file = SerializedFileReader::new(source)?;
     refuse_contradictions(&file, file_bytes)?;
     let schema = file.metadata().file_metadata().schema_descr_ptr();
     let headers: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
-    let plan = Plan::new(headers.clone(), map)?;
-    let mut table = Table::new(&plan, room);
+    let mut plan = Plan::new(headers.clone(), map)?;
+    let mut table = Table::new(&plan, budget.clone());
     let mut sources = Vec::with_capacity(headers.len());
-    for (index, kind) in plan.kinds.iter().enumerate() {
+    let durations = durations_of(&file);
+    for index in 0..headers.len() {
         let descriptor = schema.column(index);
-        sources.push(Source::new(&descriptor, *kind, &mut table.columns[index])?);
+        let unit = time_unit(&descriptor, &durations);
+        if let Some(own) = unit {
+            plan.typed_time(index, own)?;
+        }
+        sources.push(Source::new(&descriptor, plan.kinds[index], unit, &mut table.columns[index])?);
     }
     let mut before = 0;
     for group in 0..file.num_row_groups() {
@@ -89,7 +94,41 @@ fn read_file(
         }
     }
     let (recording, report) = plan.assemble(table, name, |row| Position::Row(row as u64 + 1))?;
-    Reading::finish(Part { recording, report, found: headers, format: "Parquet" }, name, map)
+    let part = Part { recording, report, found: headers, format: "Parquet" };
+    Reading::finish(part, name, map, &budget.looks)
+}
+
+/// The duration columns of a file that Arrow wrote, with their units.
+fn durations_of<R: ChunkReader + 'static>(file: &SerializedFileReader<R>) -> Vec<(String, &'static str)> {
+    let pairs = file.metadata().file_metadata().key_value_metadata();
+    let schema = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == arrow_schema::KEY));
+    schema.and_then(|pair| pair.value.as_deref()).map(arrow_schema::durations).unwrap_or_default()
+}
+
+/// The unit that a column of integers stores times in by its type, whatever the writer says it by; `None` for plain numbers.
+fn time_unit(descriptor: &ColumnDescriptor, durations: &[(String, &'static str)]) -> Option<&'static str> {
+    if descriptor.physical_type() == Physical::INT96 {
+        return Some("ns");
+    }
+    if !matches!(descriptor.physical_type(), Physical::INT32 | Physical::INT64) {
+        return None;
+    }
+    let symbol = |unit: &TimeUnit| match unit {
+        TimeUnit::MILLIS => "ms",
+        TimeUnit::MICROS => "us",
+        TimeUnit::NANOS => "ns",
+    };
+    match (descriptor.logical_type_ref(), descriptor.converted_type()) {
+        (Some(LogicalType::Timestamp(stamp)), _) => Some(symbol(&stamp.unit)),
+        (Some(LogicalType::Time(time)), _) => Some(symbol(&time.unit)),
+        (None, ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS) => Some("ms"),
+        (None, ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS) => Some("us"),
+        _ => {
+            let path = descriptor.path().parts();
+            let own = durations.iter().find(|(name, _)| matches!(path, [only] if only == name));
+            own.map(|(_, unit)| *unit)
+        }
+    }
 }
 
 /// Refuses columns that lie outside the file before anything of their size is allocated.
@@ -128,10 +167,16 @@ struct Source {
 }
 
 impl Source {
-    fn new(descriptor: &ColumnDescriptor, kind: Kind, column: &mut Column) -> Result<Source, Error> {
+    fn new(
+        descriptor: &ColumnDescriptor,
+        kind: Kind,
+        unit: Option<&str>,
+        column: &mut Column,
+    ) -> Result<Source, Error> {
         let (name, full) = (descriptor.path().string(), descriptor.max_def_level());
-        let scale = match meaning(descriptor, kind) {
-            Ok(scale) => scale,
+        let in_seconds = unit.and_then(|unit| Conversion::from_unit(Quantity::Time, unit, None));
+        let scale = match refuse_type(descriptor, kind) {
+            Ok(()) => in_seconds.map_or(1.0, |unit| unit.factor),
             Err(found) if kind == Kind::Perhaps => {
                 *column = Column::Unusable(found);
                 1.0
@@ -159,6 +204,10 @@ impl Source {
                 self.numbers(r, v, |x| f64::from(*x))?
             }
             (ColumnReader::Int64ColumnReader(r), Column::Numbers(v)) => self.numbers(r, v, |x| *x as f64)?,
+            // Timestamps of older Spark and Impala, in nanoseconds.
+            (ColumnReader::Int96ColumnReader(r), Column::Numbers(v)) => {
+                self.numbers(r, v, |x| x.to_nanos() as f64)?
+            }
             (ColumnReader::BoolColumnReader(r), Column::Numbers(v)) => {
                 self.numbers(r, v, |x| f64::from(u8::from(*x)))?
             }
@@ -221,8 +270,8 @@ impl Source {
     }
 }
 
-/// What a stored number is multiplied with, or in words what the column holds instead of what is wanted.
-fn meaning(descriptor: &ColumnDescriptor, kind: Kind) -> Result<f64, String> {
+/// Refuses, in words, what a column holds instead of what is wanted.
+fn refuse_type(descriptor: &ColumnDescriptor, kind: Kind) -> Result<(), String> {
     if descriptor.max_rep_level() > 0 {
         return Err("it holds lists".into());
     }
@@ -230,25 +279,22 @@ fn meaning(descriptor: &ColumnDescriptor, kind: Kind) -> Result<f64, String> {
     let text = matches!(physical, Physical::BYTE_ARRAY);
     if kind == Kind::Label {
         let whole = matches!(physical, Physical::INT32 | Physical::INT64);
-        return if text || whole { Ok(1.0) } else { Err(format!("it holds {physical}, not text")) };
+        return if text || whole { Ok(()) } else { Err(format!("it holds {physical}, not text")) };
     }
     match (physical, descriptor.logical_type_ref()) {
         (_, Some(LogicalType::Decimal(_))) => Err("it holds decimals".into()),
-        (Physical::INT32 | Physical::INT64, Some(LogicalType::Timestamp(stamp))) => Ok(seconds(&stamp.unit)),
-        (Physical::INT32 | Physical::INT64, Some(LogicalType::Time(time))) => Ok(seconds(&time.unit)),
-        (Physical::DOUBLE | Physical::FLOAT | Physical::INT32 | Physical::INT64 | Physical::BOOLEAN, _) => {
-            Ok(1.0)
-        }
+        (_, Some(LogicalType::Date)) => Err("it holds dates".into()),
+        (
+            Physical::DOUBLE
+            | Physical::FLOAT
+            | Physical::INT32
+            | Physical::INT64
+            | Physical::INT96
+            | Physical::BOOLEAN,
+            _,
+        ) => Ok(()),
         _ if text => Err("it holds text".into()),
         _ => Err(format!("it holds {physical}")),
-    }
-}
-
-fn seconds(unit: &TimeUnit) -> f64 {
-    match unit {
-        TimeUnit::MILLIS => 1e-3,
-        TimeUnit::MICROS => 1e-6,
-        TimeUnit::NANOS => 1e-9,
     }
 }
 

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv, mcap, parquet,
-    suspicion::suspicions, watch::Watched,
+    suspicion::suspicions_watched,
+    watch::{Budget, Looks, Watched},
 };
 
 /// A recording and what reading it found.
@@ -102,11 +103,12 @@ pub fn read_file(
 ) -> Result<Reading, Error> {
     let file = Watched::new(file, Arc::clone(watch));
     let stopped = file.stopped();
+    let budget = Budget { room, looks: Looks::new(watch) };
     let reading = match format {
-        Format::Csv => csv::read(file, name, map, room),
-        Format::Parquet => parquet::read(file, name, map, room),
-        Format::Mcap => mcap::read(file, name, map, room),
-        Format::Bag => bag::read(file, name, map, room),
+        Format::Csv => csv::read(file, name, map, budget),
+        Format::Parquet => parquet::read(file, name, map, budget),
+        Format::Mcap => mcap::read(file, name, map, budget),
+        Format::Bag => bag::read(file, name, map, budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
 }
@@ -165,11 +167,12 @@ pub(crate) fn read_within(
     map: Option<&Map>,
     room: Room,
 ) -> Result<Reading, Error> {
+    let budget = Budget { room, looks: Looks::new(&unwatched()) };
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, room),
-        Format::Csv => csv::read(Cursor::new(bytes), name, map, room),
-        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, room),
-        Format::Bag => bag::read(Cursor::new(bytes), name, map, room),
+        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, budget),
+        Format::Csv => csv::read(Cursor::new(bytes), name, map, budget),
+        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, budget),
+        Format::Bag => bag::read(Cursor::new(bytes), name, map, budget),
     }
 }
 
@@ -184,7 +187,7 @@ pub(crate) struct Part {
 
 impl Reading {
     /// Takes out what holds nothing, checks that the rest is a recording, and completes the report.
-    pub(crate) fn finish(part: Part, name: &str, map: Option<&Map>) -> Result<Reading, Error> {
+    pub(crate) fn finish(part: Part, name: &str, map: Option<&Map>, looks: &Looks) -> Result<Reading, Error> {
         let Part { mut recording, mut report, mut found, format } = part;
         let mut empty = Vec::new();
         recording.channels.retain(|channel, values| {
@@ -224,8 +227,8 @@ impl Reading {
         report.format = format.to_owned();
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
-        report.describe(&recording);
-        report.suspicions = suspicions(&recording);
+        report.describe(&recording, looks)?;
+        report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })
     }
 }

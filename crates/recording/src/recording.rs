@@ -108,13 +108,14 @@ impl Recording {
     /// name is taken gets a number behind it.
     pub fn join(parts: impl IntoIterator<Item = Recording>) -> Recording {
         let mut joined = Recording::default();
+        let mut names = RunNames::default();
         for part in parts {
-            joined.append(part);
+            joined.append(part, &mut names);
         }
         joined
     }
 
-    fn append(&mut self, part: Recording) {
+    fn append(&mut self, part: Recording, names: &mut RunNames) {
         let (before, added) = (self.rows(), part.rows());
         self.t_s.extend(part.t_s);
         append_columns(&mut self.channels, part.channels, before, added);
@@ -124,16 +125,35 @@ impl Recording {
             surface.append(&part.surface.unwrap_or_else(|| Labels::unnamed(added)));
         }
         for mut run in part.runs {
-            let taken = |name: &str, runs: &[Run]| runs.iter().any(|other| other.name == name);
-            let mut number = 2;
-            let plain = run.name.clone();
-            while taken(&run.name, &self.runs) {
-                run.name = format!("{plain}-{number}");
-                number += 1;
-            }
+            run.name = names.free(run.name);
             run.rows = run.rows.start + before..run.rows.end + before;
             self.runs.push(run);
         }
+    }
+}
+
+/// Names of runs that are taken, each with the number that the next run of that name gets.
+#[derive(Default)]
+struct RunNames(HashMap<String, u64>);
+
+impl RunNames {
+    /// The name, with a number behind it where it is taken. Every number of a name is tried once, however many runs share it.
+    fn free(&mut self, name: String) -> String {
+        let mut number = match self.0.get(&name) {
+            None => {
+                self.0.insert(name.clone(), 2);
+                return name;
+            }
+            Some(number) => *number,
+        };
+        let mut numbered = format!("{name}-{number}");
+        while self.0.contains_key(&numbered) {
+            number += 1;
+            numbered = format!("{name}-{number}");
+        }
+        self.0.insert(name, number + 1);
+        self.0.insert(numbered.clone(), 2);
+        numbered
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Channel, PowerForm, Recording, gap};
+use crate::{Channel, Error, PowerForm, Recording, gap, watch::Looks};
 
 /// What was found, used, left aside, repaired, missing and suspicious.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -166,14 +166,20 @@ pub struct Suspicion {
 
 impl ReadingReport {
     /// Fills in what can be told from the recording itself.
-    pub(crate) fn describe(&mut self, recording: &Recording) {
+    pub(crate) fn describe(&mut self, recording: &Recording, looks: &Looks) -> Result<(), Error> {
+        let mut looks = looks.clone();
         self.rows = recording.rows();
         self.power_form = recording.power_form();
-        self.runs = recording.runs.iter().map(|run| RunReport::new(recording, run)).collect();
+        for run in &recording.runs {
+            looks.worked(run.rows.len())?;
+            self.runs.push(RunReport::new(recording, run));
+        }
         self.aside = recording.aside.keys().cloned().collect();
         for report in &mut self.channels {
+            looks.worked(self.rows)?;
             report.describe(recording.channel(report.channel).unwrap_or_default());
         }
+        Ok(())
     }
 }
 

@@ -10,6 +10,9 @@ const CLOCK_JUMP_S: f64 = 2.0;
 
 const NS_PER_S: f64 = 1e9;
 
+/// Name of the clock of header stamps.
+pub(crate) const BY_HEADER: &str = "header stamp";
+
 /// Seconds after the first.
 fn seconds(t_ns: &[i64]) -> Vec<f64> {
     let origin_ns = t_ns.first().copied().unwrap_or(0);
@@ -36,6 +39,8 @@ pub(crate) struct Stream {
     pub(crate) t_ns: Vec<i64>,
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) clock: &'static str,
+    /// Messages of the file that each stands for at most.
+    pub(crate) messages_each: u32,
 }
 
 impl Samples {
@@ -103,10 +108,11 @@ impl Samples {
         let has_stamps = self.stamp_ns.len() == self.log_ns.len() && self.stamp_ns.iter().all(|ns| *ns != 0);
         let by_header = stamp == Stamp::Header && has_stamps;
         let (t_ns, clock) =
-            if by_header { (self.stamp_ns, "header stamp") } else { (self.log_ns.clone(), "log time") };
+            if by_header { (self.stamp_ns, BY_HEADER) } else { (self.log_ns.clone(), "log time") };
         let other = if by_header { "log" } else { "header" };
         refuse_jumps(topic, &t_ns, &self.log_ns, other, &self.coarse)?;
-        let mut stream = Stream { t_ns, columns: self.columns, clock };
+        let messages_each = self.coarse.rows_per_row();
+        let mut stream = Stream { t_ns, columns: self.columns, clock, messages_each };
         let mut repair = |count: usize, what: &str| {
             if count > 0 {
                 repairs.push(Repair { place: format!("topic {topic}"), what: format!("{count} {what}") });

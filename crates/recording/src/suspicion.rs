@@ -3,14 +3,18 @@
 mod absence;
 mod magnitude;
 mod motion;
+mod rhythm;
 
 use absence::{constant, empty, present, saturated, sparse};
 use magnitude::{magnitude, units_of_runs};
 use motion::{degrees, lone_flips, turning, unsigned};
+use rhythm::slow_motion;
 
 use crate::{
-    Channel, Recording,
+    Channel, Error, Recording,
     report::{Suspicion, SuspicionKind as Kind},
+    unwatched,
+    watch::Looks,
 };
 
 /// Fewer rows than this say nothing about a channel.
@@ -18,8 +22,15 @@ const LEAST_ROWS: usize = 20;
 
 /// A doubt about each channel, for every test that it fails.
 pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
+    suspicions_watched(recording, &Looks::new(&unwatched())).unwrap_or_default()
+}
+
+/// Doubts as [`suspicions`] has them, followed by a watch.
+pub(crate) fn suspicions_watched(recording: &Recording, looks: &Looks) -> Result<Vec<Suspicion>, Error> {
+    let mut looks = looks.clone();
     let mut doubts = Vec::new();
     for (&channel, values) in &recording.channels {
+        looks.worked(values.len())?;
         let doubt = |kind, statement| Suspicion { channel, run: None, kind, statement };
         let present = present(values);
         if let Some(statement) = sparse(present.len(), values.len()) {
@@ -36,6 +47,7 @@ pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
         doubts.extend(magnitude(channel, &present).map(|statement| doubt(Kind::Unit, statement)));
     }
     for run in &recording.runs {
+        looks.worked(run.rows.len())?;
         doubts.extend(empty(recording, run));
         for channel in [Channel::LeftSpeed, Channel::RightSpeed, Channel::YawRate] {
             let values = recording.channel(channel).and_then(|values| values.get(run.rows.clone()));
@@ -45,10 +57,12 @@ pub fn suspicions(recording: &Recording) -> Vec<Suspicion> {
         }
         doubts.extend(turning(recording, run));
         doubts.extend(degrees(recording, run));
+        doubts.extend(slow_motion(recording, run));
     }
+    looks.go_on()?;
     doubts.extend(units_of_runs(recording));
     doubts.extend(unsigned(recording));
-    doubts
+    Ok(doubts)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::{
     coarse::Coarse,
     column::{Column, Kind, Plan},
     label_column::LabelColumn,
-    room::Room,
+    watch::{Budget, Looks},
 };
 
 /// Columns of as many rows each.
@@ -16,7 +16,7 @@ pub(crate) struct Table {
     kinds: Vec<Kind>,
     time: Option<usize>,
     periods: Vec<Option<f64>>,
-    room: Room,
+    budget: Budget,
     rows: usize,
     /// Rows that fit.
     most_rows: usize,
@@ -24,7 +24,7 @@ pub(crate) struct Table {
 
 impl Table {
     /// Columns of the plan's kinds without a row.
-    pub(crate) fn new(plan: &Plan, room: Room) -> Table {
+    pub(crate) fn new(plan: &Plan, budget: Budget) -> Table {
         let empty = |kind: &Kind| match kind {
             Kind::Label => Column::Labels(LabelColumn::default()),
             Kind::Number | Kind::Perhaps => Column::Numbers(Vec::new()),
@@ -35,15 +35,16 @@ impl Table {
             kinds: plan.kinds.clone(),
             time: plan.time(),
             periods: plan.periods(),
-            room,
             rows: 0,
-            most_rows: room.rows(plan.kinds.len()),
+            most_rows: budget.room.rows(plan.kinds.len()),
+            budget,
         }
     }
 
     /// Takes note that every column has so many rows more; where they fill the room, neighbours become one.
     pub(crate) fn end_rows(&mut self, more: usize) -> Result<(), Error> {
         self.rows += more;
+        self.budget.looks.worked(more)?;
         if self.rows < self.most_rows { Ok(()) } else { self.make_room() }
     }
 
@@ -57,11 +58,16 @@ impl Table {
             }
         }
         let kept = self.columns.iter().filter(|column| !matches!(column, Column::Unusable(_))).count();
-        self.most_rows = self.room.rows(kept);
+        self.most_rows = self.budget.room.rows(kept);
         if self.rows < self.most_rows {
             return Ok(());
         }
         self.join(self.most_rows / 2)
+    }
+
+    /// The watch of the reading.
+    pub(crate) fn looks(&self) -> &Looks {
+        &self.budget.looks
     }
 
     /// Brings the rows that were read last to means of as many as those before, so that a run has one rhythm.
@@ -81,6 +87,7 @@ impl Table {
             return Err(Error::TooLarge { most: self.most_rows });
         };
         for (column, period) in self.columns.iter_mut().zip(&self.periods) {
+            self.budget.looks.worked(self.rows)?;
             match column {
                 Column::Numbers(values) => groups.average(values, *period),
                 Column::Labels(labels) => groups.first(labels.index()),

@@ -3,9 +3,9 @@
 //! What a robot draws is judged second by second, and nothing that it does takes less than a tenth of one. Rates of change between
 //! neighbouring rows of a faster recording are mostly the encoder's steps: force and loss that follow them are not the robot's.
 
-use std::{borrow::Cow, ops::Range};
+use std::{borrow::Cow, collections::BTreeMap, ops::Range};
 
-use crate::{Channel, Labels, Recording, Run};
+use crate::{Channel, Error, Labels, Recording, Run, Watch, unwatched, watch::Looks};
 
 /// Time from row to row that is aimed at [s].
 const STEP_S: f64 = 0.1;
@@ -16,16 +16,30 @@ impl Recording {
     /// The same drives with rows no closer than about a tenth of a second: means over neighbours of the same run and the same ground, without a
     /// gap between them. Recordings that have no more rows stay as they are.
     pub fn thinned(&self) -> Cow<'_, Recording> {
-        let groups: Vec<Vec<Range<usize>>> = self.runs.iter().map(|run| self.groups(run)).collect();
+        // Only a watch that breaks has no answer.
+        self.thinned_watched(&unwatched()).unwrap_or(Cow::Borrowed(self))
+    }
+
+    /// The same drives as [`Recording::thinned`] has them, followed by a watch.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] soon after the watch breaks.
+    pub fn thinned_watched(&self, watch: &Watch) -> Result<Cow<'_, Recording>, Error> {
+        let looks = Looks::new(watch);
+        let groups = self.runs.iter().map(|run| self.groups(run, &mut looks.clone()));
+        let groups: Vec<Vec<Range<usize>>> = groups.collect::<Result<_, _>>()?;
         if groups.iter().flatten().count() == self.rows() {
-            return Cow::Borrowed(self);
+            return Ok(Cow::Borrowed(self));
         }
         let all: Vec<Range<usize>> = groups.iter().flatten().cloned().collect();
-        let column = |values: &Vec<f64>| all.iter().map(|rows| mean(&values[rows.clone()])).collect();
+        let column = |values: &Vec<f64>| -> Result<Vec<f64>, Error> {
+            looks.go_on()?;
+            Ok(all.iter().map(|rows| mean(&values[rows.clone()])).collect())
+        };
         let mut thin = Recording {
-            t_s: column(&self.t_s),
-            channels: self.channels.iter().map(|(channel, values)| (*channel, column(values))).collect(),
-            aside: self.aside.iter().map(|(name, values)| (name.clone(), column(values))).collect(),
+            t_s: column(&self.t_s)?,
+            channels: columns(&self.channels, column)?,
+            aside: columns(&self.aside, column)?,
             surface: self.surface.as_ref().map(|labels| Labels {
                 names: labels.names.clone(),
                 index: all.iter().map(|rows| labels.index[rows.start]).collect(),
@@ -42,11 +56,11 @@ impl Recording {
             from = rows.end;
             thin.runs.push(Run::new(run.name.clone(), rows, &thin.t_s, run.start_unix_s));
         }
-        Cow::Owned(thin)
+        Ok(Cow::Owned(thin))
     }
 
     /// Rows of a run that become one each.
-    fn groups(&self, run: &Run) -> Vec<Range<usize>> {
+    fn groups(&self, run: &Run, looks: &mut Looks) -> Result<Vec<Range<usize>>, Error> {
         let mut steps_s: Vec<f64> = run.rows.clone().filter_map(|row| self.step_s(run, row)).collect();
         let middle = steps_s.len() / 2;
         let step_s = match steps_s.is_empty() {
@@ -57,6 +71,7 @@ impl Recording {
         let label = |row: usize| self.surface.as_ref().map(|labels| labels.index[row]);
         let mut groups: Vec<Range<usize>> = Vec::new();
         for row in run.rows.clone() {
+            looks.worked(1)?;
             match groups.last_mut() {
                 Some(group)
                     if group.len() < most
@@ -68,8 +83,16 @@ impl Recording {
                 _ => groups.push(row..row + 1),
             }
         }
-        groups
+        Ok(groups)
     }
+}
+
+/// Columns by name, each changed.
+fn columns<K: Ord + Clone>(
+    from: &BTreeMap<K, Vec<f64>>,
+    change: impl Fn(&Vec<f64>) -> Result<Vec<f64>, Error>,
+) -> Result<BTreeMap<K, Vec<f64>>, Error> {
+    from.iter().map(|(name, values)| Ok((name.clone(), change(values)?))).collect()
 }
 
 /// Mean of what is no gap.
@@ -86,7 +109,7 @@ fn mean_angle(values_rad: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::{collections::BTreeMap, f64::consts::PI};
+    use std::f64::consts::PI;
 
     use super::*;
 

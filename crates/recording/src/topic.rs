@@ -3,8 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Error, Ignored, Map, Repair, cursor::Encoding, definition::Definition, layout::Layout, map::Place,
-    room::Room, stream::Samples, walk::Found,
+    Error, Ignored, Map, Repair,
+    cursor::Encoding,
+    definition::Definition,
+    layout::Layout,
+    map::Place,
+    stream::Samples,
+    walk::Found,
+    watch::{Budget, Looks},
 };
 
 /// The topics of a file while it is read.
@@ -17,7 +23,7 @@ pub(crate) struct Topics<'m> {
     pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
     found: Found,
-    room: Room,
+    budget: Budget,
     /// Numbers held by all topics.
     numbers: usize,
 }
@@ -43,7 +49,7 @@ pub(crate) struct Schema<'s> {
 }
 
 impl<'m> Topics<'m> {
-    pub(crate) fn new(map: &'m Map, room: Room) -> Self {
+    pub(crate) fn new(map: &'m Map, budget: Budget) -> Self {
         Topics {
             map,
             connections: BTreeMap::new(),
@@ -52,9 +58,14 @@ impl<'m> Topics<'m> {
             ignored: Vec::new(),
             repairs: Vec::new(),
             found: Found::default(),
-            room,
+            budget,
             numbers: 0,
         }
+    }
+
+    /// The watch of the reading.
+    pub(crate) fn looks(&mut self) -> &mut Looks {
+        &mut self.budget.looks
     }
 
     /// Takes note of what is wrong at a byte of the file.
@@ -170,18 +181,19 @@ impl<'m> Topics<'m> {
             column.push(source.conversion.apply(value));
         }
         self.numbers += topic.samples.width();
-        if self.numbers < self.room.numbers() { Ok(()) } else { self.make_room() }
+        if self.numbers < self.budget.room.numbers() { Ok(()) } else { self.make_room() }
     }
 
     /// Makes one of neighbouring messages, of the topic with the most first, until half of the room is free.
     fn make_room(&mut self) -> Result<(), Error> {
         let numbers =
             |topics: &[Topic]| -> usize { topics.iter().map(|topic| topic.samples.numbers()).sum() };
-        while numbers(&self.topics) > self.room.numbers() / 2 {
+        while numbers(&self.topics) > self.budget.room.numbers() / 2 {
             let Some(topic) = self.topics.iter_mut().max_by_key(|topic| topic.samples.log_ns.len()) else {
                 break;
             };
             let most = topic.samples.log_ns.len();
+            self.budget.looks.go_on()?;
             if !topic.samples.halve() {
                 return Err(Error::TooLarge { most });
             }

@@ -63,9 +63,15 @@ pub fn unit_names(quantity: Quantity) -> Vec<&'static str> {
 /// 0.3048 m and standard gravity 9.80665 m/s² are exact by definition.
 fn units(quantity: Quantity) -> &'static [(&'static str, f64, f64)] {
     match quantity {
-        Quantity::Time => {
-            &[("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0), ("ns", 1e-9, 0.0), ("min", 60.0, 0.0)]
-        }
+        Quantity::Time => &[
+            ("s", 1.0, 0.0),
+            ("ms", 1e-3, 0.0),
+            ("us", 1e-6, 0.0),
+            ("ns", 1e-9, 0.0),
+            ("min", 60.0, 0.0),
+            ("h", 3600.0, 0.0),
+            ("d", 86_400.0, 0.0),
+        ],
         Quantity::Speed => &[
             ("m/s", 1.0, 0.0),
             ("mm/s", 1e-3, 0.0),

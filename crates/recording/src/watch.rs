@@ -12,8 +12,60 @@ use std::{
 use ::parquet::{errors::Result as ParquetResult, file::reader::ChunkReader, file::reader::Length};
 use bytes::Bytes;
 
+use crate::{Error, Room};
+
 /// Is told how many more bytes were read, and stops the reading by breaking. Fits and diagnoses ask it as well, telling of no bytes.
 pub type Watch = Arc<dyn Fn(u64) -> ControlFlow<()> + Send + Sync>;
+
+/// Rows or messages that are worked on between two looks at the watch: some milliseconds of the slowest step.
+pub(crate) const ROWS_A_LOOK: usize = 8192;
+
+/// Bytes that are unpacked between two looks at the watch: some 20 ms of the slowest compression.
+pub(crate) const BYTES_A_LOOK: u64 = 1 << 18;
+
+/// A watch that is asked while work goes on that reads no bytes.
+#[derive(Clone)]
+pub(crate) struct Looks {
+    watch: Watch,
+    rows_since: usize,
+}
+
+impl Looks {
+    pub(crate) fn new(watch: &Watch) -> Self {
+        Looks { watch: Arc::clone(watch), rows_since: 0 }
+    }
+
+    /// Asks the watch.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when it breaks.
+    pub(crate) fn go_on(&self) -> Result<(), Error> {
+        match (self.watch)(0) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Error::Stopped),
+        }
+    }
+
+    /// Takes note of rows that were worked on, and asks the watch once there are [`ROWS_A_LOOK`] of them.
+    ///
+    /// # Errors
+    /// As [`Looks::go_on`].
+    pub(crate) fn worked(&mut self, rows: usize) -> Result<(), Error> {
+        self.rows_since += rows;
+        if self.rows_since < ROWS_A_LOOK {
+            return Ok(());
+        }
+        self.rows_since = 0;
+        self.go_on()
+    }
+}
+
+/// Memory and patience of a reading.
+#[derive(Clone)]
+pub(crate) struct Budget {
+    pub(crate) room: Room,
+    pub(crate) looks: Looks,
+}
 
 /// A source whose reading is watched.
 #[derive(Clone)]
