@@ -101,7 +101,7 @@ pub fn calibrate_watched(
     options: &Options,
     watch: &Watch,
 ) -> Result<Calibration, Error> {
-    let drives = Drives::watched(robot, &recording.thinned(), watch)?;
+    let drives = Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?;
     Ok(calibrate_drives(robot, &drives, options)?.with_note(slopes_note(recording)))
 }
 
@@ -109,7 +109,7 @@ fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result
     if drives.form == Some(PowerForm::MotorCurrents) {
         return current_calibration::calibrate(robot, drives, options);
     }
-    let (robot, track) = with_slip_track(robot, drives);
+    let (robot, track) = with_slip_track(robot, drives)?;
     let found = fit_power(&robot, drives)?;
     let mut parameters = vec![track];
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
@@ -131,7 +131,10 @@ pub(crate) fn held_note(parameters: &[FittedParameter]) -> Option<String> {
 }
 
 /// The robot with the slip track that its gyroscope and wheels agree on, where both turned.
-pub(crate) fn with_slip_track(robot: &Robot, drives: &Drives) -> (Robot, FittedParameter) {
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub(crate) fn with_slip_track(robot: &Robot, drives: &Drives) -> Result<(Robot, FittedParameter), Error> {
     let mut robot = robot.clone();
     let parameter = |value: f64, interval_95, determined| FittedParameter {
         name: "slip_track_m".into(),
@@ -141,14 +144,14 @@ pub(crate) fn with_slip_track(robot: &Robot, drives: &Drives) -> (Robot, FittedP
         determined,
     };
     let sensible = robot.track_m..=10.0 * robot.track_m;
-    match stuck::slip_track(drives) {
+    Ok(match stuck::slip_track(drives)? {
         Some(SlipTrack { value_m, sigma_m }) if sensible.contains(&value_m) => {
             robot.slip_track_m = value_m;
             let half_m = NORMAL_975 * sigma_m;
             (robot, parameter(value_m, Some([value_m - half_m, value_m + half_m]), true))
         }
         _ => (robot.clone(), parameter(robot.slip_track_m, None, false)),
-    }
+    })
 }
 
 fn fitted(found: &PowerFit, i: usize) -> FittedParameter {
@@ -187,7 +190,7 @@ fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Err
     if drives.judged_runs().len() < 2 {
         return Ok(None);
     }
-    let halves = folds::halves(drives);
+    let halves = folds::halves(drives)?;
     let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..2 {
         let fitted = fit_thinned(robot, &halves[i])?.robot;

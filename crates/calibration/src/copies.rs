@@ -2,8 +2,10 @@
 
 use recording::{Channel, Recording};
 
+use crate::{Error, watch::Watched};
+
 /// Runs whose wheel speeds and power repeat those of a longer or earlier run from its first row on.
-pub(crate) fn copies(recording: &Recording) -> Vec<usize> {
+pub(crate) fn copies(recording: &Recording, watch: &Watched) -> Result<Vec<usize>, Error> {
     let channels = [
         Channel::LeftSpeed,
         Channel::RightSpeed,
@@ -23,7 +25,12 @@ pub(crate) fn copies(recording: &Recording) -> Vec<usize> {
                 && same(run.rows.start, other.rows.start, run.rows.len())
         })
     };
-    recording.runs.iter().enumerate().filter(repeats).map(|(i, _)| i).collect()
+    let mut found = Vec::new();
+    for (i, run) in recording.runs.iter().enumerate() {
+        watch.go_on()?;
+        found.extend(repeats(&(i, run)).then_some(i));
+    }
+    Ok(found)
 }
 
 /// Fewer equal rows may be chance, such as two runs that begin at standstill.

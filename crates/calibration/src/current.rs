@@ -142,16 +142,20 @@ impl<const N: usize> Kept<N> {
     }
 
     /// What is kept of a point, or is now worked out.
-    fn at(&self, point: [f64; N], work_out: impl FnOnce() -> Vec<f64>) -> Rc<[f64]> {
+    fn at(
+        &self,
+        point: [f64; N],
+        work_out: impl FnOnce() -> Result<Vec<f64>, Error>,
+    ) -> Result<Rc<[f64]>, Error> {
         let known = self.0.borrow().iter().position(|(known, _)| *known == point);
         let values = match known {
             Some(place) => self.0.borrow_mut().remove(place).1,
-            None => work_out().into(),
+            None => work_out()?.into(),
         };
         let mut kept = self.0.borrow_mut();
         kept.truncate(KEPT_POINTS - 1);
         kept.insert(0, (point, Rc::clone(&values)));
-        values
+        Ok(values)
     }
 }
 
@@ -193,16 +197,18 @@ impl<'a> CurrentModel<'a> {
     /// # Errors
     /// [`Error::Stopped`] when the drives' watch breaks.
     pub fn averages_a(&self, parameters: &CurrentParameters) -> Result<Vec<f64>, Error> {
-        self.drives.go_on()?;
-        let readings = self.readings_a(parameters);
+        let readings = self.readings_a(parameters)?;
         let left = self.drives.averaged_by(|row| readings[row].left);
         let right = self.drives.averaged_by(|row| readings[row].right);
         Ok([left, right].concat())
     }
 
     /// The reading of every row \[A\].
-    pub fn readings_a(&self, parameters: &CurrentParameters) -> Vec<Sides<f64>> {
-        let mobilized = self.mobilized(parameters);
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn readings_a(&self, parameters: &CurrentParameters) -> Result<Vec<Sides<f64>>, Error> {
+        let mobilized = self.mobilized(parameters)?;
         let efficiency = self.robot.motor_sides().map(|motor| motor.k2.powi(-2));
         let reading = |(i, row): (usize, &Row)| {
             if row.stands() {
@@ -213,7 +219,12 @@ impl<'a> CurrentModel<'a> {
                 wheel_a.abs() * if wheel_a * rim_mps >= 0.0 { 1.0 } else { efficiency }
             })
         };
-        self.drives.rows.iter().enumerate().map(reading).collect()
+        let rows = &self.drives.rows;
+        let mut readings = Vec::with_capacity(rows.len());
+        for piece in self.drives.watch.pieces(0..rows.len()) {
+            readings.extend(piece?.map(|i| reading((i, &rows[i]))));
+        }
+        Ok(readings)
     }
 
     /// X: what the wheels of each side ask for, with its sign \[A\].
@@ -232,20 +243,24 @@ impl<'a> CurrentModel<'a> {
     }
 
     /// M'/S by row.
-    fn mobilized(&self, p: &CurrentParameters) -> Rc<[f64]> {
+    fn mobilized(&self, p: &CurrentParameters) -> Result<Rc<[f64]>, Error> {
         let [scale, shape, length, mismatch] =
             [p.slip_angle_scale_rad, p.slip_shape, p.relaxation_length_m, p.wheel_mismatch];
         let rows = &self.drives.rows;
         self.mobilized.at([scale, shape, length, mismatch], || {
-            let steady = self
-                .quasi_static
-                .at([scale, shape, mismatch], || rows.iter().map(|row| self.quasi_static(p, row)).collect());
+            let steady = self.quasi_static.at([scale, shape, mismatch], || {
+                let mut moments = Vec::with_capacity(rows.len());
+                for piece in self.drives.watch.pieces(0..rows.len()) {
+                    moments.extend(rows[piece?].iter().map(|row| self.quasi_static(p, row)));
+                }
+                Ok(moments)
+            })?;
             let mut values = steady.to_vec();
             for stretch in &self.drives.stretches {
                 let part = stretch.rows.clone();
                 lag::relax(&mut values[part.clone()], &rows[part], length);
             }
-            values
+            Ok(values)
         })
     }
 

@@ -66,13 +66,13 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         })?,
         None => best_reference(robot, drives, &driven)?,
     };
-    let on_reference = drives.on_surface(reference);
+    let on_reference = drives.on_surface(reference)?;
     let runs = on_reference.judged_runs().len();
     if runs < 2 {
         return Err(Error::TooFewRuns { surface: drives.surfaces[reference].clone(), runs });
     }
-    let (robot, slip_track) = with_slip_track(robot, &on_reference);
-    let [first, second] = folds::halves(&on_reference);
+    let (robot, slip_track) = with_slip_track(robot, &on_reference)?;
+    let [first, second] = folds::halves(&on_reference)?;
     let fit = |drives: &Drives| fit_reference(&robot, drives);
     let (whole, (first, second)) =
         rayon::join(|| fit(&on_reference), || rayon::join(|| fit(&first), || fit(&second)));
@@ -80,7 +80,7 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
     let mut order = vec![reference];
     order.extend(driven.into_iter().filter(|&i| i != reference));
     let surfaces = order.into_par_iter().map(|i| {
-        let here = drives.on_surface(i);
+        let here = drives.on_surface(i)?;
         let is_reference = i == reference;
         let fit =
             if is_reference { whole.clone() } else { fit_surface(&robot, &here, &whole, YawSource::Wheels)? };
@@ -89,6 +89,7 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
         let verdict = judged.then(judge).transpose()?.map(|(verdict, _)| verdict);
         let force_alone = fit_force_alone(&robot, &here, &whole)?;
         let p = &fit.parameters;
+        drives.go_on()?;
         let law = nearest_tanh(&robot, &here, p.slip_angle_scale_rad, p.slip_shape);
         Ok(SurfaceFit { surface: drives.surfaces[i].clone(), fit, law, force_alone, verdict })
     });
@@ -104,14 +105,16 @@ pub fn fit_currents(robot: &Robot, drives: &Drives, options: &Options) -> Result
 
 /// The surface with two runs or more whose lifting current is known best, relative to its size.
 fn best_reference(robot: &Robot, drives: &Drives, driven: &[usize]) -> Result<usize, Error> {
-    let enough: Vec<usize> =
-        driven.iter().copied().filter(|&i| drives.on_surface(i).judged_runs().len() > 1).collect();
+    let mut enough: Vec<usize> = Vec::new();
+    for &surface in driven {
+        enough.extend((drives.on_surface(surface)?.judged_runs().len() > 1).then_some(surface));
+    }
     let candidates = if enough.is_empty() { driven } else { &enough };
     if let [only] = candidates {
         return Ok(*only);
     }
     let doubt = |i: usize| {
-        let fit = fit_reference(robot, &drives.on_surface(i))?;
+        let fit = fit_reference(robot, &drives.on_surface(i)?)?;
         Ok((i, fit.fit.sigma(LIFTING) / fit.parameters.lifting_a.max(f64::MIN_POSITIVE)))
     };
     let doubts = candidates.par_iter().map(|&i| doubt(i)).collect::<Result<Vec<_>, Error>>()?;

@@ -202,7 +202,7 @@ fn solve(
     yaw: YawSource,
     starts: &[Vec<Parameter>],
 ) -> Result<CurrentFit, Error> {
-    let (part, some) = (thinned(drives, MOST_ROWS), thinned(drives, ROUGH_ROWS));
+    let (part, some) = (thinned(drives, MOST_ROWS)?, thinned(drives, ROUGH_ROWS)?);
     let rough = |parameters: &Vec<Parameter>| {
         let model = CurrentModel::new(robot, &some, slip_track_m, yaw, idle_a(&some));
         let predict = |values: &[f64]| model.averages_a(&numbers(values));
@@ -247,9 +247,9 @@ fn solve(
 }
 
 /// About so many rows, or all where those are none that count.
-fn thinned(drives: &Drives, most_rows: usize) -> Cow<'_, Drives> {
-    let part = (drives.rows.len() > most_rows).then(|| drives.thinned(most_rows));
-    part.filter(|part| !part.averages.is_empty()).map_or(Cow::Borrowed(drives), Cow::Owned)
+fn thinned(drives: &Drives, most_rows: usize) -> Result<Cow<'_, Drives>, Error> {
+    let part = (drives.rows.len() > most_rows).then(|| drives.thinned(most_rows)).transpose()?;
+    Ok(part.filter(|part| !part.averages.is_empty()).map_or(Cow::Borrowed(drives), Cow::Owned))
 }
 
 fn numbers(values: &[f64]) -> CurrentParameters {

@@ -64,7 +64,7 @@ pub fn judge(
     on_reference: bool,
     yaw: YawSource,
 ) -> Result<(SurfaceVerdict, [CurrentFit; 2]), Error> {
-    let halves = folds::halves(drives);
+    let halves = folds::halves(drives)?;
     let fit = |i: usize| {
         if on_reference {
             Ok(references[i].clone())
@@ -105,6 +105,7 @@ fn verdict(drives: &Drives, judged: &[Judged; 2]) -> SurfaceVerdict {
 impl Judged {
     fn of(robot: &Robot, drives: &Drives, fit: &CurrentFit, force_n_per_a: f64) -> Result<Judged, Error> {
         let (predicted_a, recorded_a) = (fit.predict_a(robot, drives)?, drives.recorded_averages());
+        drives.go_on()?;
         let left = drives.averaged_by(|row| drives.rows[row].rim_mps.left.abs());
         let right = drives.averaged_by(|row| drives.rows[row].rim_mps.right.abs());
         let count = drives.averages.len();

@@ -9,7 +9,7 @@ use model::{
     paper::{Region, region},
     robot::{PaperSurface, SpeedFriction, Surface},
 };
-use recording::{PowerForm, Recording};
+use recording::{PowerForm, Recording, Watch};
 
 use crate::{
     Calibration, Drives, Error, FittedParameter, HeldOut, folds,
@@ -40,21 +40,26 @@ struct Steady {
 ///
 /// # Errors
 /// [`Error::Needs`] where power was not recorded side by side or no stretch was steady; [`Error::Robot`] where a surface was driven at
-/// one radius only.
-pub fn calibrate(robot: &Robot, recording: &Recording) -> Result<Calibration, Error> {
+/// one radius only;
+/// [`Error::Stopped`] soon after the watch breaks.
+pub fn calibrate(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Calibration, Error> {
     const METHOD: &str = "the method dogru-marques";
-    let drives = Drives::new(robot, &recording.thinned())?;
+    let drives = Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?;
     if drives.form != Some(PowerForm::Sides) {
         return Err(Error::Needs { method: METHOD, needs: "power_left_w and power_right_w" });
     }
-    let (robot, slip_track) = crate::calibrate::with_slip_track(robot, &drives);
+    let (robot, slip_track) = crate::calibrate::with_slip_track(robot, &drives)?;
+    drives.go_on()?;
     let steady = steady(&robot, &drives);
+    drives.go_on()?;
     if steady.is_empty() {
         return Err(Error::Needs { method: METHOD, needs: "seconds of driving at constant wheel speeds" });
     }
     let (fitted, mut parameters) = fit(&robot, &drives, &steady)?;
     parameters.insert(0, slip_track);
-    let held_out = held_out(&robot, &drives, &steady);
+    let halves = folds::halves(&drives)?.map(|half| half.judged_runs());
+    let held_out = held_out(&robot, &drives, &steady, &halves);
+    drives.go_on()?;
     let notes = vec![format!(
         "{} steady seconds; errors are those of the paper's printed form on them",
         steady.len()
@@ -203,14 +208,15 @@ fn by_speed(robot: &Robot, found: &[(f64, (FrictionSample, Option<f64>))]) -> Ve
 }
 
 /// Each half of the runs judged by the printed form with the other half's coefficients.
-fn held_out(robot: &Robot, drives: &Drives, steady: &[Steady]) -> Option<HeldOut> {
-    let halves = folds::halves(drives).map(|half| half.judged_runs());
+fn held_out(robot: &Robot, drives: &Drives, steady: &[Steady], halves: &[Vec<usize>; 2]) -> Option<HeldOut> {
     let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..2 {
         let part =
             |runs: &[usize]| steady.iter().filter(|s| runs.contains(&s.run)).cloned().collect::<Vec<_>>();
         let (fitted, _) = fit(robot, drives, &part(&halves[i])).ok()?;
         for run in &halves[1 - i] {
+            // The caller asks again and says so.
+            drives.go_on().ok()?;
             let (mut predicted_j, mut recorded_j) = (0.0, 0.0);
             for s in part(&[*run]) {
                 let surface = fitted.surfaces.get(&drives.surfaces[s.surface])?;

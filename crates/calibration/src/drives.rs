@@ -68,23 +68,25 @@ impl Drives {
         let mut drives = Drives {
             runs: recording.runs.iter().map(|run| run.name.clone()).collect(),
             form: Some(form),
-            rows: row::inputs(robot, recording, &recorded),
+            rows: row::inputs(robot, recording, &recorded, &watch)?,
             recorded,
             watch,
             ..Drives::default()
         };
-        let copies = copies(recording);
+        let copies = copies(recording, &drives.watch)?;
         for (run, rows) in recording.runs.iter().enumerate().map(|(i, run)| (i, run.rows.clone())) {
+            drives.watch.go_on()?;
             if !copies.contains(&run) {
                 drives.split(robot, recording, run, rows);
             }
         }
+        standstill::settle(&mut drives)?;
+        drives.slopes_by_heights(robot, recording)?;
         drives.watch.go_on()?;
-        standstill::settle(&mut drives);
-        drives.slopes_by_heights(robot, recording);
         drives.each_stretch(row::accelerations);
-        stuck::flag(&mut drives, robot);
-        drives.remember_losses(robot);
+        stuck::flag(&mut drives, robot)?;
+        drives.remember_losses(robot)?;
+        drives.watch.go_on()?;
         drives.average();
         if drives.averages.is_empty() {
             return Err(Error::NothingToFit {
@@ -95,21 +97,25 @@ impl Drives {
     }
 
     /// Fills in slopes where none were recorded and heights were.
-    fn slopes_by_heights(&mut self, robot: &Robot, recording: &Recording) {
-        let Some(heights_m) = recording.channel(Channel::Z) else { return };
-        if recording.channel(Channel::Pitch).is_none() {
-            for stretch in &self.stretches {
-                slopes::fill(robot, &mut self.rows[stretch.rows.clone()], &heights_m[stretch.rows.clone()]);
-            }
+    fn slopes_by_heights(&mut self, robot: &Robot, recording: &Recording) -> Result<(), Error> {
+        let Some(heights_m) = recording.channel(Channel::Z) else { return Ok(()) };
+        if recording.channel(Channel::Pitch).is_some() {
+            return Ok(());
         }
+        for stretch in &self.stretches {
+            let rows = stretch.rows.clone();
+            slopes::fill(robot, &mut self.rows[rows.clone()], &heights_m[rows], &self.watch)?;
+        }
+        Ok(())
     }
 
     /// Fills in what the robot's own `motor_heating` asks for.
-    fn remember_losses(&mut self, robot: &Robot) {
+    fn remember_losses(&mut self, robot: &Robot) -> Result<(), Error> {
         let memory_s = robot.mechanisms.iter().find_map(|known| known.mechanism().memory_s(known.values()));
-        let Some(memory_s) = memory_s else { return };
-        let averaged = losses::averaged(self, robot, memory_s);
+        let Some(memory_s) = memory_s else { return Ok(()) };
+        let averaged = losses::averaged(self, robot, memory_s)?;
         self.rows.iter_mut().zip(averaged).for_each(|(row, loss_w)| row.loss_w = loss_w);
+        Ok(())
     }
 
     /// Cuts one run where it pauses or the surface changes.
@@ -166,12 +172,18 @@ impl Drives {
     }
 
     /// The stretches that satisfy a condition, with their rows and averages.
-    pub fn select(&self, keep: impl Fn(&Stretch) -> bool) -> Drives {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn select(&self, keep: impl Fn(&Stretch) -> bool) -> Result<Drives, Error> {
         self.only(self.stretches.iter().filter(|stretch| keep(stretch)).cloned())
     }
 
     /// About so many rows at most, in pieces spread evenly over all stretches.
-    pub fn thinned(&self, most_rows: usize) -> Drives {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn thinned(&self, most_rows: usize) -> Result<Drives, Error> {
         /// Long enough that the cuts between pieces do not matter, short enough to meet every manoeuvre.
         const PIECE_ROWS: usize = 512;
         let every = self.rows.len().div_ceil(most_rows.max(1)).max(1);
@@ -184,7 +196,7 @@ impl Drives {
         self.only(pieces.step_by(every))
     }
 
-    fn only(&self, stretches: impl Iterator<Item = Stretch>) -> Drives {
+    fn only(&self, stretches: impl Iterator<Item = Stretch>) -> Result<Drives, Error> {
         let mut part = Drives {
             runs: self.runs.clone(),
             surfaces: self.surfaces.clone(),
@@ -195,14 +207,17 @@ impl Drives {
         };
         for stretch in stretches {
             let start = part.rows.len();
-            part.rows.extend_from_slice(&self.rows[stretch.rows.clone()]);
-            for (to, from) in part.recorded.iter_mut().zip(&self.recorded) {
-                to.extend_from_slice(&from[stretch.rows.clone()]);
+            for piece in self.watch.pieces(stretch.rows.clone()) {
+                let piece = piece?;
+                part.rows.extend_from_slice(&self.rows[piece.clone()]);
+                for (to, from) in part.recorded.iter_mut().zip(&self.recorded) {
+                    to.extend_from_slice(&from[piece.clone()]);
+                }
             }
             part.stretches.push(Stretch { rows: start..part.rows.len(), ..stretch });
         }
         part.average();
-        part
+        Ok(part)
     }
 
     /// The same drives with stuck rows counted like any other.
@@ -233,7 +248,10 @@ impl Drives {
     }
 
     /// The drives on one surface.
-    pub fn on_surface(&self, surface: usize) -> Drives {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn on_surface(&self, surface: usize) -> Result<Drives, Error> {
         self.select(|stretch| stretch.surface == surface)
     }
 

@@ -68,7 +68,19 @@ pub enum Error {
     /// Who asked for it stopped the computation.
     #[error("the computation was stopped")]
     Stopped,
+    /// The recording is not what its readers make.
+    #[error(transparent)]
+    Recording(recording::Error),
     /// The fitted robot does not pass its own checks.
     #[error("the fitted robot cannot be: {0}")]
     Robot(#[from] model::Error),
+}
+
+impl From<recording::Error> for Error {
+    fn from(error: recording::Error) -> Self {
+        match error {
+            recording::Error::Stopped => Error::Stopped,
+            other => Error::Recording(other),
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Which runs fit and which judge.
 
-use crate::Drives;
+use crate::{Drives, Error};
 
 /// Length of the blocks whose errors count as one piece of evidence \[s\]: several times the manoeuvres of a hand-driven robot.
 pub(crate) const BLOCK_S: f64 = 15.0;
@@ -8,14 +8,16 @@ pub(crate) const BLOCK_S: f64 = 15.0;
 /// The runs of drives in two halves, alternately by name: first, third, … and second, fourth, …
 ///
 /// Each half is fitted alone and judges the other, so no run is judged by a fit that saw it.
-pub fn halves(drives: &Drives) -> [Drives; 2] {
-    let order = drives.judged_runs();
-    let half = |parity: usize| {
-        drives.select(|stretch| {
-            order.iter().position(|run| *run == stretch.run).is_some_and(|i| i % 2 == parity)
-        })
-    };
-    [half(0), half(1)]
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub fn halves(drives: &Drives) -> Result<[Drives; 2], Error> {
+    let mut parity_of_run = vec![None; drives.runs.len()];
+    for (place, run) in drives.judged_runs().into_iter().enumerate() {
+        parity_of_run[run] = Some(place % 2);
+    }
+    let half = |parity: usize| drives.select(|stretch| parity_of_run[stretch.run] == Some(parity));
+    Ok([half(0)?, half(1)?])
 }
 
 /// The block of each average, for one column of what was recorded.

@@ -2,12 +2,15 @@
 
 use model::{Robot, Sides};
 
-use crate::{Drives, power};
+use crate::{Drives, Error, power, watch::ROWS_A_LOOK};
 
 /// Copper loss of each side, averaged backwards with an exponential memory, by row \[W\]; every run begins with cold motors.
 ///
 /// Ground that the robot does not know counts as standing still.
-pub fn averaged(drives: &Drives, robot: &Robot, memory_s: f64) -> Vec<Sides<f64>> {
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub fn averaged(drives: &Drives, robot: &Robot, memory_s: f64) -> Result<Vec<Sides<f64>>, Error> {
     let mut averaged = vec![Sides::both(0.0); drives.rows.len()];
     let mut state = Sides::both(0.0);
     let (mut run, mut last_s) = (usize::MAX, 0.0);
@@ -15,6 +18,9 @@ pub fn averaged(drives: &Drives, robot: &Robot, memory_s: f64) -> Vec<Sides<f64>
         let Ok(surface) = robot.surface(&drives.surfaces[stretch.surface]) else { continue };
         let ground = power::Ground::new(robot, surface);
         for i in stretch.rows.clone() {
+            if i.is_multiple_of(ROWS_A_LOOK) {
+                drives.go_on()?;
+            }
             let row = &drives.rows[i];
             let step_s = if run == stretch.run { row.t_s - last_s } else { 0.0 };
             if run != stretch.run {
@@ -28,7 +34,7 @@ pub fn averaged(drives: &Drives, robot: &Robot, memory_s: f64) -> Vec<Sides<f64>
             averaged[i] = state;
         }
     }
-    averaged
+    Ok(averaged)
 }
 
 /// k1 of both motors at the temperatures of a row \[W/N²\].

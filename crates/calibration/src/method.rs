@@ -1,7 +1,7 @@
 //! The procedures that a robot can be fitted by, as a person chooses between them.
 
 use model::Robot;
-use recording::{Recording, Watch};
+use recording::{Recording, Watch, unwatched};
 use serde::{Deserialize, Serialize};
 
 use crate::{Calibration, Error, Options, calibrate, calibrate_watched, dogru_marques};
@@ -30,11 +30,11 @@ impl Method {
     ) -> Result<Calibration, Error> {
         match self {
             Method::Fit => calibrate(robot, recording, options),
-            Method::DogruMarques => dogru_marques::calibrate(robot, recording),
+            Method::DogruMarques => dogru_marques::calibrate(robot, recording, &unwatched()),
         }
     }
 
-    /// Fits a robot as [`Method::calibrate`] does, followed by a watch. The paper's procedure is over before anyone could stop it.
+    /// Fits a robot as [`Method::calibrate`] does, followed by a watch.
     ///
     /// # Errors
     /// As [`Method::calibrate`], and [`Error::Stopped`] soon after the watch breaks.
@@ -47,7 +47,7 @@ impl Method {
     ) -> Result<Calibration, Error> {
         match self {
             Method::Fit => calibrate_watched(robot, recording, options, watch),
-            Method::DogruMarques => dogru_marques::calibrate(robot, recording),
+            Method::DogruMarques => dogru_marques::calibrate(robot, recording, watch),
         }
     }
 }

@@ -10,7 +10,7 @@ use model::{
 use rayon::prelude::*;
 use recording::PowerForm;
 
-use crate::{Drives, Error, average::Average, row::Row};
+use crate::{Drives, Error, average::Average, row::Row, watch::ROWS_A_LOOK};
 
 /// Drives as the force balance sees them, prepared for being asked again and again with other coefficients.
 pub struct PowerModel<'a> {
@@ -29,17 +29,21 @@ struct Shapes {
     by_row: Vec<FrictionShape>,
 }
 
-/// Averages that are worth a task of their own: some 10 µs.
-const LEAST_AVERAGES: usize = 32;
+/// Averages between two looks at the watch: some milliseconds, at ten rows each.
+const AVERAGES_A_LOOK: usize = 256;
 
 /// Shapes that are kept: those of the point at hand and those on both sides of it.
 const KEPT_SHAPES: usize = 3;
 
 impl<'a> PowerModel<'a> {
     /// Prepares drives.
-    pub fn new(drives: &'a Drives) -> Self {
-        let grade = drives.rows.par_iter().map(|row| row.attitude().grade()).collect();
-        PowerModel { drives, surface: surface_of_rows(drives), grade, shapes: RefCell::default() }
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] when the drives' watch breaks.
+    pub fn new(drives: &'a Drives) -> Result<Self, Error> {
+        let grade =
+            drives.watch.map(drives.rows.len(), ROWS_A_LOOK, |i| drives.rows[i].attitude().grade())?;
+        Ok(PowerModel { drives, surface: surface_of_rows(drives), grade, shapes: RefCell::default() })
     }
 
     /// One-second averages of what is wanted of the power of each row.
@@ -56,29 +60,31 @@ impl<'a> PowerModel<'a> {
         let kept = self.shapes.borrow();
         let shapes: &[FrictionShape] = kept.first().map_or(&[], |shapes| &shapes.by_row);
         let (drives, grade) = (self.drives, &self.grade);
-        let mean = |average: &Average| {
+        let mean = |number: usize| {
+            let average: &Average = &drives.averages[number];
             let ground = &ground[average.surface];
             drives.mean(average, |i| {
                 let row = &drives.rows[i];
                 wanted(row, &power(robot, ground, row, row.motion(robot), &shapes[i], grade[i]))
             })
         };
-        Ok(drives.averages.par_iter().with_min_len(LEAST_AVERAGES).map(mean).collect())
+        drives.watch.map(drives.averages.len(), AVERAGES_A_LOOK, mean)
     }
 
     /// Friction on each surface; the shapes of its slip-angle scales come to the front of those kept.
     fn prepare<'r>(&self, robot: &'r Robot) -> Result<Vec<Ground<'r>>, Error> {
         let ground = ground(self.drives, robot)?;
-        self.prepare_shapes(robot, ground.iter().map(|ground| ground.surface.slip_angle_scale_rad).collect());
+        let scales_rad = ground.iter().map(|ground| ground.surface.slip_angle_scale_rad).collect();
+        self.prepare_shapes(robot, scales_rad)?;
         Ok(ground)
     }
 
     /// Brings the shapes of these scales to the front of those kept. Only surfaces whose scale is another are worked out anew.
-    fn prepare_shapes(&self, robot: &Robot, scales_rad: Vec<f64>) {
+    fn prepare_shapes(&self, robot: &Robot, scales_rad: Vec<f64>) -> Result<(), Error> {
         let mut kept = self.shapes.borrow_mut();
         if let Some(place) = kept.iter().position(|shapes| shapes.scales_rad == scales_rad) {
             kept[..=place].rotate_right(1);
-            return;
+            return Ok(());
         }
         let mut shapes = match kept.first() {
             Some(_) if kept.len() == KEPT_SHAPES => kept.remove(KEPT_SHAPES - 1),
@@ -89,14 +95,20 @@ impl<'a> PowerModel<'a> {
             },
         };
         let (rows, surface, known) = (&self.drives.rows, &self.surface, &shapes.scales_rad);
-        shapes.by_row.par_iter_mut().enumerate().for_each(|(i, shape)| {
-            let at = surface[i] as usize;
-            if known[at] != scales_rad[at] {
-                *shape = FrictionShape::new(robot, scales_rad[at], &rows[i].motion(robot));
+        let watch = &self.drives.watch;
+        shapes.by_row.par_chunks_mut(ROWS_A_LOOK).enumerate().try_for_each(|(piece, shapes)| {
+            watch.go_on()?;
+            for (i, shape) in (piece * ROWS_A_LOOK..).zip(shapes) {
+                let at = surface[i] as usize;
+                if known[at] != scales_rad[at] {
+                    *shape = FrictionShape::new(robot, scales_rad[at], &rows[i].motion(robot));
+                }
             }
-        });
+            Ok::<_, Error>(())
+        })?;
         shapes.scales_rad = scales_rad;
         kept.insert(0, shapes);
+        Ok(())
     }
 }
 
@@ -109,7 +121,11 @@ pub fn by_row<T: Send>(
     robot: &Robot,
     wanted: impl Fn(usize, &Power) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
-    Ok(each_row(drives, robot, &wanted)?.collect())
+    let ground = ground(drives, robot)?;
+    let surface = surface_of_rows(drives);
+    drives.watch.map(drives.rows.len(), ROWS_A_LOOK, |i| {
+        wanted(i, &ground[surface[i] as usize].power(robot, &drives.rows[i]))
+    })
 }
 
 /// The same for two values of each row, as two columns.
@@ -121,21 +137,7 @@ pub(crate) fn columns_by_row(
     robot: &Robot,
     wanted: impl Fn(usize, &Power) -> (f64, f64) + Sync,
 ) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    let (mut first, mut second) = (Vec::new(), Vec::new());
-    each_row(drives, robot, &wanted)?.unzip_into_vecs(&mut first, &mut second);
-    Ok((first, second))
-}
-
-fn each_row<'a, T: Send>(
-    drives: &'a Drives,
-    robot: &'a Robot,
-    wanted: &'a (impl Fn(usize, &Power) -> T + Sync),
-) -> Result<impl IndexedParallelIterator<Item = T>, Error> {
-    drives.go_on()?;
-    let ground = ground(drives, robot)?;
-    let surface = surface_of_rows(drives);
-    let value = move |(i, row): (usize, &Row)| wanted(i, &ground[surface[i] as usize].power(robot, row));
-    Ok(drives.rows.par_iter().enumerate().map(value))
+    Ok(by_row(drives, robot, wanted)?.into_iter().unzip())
 }
 
 /// Surface of each row, an index into the drives' surfaces.

@@ -45,7 +45,7 @@ pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
         return fit_from(robot, drives, Some(&first));
     }
     let most_rows = (drives.rows.len() as f64 * MOST_AVERAGES as f64 / drives.averages.len() as f64) as usize;
-    fit_from(robot, &drives.thinned(most_rows), Some(&first))
+    fit_from(robot, &drives.thinned(most_rows)?, Some(&first))
 }
 
 /// Fits to a part of a long recording, spread evenly over it: what judges other runs need not be as sharp as what is kept.
@@ -53,7 +53,7 @@ pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
 /// # Errors
 /// Those of [`fit_power`].
 pub fn fit_thinned(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
-    let part = drives.thinned(FIRST_ROWS);
+    let part = drives.thinned(FIRST_ROWS)?;
     if part.averages.is_empty() { fit_from(robot, drives, None) } else { fit_from(robot, &part, None) }
 }
 
@@ -68,7 +68,7 @@ fn fit_from(known: &Robot, drives: &Drives, before: Option<&Fit>) -> Result<Powe
             parameter.start = fit.values[i];
         }
     }
-    let model = PowerModel::new(drives);
+    let model = PowerModel::new(drives)?;
     let predict = |values: &[f64]| predicted(&model, &applied(&robot, &fields, values), drives, form);
     let recorded = drives.recorded_averages();
     let block = folds::blocks(drives);

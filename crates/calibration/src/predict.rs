@@ -86,7 +86,7 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    predict_drives(robot, Drives::watched(robot, &recording.thinned(), watch)?)
+    predict_drives(robot, Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?)
 }
 
 fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {
@@ -183,7 +183,7 @@ fn watts_of_currents(
 
 /// One-second averages of predicted and recorded current, side by side \[A\].
 fn currents(robot: &Robot, drives: &Drives, amperes: Sides<f64>) -> Result<Vec<[Vec<f64>; 2]>, Error> {
-    let predicted = PowerModel::new(drives).averages(robot, |row, power| {
+    let predicted = PowerModel::new(drives)?.averages(robot, |row, power| {
         let per_a = reading(robot, amperes, row, power);
         [power.force_n.left / per_a.left, power.force_n.right / per_a.right]
     })?;

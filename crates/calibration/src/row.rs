@@ -1,8 +1,12 @@
 //! One row of a recording: what the model is asked about.
 
 use model::{Acceleration, Attitude, Motion, Robot, Sides};
-use rayon::prelude::*;
 use recording::{Channel, Recording};
+
+use crate::{
+    Error,
+    watch::{ROWS_A_LOOK, Watched},
+};
 
 /// Rim speeds below this are standstill \[m/s\]: half of a Husky A200's encoder step of 0.008 m/s.
 pub const STANDSTILL_MPS: f64 = 0.004;
@@ -80,7 +84,12 @@ impl Row {
 }
 
 /// The inputs of every row; accelerations are still to come.
-pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]) -> Vec<Row> {
+pub(crate) fn inputs(
+    robot: &Robot,
+    recording: &Recording,
+    recorded: &[Vec<f64>],
+    watch: &Watched,
+) -> Result<Vec<Row>, Error> {
     let channel = |channel| recording.channel(channel);
     let at = |values: Option<&[f64]>, row: usize, absent: f64| values.map_or(absent, |v| v[row]);
     let (left, right) = (channel(Channel::LeftSpeed), channel(Channel::RightSpeed));
@@ -112,7 +121,7 @@ pub(crate) fn inputs(robot: &Robot, recording: &Recording, recorded: &[Vec<f64>]
             ..Row::default()
         }
     };
-    (0..recording.rows()).into_par_iter().map(row).collect()
+    watch.map(recording.rows(), ROWS_A_LOOK, row)
 }
 
 /// Gaps filled with the nearest value of the same run: a motor warms over minutes, and its sensor may be read once a second.
@@ -166,7 +175,11 @@ mod tests {
                 runs: vec![run],
                 ..Recording::default()
             };
-            inputs(&robot, &recording, &[]).iter().map(|row| row.motor_c).collect::<Vec<_>>()
+            inputs(&robot, &recording, &[], &Watched::default())
+                .unwrap()
+                .iter()
+                .map(|row| row.motor_c)
+                .collect::<Vec<_>>()
         };
         assert_eq!(of(&[]), [Sides::both(reference_c); 3]);
         let air = (Channel::AmbientTemperature, [2.0, f64::NAN, f64::NAN]);

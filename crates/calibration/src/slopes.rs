@@ -4,10 +4,9 @@
 //! the pitch. The way is dead reckoning, which over some metres is as good as any position.
 
 use model::Robot;
-use rayon::prelude::*;
 use recording::{Channel, Recording};
 
-use crate::row::Row;
+use crate::{Error, row::Row, watch::Watched};
 
 /// Half lengths of the way that a plane may be laid through, the shortest first [m].
 const REACHES_M: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
@@ -19,6 +18,8 @@ const USUAL_RAD: f64 = 0.15;
 const MOST_S: f64 = 60.0;
 /// Time over which errors of positions are alike [s]: satellites tell one a second.
 const ALIKE_S: f64 = 1.0;
+/// Planes that are laid between two looks at the watch, each through up to some thousand heights.
+const PLANES_A_LOOK: usize = 256;
 /// Heights that a stretch has to have.
 const LEAST_HEIGHTS: usize = 20;
 /// Median of |z1 - 2 z2 + z3| of heights with white noise of one sigma: 0.6745 √6.
@@ -37,18 +38,23 @@ pub fn slopes_note(recording: &Recording) -> Option<&'static str> {
 }
 
 /// Fills in the pitch of a stretch by its heights, row by row.
-pub(crate) fn fill(robot: &Robot, rows: &mut [Row], heights_m: &[f64]) {
+///
+/// # Errors
+/// [`Error::Stopped`] when the watch breaks.
+pub(crate) fn fill(robot: &Robot, rows: &mut [Row], heights_m: &[f64], watch: &Watched) -> Result<(), Error> {
     if heights_m.iter().filter(|z_m| z_m.is_finite()).count() < LEAST_HEIGHTS {
-        return;
+        return Ok(());
     }
+    watch.go_on()?;
     let way = way(robot, rows);
+    watch.go_on()?;
     let noise = Noise::of(rows, heights_m);
     let reach_m = noise.reach_m(&way);
-    let pitch_rad: Vec<f64> = (0..rows.len())
-        .into_par_iter()
-        .map(|i| slope(&way, rows, heights_m, i, (reach_m, noise.sigma_m)).atan())
-        .collect();
+    let pitch_rad = watch.map(rows.len(), PLANES_A_LOOK, |i| {
+        slope(&way, rows, heights_m, i, (reach_m, noise.sigma_m)).atan()
+    })?;
     rows.iter_mut().zip(pitch_rad).for_each(|(row, pitch_rad)| row.pitch_rad = pitch_rad);
+    Ok(())
 }
 
 /// Where a robot was, and how it was turned, since a stretch began.
@@ -186,7 +192,7 @@ mod tests {
         for (speed_mps, noise_m, most_rad) in [(0.5, 0.0, 0.003), (-0.5, 0.0, 0.003), (0.5, 0.02, 0.008)] {
             let (mut rows, heights_m, pitch_rad) = drive(speed_mps, noise_m);
             let level_rad = off_rad(&rows, &pitch_rad);
-            fill(&builtin::husky_a200(), &mut rows, &heights_m);
+            fill(&builtin::husky_a200(), &mut rows, &heights_m, &Watched::default()).unwrap();
             let off = off_rad(&rows, &pitch_rad);
             assert!(off < most_rad && level_rad > 0.04, "{speed_mps} {noise_m}: {off} of {level_rad}");
         }
@@ -196,22 +202,22 @@ mod tests {
     fn heights_once_a_second_or_with_gaps_tell_it_as_well_and_none_tell_nothing() {
         let (mut rows, heights_m, pitch_rad) = drive(0.5, 0.01);
         let held: Vec<f64> = (0..heights_m.len()).map(|i| heights_m[i / 10 * 10]).collect();
-        fill(&builtin::husky_a200(), &mut rows, &held);
+        fill(&builtin::husky_a200(), &mut rows, &held, &Watched::default()).unwrap();
         assert!(off_rad(&rows, &pitch_rad) < 0.02, "{}", off_rad(&rows, &pitch_rad));
         let gaps: Vec<f64> =
             (0..heights_m.len()).map(|i| if i % 10 == 0 { heights_m[i] } else { f64::NAN }).collect();
         let (mut rows, ..) = drive(0.5, 0.01);
-        fill(&builtin::husky_a200(), &mut rows, &gaps);
+        fill(&builtin::husky_a200(), &mut rows, &gaps, &Watched::default()).unwrap();
         assert!(off_rad(&rows, &pitch_rad) < 0.02, "{}", off_rad(&rows, &pitch_rad));
         let (mut rows, ..) = drive(0.5, 0.01);
-        fill(&builtin::husky_a200(), &mut rows, &vec![f64::NAN; 2000]);
+        fill(&builtin::husky_a200(), &mut rows, &vec![f64::NAN; 2000], &Watched::default()).unwrap();
         assert!(rows.iter().all(|row| row.pitch_rad == 0.0));
     }
 
     #[test]
     fn a_robot_that_stands_is_level_as_far_as_its_way_tells() {
         let (mut rows, heights_m, _) = drive(0.0, 0.01);
-        fill(&builtin::husky_a200(), &mut rows, &heights_m);
+        fill(&builtin::husky_a200(), &mut rows, &heights_m, &Watched::default()).unwrap();
         assert!(rows.iter().all(|row| row.pitch_rad.abs() < 1e-6));
     }
 }

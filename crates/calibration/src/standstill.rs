@@ -5,8 +5,10 @@ use std::ops::Range;
 use model::Sides;
 
 use crate::{
+    Error,
     drives::Drives,
     row::{Row, STANDSTILL_MPS},
+    watch::{ROWS_A_LOOK, Watched},
 };
 
 /// Time on each side of a row over which noise is averaged away \[s\].
@@ -23,20 +25,27 @@ const MEDIAN_OF_NORMAL: f64 = 0.6745;
 const OF_SECOND_DIFFERENCES: f64 = 2.449_489_742_783_178;
 
 /// Rim speeds of rows in which the robot stands but for noise become nothing.
-pub(crate) fn settle(drives: &mut Drives) {
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub(crate) fn settle(drives: &mut Drives) -> Result<(), Error> {
     let stretches: Vec<Range<usize>> = drives.stretches.iter().map(|stretch| stretch.rows.clone()).collect();
-    let Some(sigma_mps) = noise_mps(&drives.rows, &stretches) else { return };
+    let Some(sigma_mps) = noise_mps(&drives.rows, &stretches, &drives.watch)? else { return Ok(()) };
     for rows in stretches {
-        settle_stretch(&mut drives.rows[rows], sigma_mps);
+        settle_stretch(&mut drives.rows[rows], sigma_mps, &drives.watch)?;
     }
+    Ok(())
 }
 
 /// Noise of rim speeds while a robot hardly moves \[m/s\]; `None` where that is told by too few rows, or is nothing worth a word.
-fn noise_mps(rows: &[Row], stretches: &[Range<usize>]) -> Option<f64> {
+fn noise_mps(rows: &[Row], stretches: &[Range<usize>], watch: &Watched) -> Result<Option<f64>, Error> {
     let mut seconds_mps = Vec::new();
     for stretch in stretches {
         let rows = &rows[stretch.clone()];
         for i in 1..rows.len().saturating_sub(1) {
+            if i.is_multiple_of(ROWS_A_LOOK) {
+                watch.go_on()?;
+            }
             let (before, after) = (mean(rows, before(rows, i)), mean(rows, after(rows, i)));
             if [before.left, before.right, after.left, after.right].iter().all(|mps| mps.abs() < SLOW_MPS) {
                 let at = |side: fn(&Row) -> f64| {
@@ -47,14 +56,15 @@ fn noise_mps(rows: &[Row], stretches: &[Range<usize>]) -> Option<f64> {
         }
     }
     if seconds_mps.len() < 2 * LEAST_ROWS {
-        return None;
+        return Ok(None);
     }
-    seconds_mps.sort_by(f64::total_cmp);
-    let sigma_mps = seconds_mps[seconds_mps.len() / 2] / (MEDIAN_OF_NORMAL * OF_SECOND_DIFFERENCES);
-    (SIGMAS * sigma_mps > STANDSTILL_MPS).then_some(sigma_mps)
+    let middle = seconds_mps.len() / 2;
+    let median_mps = *seconds_mps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let sigma_mps = median_mps / (MEDIAN_OF_NORMAL * OF_SECOND_DIFFERENCES);
+    Ok((SIGMAS * sigma_mps > STANDSTILL_MPS).then_some(sigma_mps))
 }
 
-fn settle_stretch(rows: &mut [Row], sigma_mps: f64) {
+fn settle_stretch(rows: &mut [Row], sigma_mps: f64, watch: &Watched) -> Result<(), Error> {
     let is_nothing = |mps: Sides<f64>, count: usize| {
         let least_mps = (SIGMAS * sigma_mps / (count as f64).sqrt()).max(STANDSTILL_MPS);
         mps.left.abs() < least_mps && mps.right.abs() < least_mps
@@ -63,10 +73,14 @@ fn settle_stretch(rows: &mut [Row], sigma_mps: f64) {
         let on_a_side = |range: Range<usize>| is_nothing(mean(rows, range.clone()), range.len());
         is_nothing(rows[i].rim_mps, 1) && (on_a_side(before(rows, i)) || on_a_side(after(rows, i)))
     };
-    let standing: Vec<usize> = (0..rows.len()).filter(|i| stands(*i)).collect();
+    let mut standing: Vec<usize> = Vec::new();
+    for piece in watch.pieces(0..rows.len()) {
+        standing.extend(piece?.filter(|i| stands(*i)));
+    }
     for i in standing {
         rows[i].rim_mps = Sides::both(0.0);
     }
+    Ok(())
 }
 
 /// A row and those shortly before.
@@ -110,9 +124,9 @@ mod tests {
 
     fn settled(noise_mps: f64) -> Vec<Row> {
         let mut rows = rows(noise_mps);
-        let all = 0..rows.len();
-        if let Some(sigma_mps) = super::noise_mps(&rows, std::slice::from_ref(&all)) {
-            settle_stretch(&mut rows, sigma_mps);
+        let (all, watch) = (0..rows.len(), Watched::default());
+        if let Some(sigma_mps) = super::noise_mps(&rows, std::slice::from_ref(&all), &watch).unwrap() {
+            settle_stretch(&mut rows, sigma_mps, &watch).unwrap();
         }
         rows
     }
@@ -135,7 +149,8 @@ mod tests {
     fn its_noise_is_that_of_the_rows_in_which_it_stands() {
         let rows = rows(0.01);
         let all = 0..rows.len();
-        let sigma_mps = super::noise_mps(&rows, std::slice::from_ref(&all)).unwrap();
+        let sigma_mps =
+            super::noise_mps(&rows, std::slice::from_ref(&all), &Watched::default()).unwrap().unwrap();
         assert!((sigma_mps / 0.01 - 1.0).abs() < 0.25, "{sigma_mps}");
     }
 
@@ -145,6 +160,9 @@ mod tests {
         let mut creeping = rows(0.01);
         creeping.iter_mut().for_each(|row| row.rim_mps = row.rim_mps.map(|mps| mps + 0.05));
         let all = 0..creeping.len();
-        assert_eq!(super::noise_mps(&creeping, std::slice::from_ref(&all)), None);
+        assert_eq!(
+            super::noise_mps(&creeping, std::slice::from_ref(&all), &Watched::default()).unwrap(),
+            None
+        );
     }
 }

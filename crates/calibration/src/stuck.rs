@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use model::Robot;
 use rayon::prelude::*;
 
-use crate::{Drives, drives::Stretch, folds::BLOCK_S, row::Row};
+use crate::{Drives, Error, drives::Stretch, folds::BLOCK_S, row::Row};
 
 /// Width of the centred means \[s\], longer than the clock of an inertial unit drifts from the encoders' (about 1 s).
 const MEAN_S: f64 = 2.0;
@@ -18,12 +18,16 @@ const LEAST_SHARE: f64 = 0.5;
 /// themselves show is used, since on most ground the two differ by half.
 ///
 /// Marks and measured track depend on each other; a few rounds settle both.
-pub(crate) fn flag(drives: &mut Drives, robot: &Robot) {
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub(crate) fn flag(drives: &mut Drives, robot: &Robot) -> Result<(), Error> {
     const ROUNDS: usize = 4;
-    let pieces = turns(drives);
+    let pieces = turns(drives)?;
     let mut track_m = robot.slip_track_m;
     if robot.slip_track_m == robot.track_m {
         for _ in 0..ROUNDS {
+            drives.go_on()?;
             let Some(found) = track_of(&pieces, |turn| !turn.is_stuck(track_m)) else { break };
             track_m = found.value_m.clamp(robot.track_m, 2.0 * robot.track_m);
         }
@@ -31,6 +35,7 @@ pub(crate) fn flag(drives: &mut Drives, robot: &Robot) {
     for turn in pieces.iter().flat_map(|piece| &piece.turns).filter(|turn| turn.is_stuck(track_m)) {
         drives.rows[turn.row].stuck = true;
     }
+    Ok(())
 }
 
 /// A row around which a turn is meant: |⟨u_r − u_l⟩| > 0.08 m/s, ⟨⟩ means over 2 s.
@@ -64,8 +69,9 @@ impl Turn {
 }
 
 /// The turns of all stretches, in order of rows.
-fn turns(drives: &Drives) -> Vec<Piece> {
+fn turns(drives: &Drives) -> Result<Vec<Piece>, Error> {
     let of_stretch = |stretch: &Stretch| {
+        drives.go_on()?;
         let (run, start) = (stretch.run, stretch.rows.start);
         let rows = &drives.rows[stretch.rows.clone()];
         let sums = sums_of_turns(rows);
@@ -73,15 +79,20 @@ fn turns(drives: &Drives) -> Vec<Piece> {
         let block_of = |row: &Row| (row.t_s / BLOCK_S).floor() as i64;
         let mut first = 0;
         let of_block = |block: &[Row]| {
+            drives.go_on()?;
             let here = first..first + block.len();
             first = here.end;
             let turns = here.filter_map(|i| mean_turn(&sums, i, half, start + i)).collect();
-            Piece { block: (run, block_of(&block[0])), turns }
+            Ok(Piece { block: (run, block_of(&block[0])), turns })
         };
         let blocks = if sums.is_empty() { &[] } else { rows };
-        blocks.chunk_by(|a, b| block_of(a) == block_of(b)).map(of_block).collect::<Vec<_>>()
+        blocks
+            .chunk_by(|a, b| block_of(a) == block_of(b))
+            .map(of_block)
+            .collect::<Result<Vec<Piece>, Error>>()
     };
-    drives.stretches.par_iter().flat_map_iter(of_stretch).collect()
+    let of_stretches = drives.stretches.par_iter().map(of_stretch).collect::<Result<Vec<_>, Error>>()?;
+    Ok(of_stretches.into_iter().flatten().collect())
 }
 
 /// Rows that a time is long.
@@ -134,8 +145,11 @@ pub struct SlipTrack {
 ///
 /// The ratio of the two spreads does not mind a delay between the clocks, as a regression would. Its uncertainty is that between
 /// pieces of 15 s.
-pub fn slip_track(drives: &Drives) -> Option<SlipTrack> {
-    track_of(&turns(drives), |turn| !drives.rows[turn.row].stuck)
+///
+/// # Errors
+/// [`Error::Stopped`] when the drives' watch breaks.
+pub fn slip_track(drives: &Drives) -> Result<Option<SlipTrack>, Error> {
+    Ok(track_of(&turns(drives)?, |turn| !drives.rows[turn.row].stuck))
 }
 
 fn track_of(pieces: &[Piece], counts: impl Fn(&Turn) -> bool + Sync) -> Option<SlipTrack> {

@@ -194,8 +194,7 @@ fn axes(
 ) -> String {
     let mut text = String::new();
     let step_w = round_step((high - low) / 4.0);
-    let mut w = (low / step_w).ceil() * step_w + 0.0;
-    while w <= high {
+    for w in round_values(low, high, step_w) {
         let y = py(w);
         let _ = write!(
             text,
@@ -204,9 +203,6 @@ fn axes(
             LEFT - 6.0,
             y + 4.0
         );
-        w += step_w;
-        // Sums of steps may end a rounding below nothing.
-        w = if w.abs() < 1e-6 { 0.0 } else { w };
     }
     let seconds = trace.t_s.len() as f64;
     let step_s = round_step(seconds / 8.0);
@@ -220,17 +216,27 @@ fn axes(
             );
         }
     }
-    let mut s = 0.0;
-    while s <= seconds {
+    for s in round_values(0.0, seconds, step_s) {
         let _ = write!(
             text,
             "<text x={:.1} y={:.0} text-anchor=middle>{s:.0} s</text>",
             px(s).min(WIDTH - 24.0),
             height - 10.0
         );
-        s += step_s;
     }
     text
+}
+
+/// Most lines of an axis: a quarter of its range needs six.
+const MOST_LINES: u32 = 20;
+
+/// Multiples of a step from the first at or above a low end up to a high end; counted, so that their number is bounded whatever the
+/// ends are.
+fn round_values(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
+    let first = (low / step).ceil();
+    (0..MOST_LINES)
+        .map(move |number| (first + f64::from(number)) * step + 0.0)
+        .take_while(move |x| *x <= high)
 }
 
 /// 1, 2 or 5 times a power of ten.

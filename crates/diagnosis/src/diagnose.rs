@@ -76,9 +76,15 @@ pub fn diagnose_watched(
     // Means over angles in another unit are none.
     let contradictions = contradictions(suspect, healthy);
     let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
-    let as_recorded = suspect.thinned();
+    let as_recorded = suspect.thinned_watched(watch).map_err(calibration::Error::from)?;
     let suspect = &with_powers(robot, &as_recorded, watch)?;
-    let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
+    let healthy = match healthy {
+        Some(healthy) => {
+            let thin = healthy.thinned_watched(watch).map_err(calibration::Error::from)?;
+            Some(with_powers(robot, &thin, watch)?)
+        }
+        None => None,
+    };
     let healthy = healthy.as_ref();
     let series = Series::watched(robot, suspect, healthy, watch)?;
     let mut series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;

@@ -24,16 +24,9 @@ pub enum Error {
         /// Surfaces of the robot.
         known: String,
     },
-    /// Rows that are too far apart to tell how fast speeds change.
-    #[error(
-        "rows are {step_s} s apart, and a diagnosis needs {most_s} s at most: `t_s` must be in seconds; record more often, or give its unit in a map"
-    )]
-    TooCoarse {
-        /// Time between rows in the median \[s\].
-        step_s: f64,
-        /// Most that is accepted \[s\].
-        most_s: f64,
-    },
+    /// Times that cannot be those of a drive log.
+    #[error(transparent)]
+    Recording(#[from] recording::Error),
     /// Drives under suspicion that are among the healthy ones.
     #[error(
         "drive `{drive}` of the recording is among the healthy ones too, as `{healthy}`: held against itself it lacks nothing; name other drives as healthy"

@@ -220,7 +220,7 @@ pub(crate) fn with_currents(
     let robot = builtin::husky_a200();
     let prepared = Drives::new(&robot, &recording).unwrap();
     let model = CurrentModel::new(&robot, &prepared, robot.slip_track_m, YawSource::Wheels, 0.3);
-    let readings = model.readings_a(truth);
+    let readings = model.readings_a(truth).unwrap();
     let stays = (-0.1f64 / 2.0).exp();
     for (side, channel) in SIDES.into_iter().enumerate() {
         let mut slow_a = 0.0;

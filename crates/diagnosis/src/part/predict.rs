@@ -42,7 +42,7 @@ impl Part {
         self.drives.go_on()?;
         let memory_s = applied.iter().find_map(|a| a.mechanism.memory_s(&a.values));
         let loss_w = match memory_s {
-            Some(memory_s) => losses::averaged(&self.drives, robot, memory_s),
+            Some(memory_s) => losses::averaged(&self.drives, robot, memory_s)?,
             None => Vec::new(),
         };
         let phase = self.phases(applied);
