@@ -285,3 +285,26 @@ fn the_end_of_a_service_without_a_store_is_the_end_of_its_jobs() {
     let last = events.last().unwrap().name;
     assert!(["cancelled", "done"].contains(&last.as_str()), "{last}");
 }
+
+#[test]
+fn times_in_another_unit_are_refused_on_arrival_and_in_a_job_which_frees_its_worker() {
+    let server = Server::start();
+    let row = |row: i64| format!("{},0.5,0.5,80\n", 1_764_338_400_000_000_000 + 100_000_000 * row);
+    let rows: String = (0..50).map(row).collect();
+    let nanoseconds = format!("t_s,v_left_mps,v_right_mps,power_w\n{rows}");
+    let problem = server.post("/v1/recordings", "text/csv", nanoseconds.as_bytes());
+    let problem = problem.problem(400, "invalid-recording");
+    let detail = problem["detail"].as_str().unwrap();
+    assert!(detail.contains("must be in seconds") && detail.contains("nanoseconds"), "{detail}");
+    // A map may give a unit that makes no times of a stored recording.
+    let id = stored(&server);
+    let map = json!({ "name": "lab", "sources": [{ "channel": "t_s", "column": "t_s", "unit": "ns" }] });
+    let body = json!({ "robot": "husky-a200", "recordings": [id], "map": map });
+    let job = ended(&server, &started(&server, &body));
+    assert_eq!(job["state"], "failed", "{job}");
+    let detail = job["problem"]["detail"].as_str().unwrap();
+    assert!(detail.contains("the map gives its unit as `ns`"), "{detail}");
+    assert_eq!(job["problem"]["errors"][0]["pointer"], "/recordings/0", "{job}");
+    let next = ended(&server, &started(&server, &json!({ "robot": "husky-a200", "recordings": [id] })));
+    assert_eq!(next["state"], "done", "{next}");
+}

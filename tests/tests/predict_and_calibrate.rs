@@ -274,3 +274,55 @@ fn a_real_husky_is_fitted_and_then_predicted_from_its_motor_currents() {
     assert_prediction(&document(&output), 5, &fields);
     assert!(text(&output.stderr).contains("never negative, although the wheels turn backwards"));
 }
+
+/// The drive with its times in another unit.
+fn in_unit(per_s: f64) -> String {
+    let line = |line: &str| {
+        let cells: Vec<&str> = line.splitn(3, ',').collect();
+        match cells[1].parse::<f64>() {
+            Ok(t_s) => format!("{},{:.0},{}\n", cells[0], t_s * per_s, cells[2]),
+            Err(_) => format!("{line}\n"),
+        }
+    };
+    drive_csv(2, 700).lines().map(line).collect()
+}
+
+#[test]
+fn every_command_refuses_times_in_another_unit_before_it_computes_anything() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("good.csv", drive_csv(2, 700));
+    write(
+        "lift.csv",
+        "side,force_n,rim_speed_mps,power_w\nleft,60,0.1,20\nleft,60,0.3,40\nleft,60,0.5,60\n".into(),
+    );
+    for (per_s, unit) in [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")] {
+        write("bad.csv", in_unit(per_s));
+        let commands: [&[&str]; 5] = [
+            &["predict", "--recording", "bad.csv"],
+            &["calibrate", "--recording", "good.csv", "bad.csv", "--out", "robot.json"],
+            &["calibrate", "--recording", "bad.csv", "--lift", "lift.csv", "--out", "robot.json"],
+            &["diagnose", "--recording", "bad.csv", "--out", "report"],
+            &["diagnose", "--recording", "good.csv", "--reference", "bad.csv", "--out", "report"],
+        ];
+        for command in commands {
+            let output = joulepath(folder.path(), command);
+            let said = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{command:?}: {said}");
+            assert!(said.contains("bad.csv: line 2, run `drive-0`: rows are"), "{command:?}: {said}");
+            assert!(said.contains("must be in seconds") && said.contains(unit), "{command:?}: {said}");
+        }
+    }
+    assert!(!folder.path().join("robot.json").exists() && !folder.path().join("report").exists());
+}
+
+/// Six hundred rows at 10 Hz, which pandas and polars stored as durations; 6123.47 J by pandas' own units.
+#[test]
+fn durations_in_parquet_give_the_energy_of_the_same_drive_in_seconds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/recording/tests/files");
+    for name in ["drive-pandas.parquet", "drive-polars.parquet"] {
+        let found = document(&joulepath(&folder, &["predict", "--recording", name, "--json"]));
+        let energy_j = found["total"]["recorded_j"].as_f64().unwrap();
+        assert!((energy_j - 6123.47).abs() < 0.01, "{name}: {energy_j}");
+    }
+}

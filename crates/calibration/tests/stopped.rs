@@ -10,9 +10,13 @@ use std::{
     },
 };
 
-use calibration::{Error, Options, calibrate, calibrate_watched, predict_watched};
+use calibration::{
+    Drives, Error, Method, Options, calibrate, calibrate_watched,
+    power::{PowerModel, by_row},
+    predict_watched,
+};
 use model::builtin;
-use recording::{Recording, Watch, unwatched};
+use recording::{Channel, Recording, Watch, unwatched};
 
 mod simulated;
 use simulated::{
@@ -77,5 +81,70 @@ fn a_prediction_stops_too() {
     for last in 1..=asked.load(Ordering::Relaxed) {
         let stopped = predict_watched(&file(), &recording, &breaking_at(last).0);
         assert!(matches!(stopped, Err(Error::Stopped)), "at {last}");
+    }
+}
+
+/// The most rows whose power was asked for between two looks at the watch.
+#[test]
+fn a_pass_over_the_rows_looks_at_its_watch_every_few_thousand_of_them() {
+    const MOST_ROWS: usize = 4096;
+    let mut random = seeded(6);
+    let plain = drives(&mut random, 3, 4000);
+    let recording = with_power(&file(), plain, &mut random);
+    let (rows, most) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+    let (since, longest) = (Arc::clone(&rows), Arc::clone(&most));
+    let watch: Watch = Arc::new(move |_| {
+        longest.fetch_max(since.swap(0, Ordering::Relaxed), Ordering::Relaxed);
+        ControlFlow::Continue(())
+    });
+    let drives = Drives::watched(&file(), &recording, &watch).unwrap();
+    rows.store(0, Ordering::Relaxed);
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let count = || {
+        rows.fetch_add(1, Ordering::Relaxed);
+        [0.0]
+    };
+    one_thread.install(|| {
+        by_row(&drives, &file(), |_, _| count()).unwrap();
+        PowerModel::new(&drives).unwrap().averages(&file(), |_, _| count()).unwrap();
+    });
+    drives.go_on().unwrap();
+    let most = most.load(Ordering::Relaxed);
+    assert!(drives.rows.len() > 2 * MOST_ROWS, "{} rows are looked at at once", drives.rows.len());
+    assert!((1..=MOST_ROWS).contains(&most), "{most} rows between two looks");
+}
+
+/// Preparing, predicting and fitting look the more often the more rows there are, wherever the rows are gone through.
+#[test]
+fn preparing_drives_looks_at_its_watch_in_proportion_to_their_rows() {
+    let looks = |rows: usize| {
+        let mut random = seeded(5);
+        let plain = drives(&mut random, 1, rows);
+        let mut recording = with_power(&file(), plain, &mut random);
+        // Heights, so that slopes are worked out by them.
+        let heights_m = recording.t_s.iter().map(|t_s| 0.3 * (0.05 * t_s).sin()).collect();
+        recording.channels.remove(&Channel::Pitch);
+        recording.channels.insert(Channel::Z, heights_m);
+        let (watch, asked) = breaking_at(usize::MAX);
+        Drives::watched(&file(), &recording, &watch).unwrap();
+        (asked.load(Ordering::Relaxed), recording.rows())
+    };
+    let ((few, few_rows), (many, many_rows)) = (looks(10_000), looks(40_000));
+    let more_rows = many_rows - few_rows;
+    // Inputs, standing and its noise every 4096 rows, slopes every 256.
+    let expected = more_rows / 256 + 3 * (more_rows / 4096);
+    assert!(many - few >= expected, "{few} looks at {few_rows} rows, {many} at {many_rows}");
+}
+
+#[test]
+fn the_procedure_of_the_paper_stops_too() {
+    let (recording, options) = (by_power(), Options::default());
+    let (never, asked) = breaking_at(usize::MAX);
+    let whole = Method::DogruMarques.calibrate_watched(&file(), &recording, &options, &never);
+    let all = asked.load(Ordering::Relaxed);
+    for last in [1, all / 2, all] {
+        let watch = breaking_at(last).0;
+        let stopped = Method::DogruMarques.calibrate_watched(&file(), &recording, &options, &watch);
+        assert!(matches!(stopped, Err(Error::Stopped)), "at {last} of {all}: {whole:?}");
     }
 }

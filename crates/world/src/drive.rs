@@ -155,6 +155,10 @@ mod tests {
         for (text, field) in [
             (r#"{"kind": "rich"}"#, "duration_s"),
             (r#"{"kind": "rich", "duration_s": -5}"#, "duration_s"),
+            (r#"{"kind": "rich", "duration_s": 1e300}"#, "duration_s"),
+            (r#"{"kind": "rich", "duration_s": 1e999}"#, "duration_s"),
+            (r#"{"duration_s": 1e300, "poses": [{"x_m": 0, "y_m": 0}, {"x_m": 1, "y_m": 0}]}"#, "duration_s"),
+            (r#"{"kind": "rich", "duration_s": 5, "runs": 1000000000000}"#, "runs"),
             (r#"{"kind": "waltz", "duration_s": 5}"#, "waltz"),
             (r#"{"kind": "rich", "duration_s": 5, "colour": 1}"#, "colour"),
             (r#"{"kind": "path", "duration_s": 5}"#, "poses"),

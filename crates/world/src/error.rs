@@ -21,6 +21,17 @@ pub enum Error {
         /// How to mend it.
         hint: &'static str,
     },
+    /// A drive with more rows than fit in memory.
+    #[error(
+        "runs times duration_s of the drive, at sensors.rate_hz of the world, are {rows} rows, and {most_rows} at most are simulated: \
+         drive for less time, or record less often"
+    )]
+    TooLong {
+        /// Rows of the drive.
+        rows: f64,
+        /// Most that are simulated.
+        most_rows: f64,
+    },
     /// A surface is named that the robot has no friction for.
     #[error("{field} is `{name}`, but the robot knows only {}", known.join(", "))]
     UnknownSurface {

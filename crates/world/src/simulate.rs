@@ -62,6 +62,7 @@ pub fn simulate_all(world: &World, robot: &RobotFile, drives: &[Drive]) -> Resul
 pub fn simulate_closely(world: &World, robot: &RobotFile, drive: &Drive) -> Result<Simulation, Error> {
     world.check()?;
     drive.check()?;
+    check_length(world, drive)?;
     let robot = scattered(robot, world);
     let ground = Ground::new(world, &robot)?;
     let (instant_s, steps) = rhythm(world);
@@ -110,6 +111,18 @@ fn one_run(
     Ok(truth)
 }
 
+/// Most rows of a drive: each takes a kilobyte of truth.
+const MOST_ROWS: f64 = 2e6;
+
+/// Refuses a drive whose recording would fill the memory.
+fn check_length(world: &World, drive: &Drive) -> Result<(), Error> {
+    let rows = drive.runs as f64 * drive.duration_s * world.sensors.rate_hz;
+    if rows <= MOST_ROWS {
+        return Ok(());
+    }
+    Err(Error::TooLong { rows, most_rows: MOST_ROWS })
+}
+
 /// Time between two truths and the whole steps that it is made of, each no longer than the world asks.
 fn rhythm(world: &World) -> (f64, u32) {
     let instant_s = 1.0 / (world.sensors.rate_hz * INSTANTS_PER_ROW as f64);
@@ -136,4 +149,18 @@ fn scattered<'a>(robot: &'a RobotFile, world: &World) -> Cow<'a, RobotFile> {
         surface.mu_skid *= factor(u.mu_skid);
     }
     Cow::Owned(robot)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drive_of_more_rows_than_fit_in_memory_is_refused_before_it_begins() {
+        let world = World::from_json(r#"{"terrain": "level", "sensors": {"rate_hz": 50}}"#).unwrap();
+        let drive = Drive { runs: 1000, ..Drive::new(crate::DriveKind::Rich, 1e5, 0) };
+        let message = check_length(&world, &drive).unwrap_err().to_string();
+        assert!(message.contains("5000000000 rows") && message.contains("duration_s"), "{message}");
+        assert!(check_length(&world, &Drive::new(crate::DriveKind::Rich, 4e4, 0)).is_ok());
+    }
 }
