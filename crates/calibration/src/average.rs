@@ -127,7 +127,7 @@ mod tests {
         let t_s: Vec<f64> = (0..25).map(|row| 3.0 + f64::from(row) * 0.1).collect();
         let found: Vec<(f64, usize)> = averages(&t_s).iter().map(|a| (a.t_s, a.used)).collect();
         assert_eq!(found, [(3.0, 10), (4.0, 10), (5.0, 5)]);
-        for start_s in [1.7e18, -1.7e18, 1e300] {
+        for start_s in [1.7e18_f64, -1.7e18, 1e300] {
             let step_s = start_s.abs() * 1e-10;
             let t_s: Vec<f64> = (0..50).map(|row| start_s + f64::from(row) * step_s).collect();
             let found = averages(&t_s);

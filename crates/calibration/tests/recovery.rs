@@ -123,7 +123,7 @@ fn the_papers_procedure_gives_the_coefficients_of_the_printed_form_back() {
         watts.map(|w| (w.left + normal(&mut random), w.right + normal(&mut random))).unzip();
     recording.channels.insert(Channel::LeftPower, left);
     recording.channels.insert(Channel::RightPower, right);
-    let found = calibration::dogru_marques::calibrate(&robot, &recording).unwrap();
+    let found = calibration::dogru_marques::calibrate(&robot, &recording, &recording::unwatched()).unwrap();
     let value = |ending: &str| found.parameters.iter().find(|p| p.name.ends_with(ending)).unwrap().value;
     assert!((value("marble.mu_skid") - marble.mu_skid).abs() < 0.02, "{}", value("marble.mu_skid"));
     assert!((value("marble.mu_roll") - marble.mu_roll).abs() < 0.02, "{}", value("marble.mu_roll"));

@@ -53,14 +53,16 @@ impl Foremost {
             loop {
                 let some: Vec<Candidate> = candidates.by_ref().take(scales.together()).collect();
                 if some.is_empty() {
-                    break best;
+                    break Ok(best);
                 }
+                series.go_on()?;
                 for one in scales.weigh_all(some).iter().flatten() {
                     best.iter_mut().zip(MEASURES).for_each(|(best, measure)| take(best, one, measure));
                 }
             }
         };
-        let of_families: Vec<[Vec<Weighed>; 2]> = families.par_iter().map(best_of).collect();
+        let of_families: Vec<[Vec<Weighed>; 2]> =
+            families.par_iter().map(best_of).collect::<Result<_, Error>>()?;
         let best_by = |which: usize, measure: Measure| -> Result<Vec<Weighed>, Error> {
             let mut best = Vec::new();
             of_families.iter().flat_map(|some| &some[which]).for_each(|one| take(&mut best, one, measure));

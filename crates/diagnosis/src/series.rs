@@ -3,7 +3,7 @@
 //! Power is what is to be explained. What the battery gives beyond both sides tells standing loads and faults of the meters
 //! apart, and speed over ground and yaw rate tell slipping wheels and encoders that are wrong; each is used where it was recorded.
 
-use std::sync::OnceLock;
+use std::{ops::ControlFlow, sync::OnceLock};
 
 use model::{
     Robot, Sides,
@@ -201,6 +201,17 @@ impl Series {
     /// Who is asked whether to go on.
     pub(crate) fn watch(&self) -> &Watch {
         &self.watch
+    }
+
+    /// Asks the watch whether to go on.
+    ///
+    /// # Errors
+    /// [`calibration::Error::Stopped`] when it breaks.
+    pub(crate) fn go_on(&self) -> Result<(), Error> {
+        match (self.watch)(0) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(calibration::Error::Stopped.into()),
+        }
     }
 
     /// Number of channels of power.

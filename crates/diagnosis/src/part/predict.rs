@@ -10,6 +10,9 @@ use recording::PowerForm;
 use super::{Part, Seen};
 use crate::{Error, meter::Meter, series::Applied, shapes::Key};
 
+/// Rows between two looks at the watch: some milliseconds.
+const ROWS_A_LOOK: usize = 2048;
+
 impl Part {
     /// Averages of what would be recorded, quantity by quantity, where it was.
     ///
@@ -57,6 +60,7 @@ impl Part {
         let delays_s: Vec<f64> = (0..phases).map(delay_s).collect();
         let mut seen = vec![Seen::default(); self.drives.rows.len()];
         for stretch in &self.drives.stretches {
+            self.drives.go_on()?;
             let name = &self.drives.surfaces[stretch.surface];
             let on: Vec<Option<On<'_>>> = changed
                 .iter()
@@ -64,12 +68,16 @@ impl Part {
                 .collect::<Result<_, _>>()?;
             let places = stretch.rows.clone();
             let rows = &mut seen[places.clone()];
-            rows.par_iter_mut().zip(places).with_min_len(512).for_each(|(seen, i)| {
-                let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
-                if let Some(on) = &on[phase[i]] {
-                    *seen = self.seen(on, i, loss_w);
+            rows.par_chunks_mut(ROWS_A_LOOK).enumerate().try_for_each(|(piece, rows)| {
+                self.drives.go_on()?;
+                for (i, seen) in (places.start + piece * ROWS_A_LOOK..).zip(rows) {
+                    let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
+                    if let Some(on) = &on[phase[i]] {
+                        *seen = self.seen(on, i, loss_w);
+                    }
                 }
-            });
+                Ok::<_, Error>(())
+            })?;
             if delays_s.iter().any(|delay_s| *delay_s != 0.0) {
                 let rows = rows.to_vec();
                 for (i, row) in stretch.rows.clone().enumerate() {
@@ -119,7 +127,12 @@ impl Part {
                 let rows = &self.drives.rows[stretch.rows.clone()];
                 let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &row.motion(robot));
                 let shapes = &mut shapes[stretch.rows.clone()];
-                shapes.par_iter_mut().zip(rows).with_min_len(512).for_each(|(to, row)| *to = shape(row));
+                let pieces = shapes.par_chunks_mut(ROWS_A_LOOK).zip(rows.par_chunks(ROWS_A_LOOK));
+                pieces.try_for_each(|(shapes, rows)| {
+                    self.drives.go_on()?;
+                    shapes.iter_mut().zip(rows).for_each(|(to, row)| *to = shape(row));
+                    Ok::<_, Error>(())
+                })?;
             }
             Ok(shapes)
         })
