@@ -52,7 +52,7 @@ pub(crate) fn read(
     source: impl Read,
     name: &str,
     map: Option<&Map>,
-    budget: Budget,
+    budget: &Budget,
 ) -> Result<Reading, Error> {
     let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
     let mut source = opened(source, MAGIC, "ROS 1 bag", older)?;

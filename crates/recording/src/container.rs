@@ -38,7 +38,7 @@ pub(crate) fn opened<R: Read>(
 }
 
 /// The topics that a map names, or those of a Husky.
-pub(crate) fn topics(map: Option<&Map>, budget: Budget) -> Result<Topics<'_>, Error> {
+pub(crate) fn topics<'m>(map: Option<&'m Map>, budget: &Budget) -> Result<Topics<'m>, Error> {
     let map = map.or(HUSKY.as_ref()).ok_or(Error::Empty { found: "no map".into() })?;
-    Ok(Topics::new(map, budget))
+    Ok(Topics::new(map, budget.clone()))
 }

@@ -22,7 +22,7 @@ pub(crate) fn read(
     source: impl Read,
     name: &str,
     map: Option<&Map>,
-    budget: Budget,
+    budget: &Budget,
 ) -> Result<Reading, Error> {
     let mut source = BufReader::with_capacity(BUFFER_BYTES, source);
     let beginning = source.fill_buf()?;

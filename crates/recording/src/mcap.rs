@@ -45,7 +45,7 @@ pub(crate) fn read(
     source: impl Read,
     name: &str,
     map: Option<&Map>,
-    budget: Budget,
+    budget: &Budget,
 ) -> Result<Reading, Error> {
     let mut source = opened(source, MAGIC, "MCAP", "it does not begin with the MCAP magic")?;
     let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map, budget)?, plain: Vec::new() };

@@ -33,7 +33,7 @@ pub(crate) fn read(
     source: impl ChunkReader + 'static,
     name: &str,
     map: Option<&Map>,
-    budget: Budget,
+    budget: &Budget,
 ) -> Result<Reading, Error> {
     // The library asserts some of what a damaged file may say (negative offsets among it). Nothing of it outlives the
     // closure, so that stopping in the middle leaves nothing half done.
@@ -50,7 +50,7 @@ fn read_file(
     source: impl ChunkReader + 'static,
     name: &str,
     map: Option<&Map>,
-    budget: Budget,
+    budget: &Budget,
 ) -> Result<Reading, Error> {
     let file_bytes = source.len();
     let file = SerializedFileReader::new(source)?;

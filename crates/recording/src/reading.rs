@@ -105,10 +105,10 @@ pub fn read_file(
     let stopped = file.stopped();
     let budget = Budget { room, looks: Looks::new(watch) };
     let reading = match format {
-        Format::Csv => csv::read(file, name, map, budget),
-        Format::Parquet => parquet::read(file, name, map, budget),
-        Format::Mcap => mcap::read(file, name, map, budget),
-        Format::Bag => bag::read(file, name, map, budget),
+        Format::Csv => csv::read(file, name, map, &budget),
+        Format::Parquet => parquet::read(file, name, map, &budget),
+        Format::Mcap => mcap::read(file, name, map, &budget),
+        Format::Bag => bag::read(file, name, map, &budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
 }
@@ -169,10 +169,10 @@ pub(crate) fn read_within(
 ) -> Result<Reading, Error> {
     let budget = Budget { room, looks: Looks::new(&unwatched()) };
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, budget),
-        Format::Csv => csv::read(Cursor::new(bytes), name, map, budget),
-        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, budget),
-        Format::Bag => bag::read(Cursor::new(bytes), name, map, budget),
+        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, &budget),
+        Format::Csv => csv::read(Cursor::new(bytes), name, map, &budget),
+        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
+        Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
     }
 }
 
