@@ -1,7 +1,5 @@
 //! The path found, pose by pose, and what it costs under any robot.
 
-use model::{Acceleration, Manoeuvre, PowerModel, Robot, Sides};
-
 use crate::{
     edge::Edge,
     error::Error,
@@ -143,42 +141,6 @@ impl Route {
             radius_m: radius_m.is_finite().then_some(radius_m),
         });
         self.steps.push(*step);
-    }
-
-    /// Energy of driving the same steps with another robot [J].
-    ///
-    /// `surfaces` names the surface of each index that the steps carry.
-    pub fn energy_with_j(
-        &self,
-        robot: &Robot,
-        model: PowerModel,
-        surfaces: &[String],
-        motor_temperature_c: f64,
-    ) -> f64 {
-        let forever = Patience::default();
-        self.energy_within_j((robot, model), surfaces, motor_temperature_c, &forever).unwrap_or(f64::NAN)
-    }
-
-    /// The same; `None` where patience ends first.
-    pub(crate) fn energy_within_j(
-        &self,
-        (robot, model): (&Robot, PowerModel),
-        surfaces: &[String],
-        motor_temperature_c: f64,
-        patience: &Patience,
-    ) -> Option<f64> {
-        let temperature_c = Sides::both(motor_temperature_c);
-        let (mut energy_j, mut pacer) = (0.0, patience.pacer());
-        for step in &self.steps {
-            pacer.after(work::STATE)?;
-            let surface = surfaces.get(step.surface).and_then(|name| robot.surfaces.get(name));
-            if let Some(surface) = surface {
-                let manoeuvre = Manoeuvre::new(model, robot, surface, step.motion, temperature_c);
-                let power = manoeuvre.power_on_grade(step.grade, Acceleration::NONE);
-                energy_j += power.bus_w * step.duration_s;
-            }
-        }
-        Some(energy_j)
     }
 }
 

@@ -1,27 +1,29 @@
 //! How far a path's energy may be off, given what is known of the robot.
 
-use model::Robot;
+use std::collections::{HashMap, hash_map::Entry};
 
-use crate::{lattice::Lattice, patience::Patience, planner::surface_names, route::Route};
+use model::{Acceleration, Grade, Manoeuvre, Motion, PowerModel, Robot, Sides};
+
+use crate::{
+    lattice::Lattice,
+    patience::{Patience, work},
+    planner::surface_names,
+    route::Route,
+};
 
 /// Half width of the central 95 % of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.959_964;
 
-/// A relative sigma and what it scales.
-type Parameter = (f64, fn(&mut Robot, f64));
-
 /// Steps whose interval is worked out whether patience is over or not, so that an answer that is there is not lost.
 const STEPS_AT_LEAST: usize = 1 << 14;
 
-/// Central 95 % interval of a path's energy [J]; `None` where patience ends first on a long path.
-///
-/// The energy is computed anew with each parameter one sigma up and one down; the larger of the two changes counts as
-/// that parameter's standard deviation, and the parameters as independent.
-pub(crate) fn energy_interval_j(route: &Route, lattice: &Lattice, patience: &Patience) -> Option<[f64; 2]> {
-    let (robot, settings) = (&lattice.robot, &lattice.settings);
-    let surfaces = surface_names(lattice);
+/// A relative sigma and what it scales.
+type Parameter = (f64, fn(&mut Robot, f64));
+
+/// Parameters that energy depends on, each with the uncertainty that the robot's file states.
+fn parameters(robot: &Robot) -> [Parameter; 5] {
     let u = &robot.uncertainty;
-    let parameters: [Parameter; 5] = [
+    [
         (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(factor, 1.0))),
         (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(1.0, factor))),
         (u.k1, |r, factor| {
@@ -33,21 +35,117 @@ pub(crate) fn energy_interval_j(route: &Route, lattice: &Lattice, patience: &Pat
             r.motors.right.k2 = (r.motors.right.k2 * factor).max(1.0);
         }),
         (u.mass_kg, |r, factor| r.mass_kg *= factor),
-    ];
-    let patience = if route.steps.len() <= STEPS_AT_LEAST { &Patience::default() } else { patience };
-    let mut variance_j2 = 0.0;
-    for (sigma, scale) in parameters {
-        let mut largest_j: f64 = 0.0;
-        for factor in [1.0 + sigma, 1.0 - sigma] {
+    ]
+}
+
+/// Central 95 % interval of a path's energy [J]; `None` where patience ends first on a long path.
+///
+/// Parameters are positive, and so log-normal and independent. The energy E is computed anew with each at both ends of its own
+/// interval, at the factors e^(±1.96 σ), which gives a highest E⁺ and a lowest E⁻. With the least L that the path can take
+/// ([`Replay::least_j`]),
+///
+/// ```text
+/// high = E + √(Σ (E⁺ − E)²)
+/// low  = L + (E − L) exp(−√(Σ ln² ((E⁻ − L)/(E − L))))
+/// ```
+///
+/// so that one parameter alone gives the energies at its own quantiles, small ones add up as variances do, and no doubt makes the
+/// energy less than it can be: where nothing is gained, no less than 0.
+pub(crate) fn energy_interval_j(route: &Route, lattice: &Lattice, patience: &Patience) -> Option<[f64; 2]> {
+    let robot = &lattice.robot;
+    let forever = Patience::default();
+    let patience = if route.steps.len() <= STEPS_AT_LEAST { &forever } else { patience };
+    let replay = Replay::new(route, lattice, patience);
+    let energy_j = route.total.energy_j;
+    let least_j = replay.least_j(robot)?.min(energy_j);
+    let (mut above_j2, mut below_ln2) = (0.0, 0.0);
+    for (sigma, scale) in parameters(robot).into_iter().filter(|(sigma, _)| *sigma > 0.0) {
+        let at = |factor: f64| {
             let mut changed = robot.clone();
             scale(&mut changed, factor);
-            let model = settings.power_model;
-            let temperature_c = settings.motor_temperature_c;
-            let energy_j = route.energy_within_j((&changed, model), &surfaces, temperature_c, patience)?;
-            largest_j = largest_j.max((energy_j - route.total.energy_j).abs());
+            replay.energy_j(&changed)
+        };
+        let factor = (NORMAL_95 * sigma).exp();
+        let ends_j = [at(factor)?, at(1.0 / factor)?];
+        let [highest_j, lowest_j] = [ends_j[0].max(ends_j[1]), ends_j[0].min(ends_j[1])];
+        above_j2 += (highest_j - energy_j).max(0.0).powi(2);
+        let share = (lowest_j - least_j).max(0.0) / (energy_j - least_j);
+        if share < 1.0 {
+            below_ln2 += share.ln().powi(2);
         }
-        variance_j2 += largest_j.powi(2);
     }
-    let half_j = NORMAL_95 * variance_j2.sqrt();
-    Some([route.total.energy_j - half_j, route.total.energy_j + half_j])
+    let low_j = least_j + (energy_j - least_j) * (-below_ln2.sqrt()).exp();
+    Some([low_j.min(energy_j), energy_j + above_j2.sqrt()])
+}
+
+/// The steps of a path, ready to be driven by other robots: power is prepared once for each of the few motions and surfaces.
+struct Replay<'a> {
+    model: PowerModel,
+    surfaces: Vec<String>,
+    patience: &'a Patience,
+    motor_c: Sides<f64>,
+    /// Motions on surfaces.
+    kinds: Vec<(Motion, usize)>,
+    /// Kind, grade and time [s] of each step.
+    steps: Vec<(usize, Grade<f64>, f64)>,
+}
+
+impl<'a> Replay<'a> {
+    fn new(route: &Route, lattice: &Lattice, patience: &'a Patience) -> Self {
+        let mut kinds = Vec::new();
+        let mut known = HashMap::new();
+        let mut kind_of = |motion: Motion, surface: usize| {
+            let Motion { speed_mps, yaw_rate_radps, rim_speeds_mps: rim, heading_rad } = motion;
+            let speeds = [speed_mps, yaw_rate_radps, rim.left, rim.right].map(f64::to_bits);
+            match known.entry((speeds, heading_rad.map(f64::to_bits), surface)) {
+                Entry::Occupied(kind) => *kind.get(),
+                Entry::Vacant(new) => {
+                    kinds.push((motion, surface));
+                    *new.insert(kinds.len() - 1)
+                }
+            }
+        };
+        let steps = route.steps.iter();
+        let steps = steps.map(|s| (kind_of(s.motion, s.surface), s.grade, s.duration_s)).collect();
+        let (model, motor_c) = (lattice.settings.power_model, lattice.settings.motor_temperature_c);
+        let motor_c = Sides::both(motor_c);
+        Replay { model, surfaces: surface_names(lattice), patience, motor_c, kinds, steps }
+    }
+
+    /// Energy of the same steps with another robot; `None` where patience ends first [J].
+    fn energy_j(&self, robot: &Robot) -> Option<f64> {
+        self.sum_j(robot, |manoeuvre, grade| manoeuvre.power_on_grade(grade, Acceleration::NONE).bus_w)
+    }
+
+    /// The least that the steps can take, whatever the doubt: standing loads, and everything back that descents hold, of the mass
+    /// at the upper end of its interval and through gears without losses [J].
+    fn least_j(&self, robot: &Robot) -> Option<f64> {
+        let mut heavy = robot.clone();
+        heavy.mass_kg *= (NORMAL_95 * robot.uncertainty.mass_kg).exp();
+        (heavy.motors.left.k2, heavy.motors.right.k2) = (1.0, 1.0);
+        self.sum_j(&heavy, |manoeuvre, grade| {
+            let kernel = manoeuvre.kernel();
+            let [up_w, down_w] = kernel.floor_w;
+            let held_w = grade.along * if grade.along >= 0.0 { up_w } else { down_w };
+            kernel.standing_w + held_w.min(0.0)
+        })
+    }
+
+    /// Sum of a power over the time of all steps [J].
+    fn sum_j(&self, robot: &Robot, power_w: impl Fn(&Manoeuvre, Grade<f64>) -> f64) -> Option<f64> {
+        let prepared = self.kinds.iter().map(|(motion, surface)| {
+            let surface = robot.surfaces.get(self.surfaces.get(*surface)?)?;
+            Some(Manoeuvre::new(self.model, robot, surface, *motion, self.motor_c))
+        });
+        let prepared: Vec<Option<Manoeuvre>> = prepared.collect();
+        let mut pacer = self.patience.pacer();
+        let mut sum_j = 0.0;
+        for (kind, grade, duration_s) in &self.steps {
+            pacer.after(work::STATE)?;
+            if let Some(Some(manoeuvre)) = prepared.get(*kind) {
+                sum_j += power_w(manoeuvre, *grade) * duration_s;
+            }
+        }
+        Some(sum_j)
+    }
 }

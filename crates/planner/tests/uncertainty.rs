@@ -1,0 +1,119 @@
+//! The interval of a path's energy: where it may lie, and that one doubt alone gives its own quantiles.
+
+#![allow(clippy::unwrap_used)]
+
+use approx::assert_relative_eq;
+use model::{Robot, builtin, robot::Uncertainty};
+use planner::{Goal, Objective, Patience, Plan, Query, Settings, Start, plan};
+use proptest::prelude::*;
+use terrain::{Grid, Terrain};
+
+const CERTAIN: Uncertainty = Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0 };
+
+/// From one corner to the other over ground of 1 m cells.
+fn across(robot: &Robot, height_m: impl Fn(f64, f64) -> f64) -> Plan {
+    const SIDE: usize = 14;
+    let grid = Grid { rows: SIDE, columns: SIDE, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let height = |i: usize| {
+        let [x_m, y_m] = grid.center_m(grid.cell(i));
+        height_m(x_m, y_m)
+    };
+    let heights: Vec<f64> = (0..grid.cells()).map(height).collect();
+    let terrain = Terrain::new(grid, &heights).unwrap();
+    let query = Query {
+        start: Start { x_m: 2.5, y_m: 2.5, heading_rad: None },
+        goal: Goal { x_m: 11.5, y_m: 10.5, heading_rad: None, tolerance_m: 0.0 },
+        settings: Settings::of(robot),
+        snap_radius_m: None,
+        bound: 1.0,
+        refine: false,
+        patience: Patience::default(),
+    };
+    plan(&terrain, robot, &query, Objective::Energy).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_interval_holds_the_energy_and_nothing_is_gained_where_nothing_can_be(
+        sigmas in prop::array::uniform5(0.0f64..1.0),
+        slopes in prop::array::uniform2(-0.15f64..0.15),
+        waves_m in 0.0f64..0.4,
+        regeneration in prop_oneof![Just(0.0), Just(1.0), 0.0f64..1.0],
+        mu_roll in prop_oneof![Just(0.0), Just(1e-6), 0.01f64..0.3],
+        hotel_power_w in prop_oneof![Just(0.0), 0.0f64..50.0],
+        is_level in any::<bool>(),
+    ) {
+        let [mu_roll_sigma, mu_skid, k1, k2, mass_kg] = sigmas;
+        let mut robot = builtin::husky_a200();
+        robot.uncertainty = Uncertainty { mu_roll: mu_roll_sigma, mu_skid, k1, k2, mass_kg };
+        robot.motors.regeneration = regeneration;
+        robot.hotel_power_w = hotel_power_w;
+        robot.surfaces.values_mut().for_each(|surface| surface.mu_roll = mu_roll);
+        let found = across(&robot, |x_m, y_m| {
+            if is_level { 3.0 } else { slopes[0] * x_m + slopes[1] * y_m + waves_m * (x_m / 2.0).sin() }
+        });
+        let ([low_j, high_j], energy_j) = (found.energy_interval_j, found.route.total.energy_j);
+        prop_assert!(low_j.is_finite() && high_j.is_finite());
+        prop_assert!(low_j <= energy_j && energy_j <= high_j, "{low_j} {energy_j} {high_j}");
+        if is_level || regeneration == 0.0 {
+            let standing_j = hotel_power_w * found.route.total.duration_s;
+            prop_assert!(low_j >= standing_j * (1.0 - 1e-9), "{low_j} below the {standing_j} of standing loads");
+        }
+    }
+}
+
+#[test]
+fn a_doubt_in_one_parameter_gives_the_energies_at_its_quantiles() {
+    type Scale = fn(&mut Robot, f64);
+    let set: [(fn(f64) -> Uncertainty, Scale); 3] = [
+        (
+            |sigma| Uncertainty { mu_roll: sigma, ..CERTAIN },
+            |robot, factor| {
+                robot.surfaces.values_mut().for_each(|surface| surface.mu_roll *= factor);
+            },
+        ),
+        (
+            |sigma| Uncertainty { k1: sigma, ..CERTAIN },
+            |robot, factor| {
+                robot.motors.left.k1_w_per_n2 *= factor;
+                robot.motors.right.k1_w_per_n2 *= factor;
+            },
+        ),
+        (|sigma| Uncertainty { mass_kg: sigma, ..CERTAIN }, |robot, factor| robot.mass_kg *= factor),
+    ];
+    let mut plain = builtin::husky_a200();
+    plain.uncertainty = CERTAIN;
+    let certain = across(&plain, |_, _| 0.0);
+    assert_eq!(certain.energy_interval_j, [certain.route.total.energy_j; 2], "nothing is in doubt");
+    for (uncertainty, scale) in set {
+        for sigma in [0.05, 0.3, 1.0] {
+            let mut doubted = plain.clone();
+            doubted.uncertainty = uncertainty(sigma);
+            // On level ground the best way is the same for all.
+            let quantile_j = |z: f64| {
+                let mut robot = plain.clone();
+                scale(&mut robot, (z * sigma).exp());
+                across(&robot, |_, _| 0.0).route.total.energy_j
+            };
+            let [low_j, high_j] = across(&doubted, |_, _| 0.0).energy_interval_j;
+            assert_relative_eq!(low_j, quantile_j(-1.959_964), max_relative = 1e-3);
+            assert_relative_eq!(high_j, quantile_j(1.959_964), max_relative = 1e-3);
+        }
+    }
+}
+
+#[test]
+fn small_independent_doubts_add_up_as_variances() {
+    let half_j = |uncertainty: Uncertainty| {
+        let mut robot = builtin::husky_a200();
+        robot.uncertainty = uncertainty;
+        let [low_j, high_j] = across(&robot, |_, _| 0.0).energy_interval_j;
+        (high_j - low_j) / 2.0
+    };
+    let roll_j = half_j(Uncertainty { mu_roll: 0.01, ..CERTAIN });
+    let mass_j = half_j(Uncertainty { mass_kg: 0.01, ..CERTAIN });
+    let both_j = half_j(Uncertainty { mu_roll: 0.01, mass_kg: 0.01, ..CERTAIN });
+    assert_relative_eq!(both_j, roll_j.hypot(mass_j), max_relative = 1e-3);
+}
