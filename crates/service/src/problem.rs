@@ -11,6 +11,7 @@ use planner::Place;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::numbers::with_exponents;
 pub use crate::problem_type::ProblemType;
 
 /// A problem document.
@@ -50,7 +51,7 @@ impl Problem {
             kind,
             title: kind.title().to_owned(),
             status: kind.status().as_u16(),
-            detail: detail.into(),
+            detail: with_exponents(detail.into()),
             errors: Vec::new(),
             retry_after_s: (kind.status() == StatusCode::SERVICE_UNAVAILABLE).then_some(1),
         }
@@ -181,6 +182,9 @@ impl Problem {
             E::OutOfRange { field, .. } => (ProblemType::InvalidRequest, pointer(field)),
             E::ReserveAboveCharge { .. } => (ProblemType::InvalidRequest, "/charge".to_owned()),
             E::NowhereToGo => (ProblemType::NoPath, "/start".to_owned()),
+            E::NoWayBack { .. } => (ProblemType::NoPath, "/goal".to_owned()),
+            E::ScaleTooFine { .. } => (ProblemType::InvalidRequest, "/elevation_scale_m".to_owned()),
+            E::Timeout { .. } => return Problem::new(ProblemType::Timeout, error.to_string()),
             _ => return Problem::new(ProblemType::Internal, error.to_string()),
         };
         Problem::new(kind, error.to_string()).at(at)
