@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} poses, {:.1} m", route.poses.len(), route.total.length_m);
     for _ in 0..5 {
         let began = Instant::now();
-        let outcomes = draws(&journey, &drawn, &conditions, 1000);
+        let outcomes = draws(&journey, &drawn, &conditions, 1000, &Patience::default())?;
         let mean_j = outcomes.iter().map(|o| o.energy_j).sum::<f64>() / outcomes.len() as f64;
         println!("1000 draws in {:.1} ms, mean {:.2} kJ", began.elapsed().as_secs_f64() * 1e3, mean_j / 1e3);
     }

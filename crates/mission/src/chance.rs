@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
-use crate::pack::Pack;
+use crate::{Error, pack::Pack};
 
 /// How uncertain a prediction's inputs are, beyond what the robot's file says of itself and its battery.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,22 @@ impl Doubt {
     /// No doubt beyond the robot's file.
     pub const NONE: Doubt =
         Doubt { elevation_sigma_m: 0.0, elevation_scale_m: 10.0, model_mean: 0.0, model_sigma: 0.0 };
+
+    /// Checks that the map's error does not change too often along a way of a length.
+    ///
+    /// # Errors
+    /// More than [`MOST_STRETCHES`].
+    pub(crate) fn check_length(&self, length_m: f64) -> Result<(), Error> {
+        let (scale_m, most) = (self.elevation_scale_m, MOST_STRETCHES);
+        if self.elevation_sigma_m == 0.0 || length_m / scale_m <= most as f64 {
+            return Ok(());
+        }
+        Err(Error::ScaleTooFine { scale_m, length_m, most, least_m: length_m / most as f64 })
+    }
 }
+
+/// Most stretches of one way that the map errs on independently; each draw makes an error for each, in some milliseconds.
+const MOST_STRETCHES: usize = 200_000;
 
 /// What draws are made of.
 #[derive(Clone, Copy, Debug)]

@@ -36,6 +36,36 @@ pub enum Error {
         "no other place can be reached from the start: look for obstacles, unknown ground or slopes about it"
     )]
     NowhereToGo,
+    /// A goal that can be reached and not left for the start again.
+    #[error(
+        "the goal ({x_m:.2}, {y_m:.2}) can be reached, but no chain of motions leads from there back to the start: allow reverse, give more room to turn, or choose another goal"
+    )]
+    NoWayBack {
+        /// Goal, x [m].
+        x_m: f64,
+        /// Goal, y [m].
+        y_m: f64,
+    },
+    /// A way that the errors of the map are to change on too often.
+    #[error(
+        "elevation_scale_m is {scale_m}, which cuts the way of {length_m:.0} m into more than {most} stretches: give {least_m:.3} m or more"
+    )]
+    ScaleTooFine {
+        /// The scale asked for [m].
+        scale_m: f64,
+        /// Length of the way [m].
+        length_m: f64,
+        /// Most stretches of one way.
+        most: usize,
+        /// Least scale that will do [m].
+        least_m: f64,
+    },
+    /// Time that ran out after a path was found.
+    #[error("time ran out while {step}: allow more time, or ask for fewer samples or stops")]
+    Timeout {
+        /// What was being done, as `drawing samples`.
+        step: &'static str,
+    },
     /// What the planner says.
     #[error(transparent)]
     Plan(#[from] planner::Error),

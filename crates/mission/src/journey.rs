@@ -1,5 +1,7 @@
 //! A way to drive with its stops, prepared to be driven a thousand times by robots that differ a little.
 
+use std::collections::{HashMap, hash_map::Entry};
+
 use model::{Grade, Motion, PowerModel, Robot};
 use planner::{Step as PlannedStep, body_motion};
 
@@ -109,18 +111,13 @@ impl Journey {
         surfaces: &[String],
         paced: impl Fn(Motion) -> Motion,
     ) -> Result<(), Error> {
-        let mut known: Vec<(Motion, usize, usize)> = Vec::new();
+        let mut known = HashMap::new();
         for step in steps {
-            let same = |(motion, surface, _): &&(Motion, usize, usize)| {
-                *motion == step.motion && *surface == step.surface
-            };
-            let kind = match known.iter().rev().find(same) {
-                Some(&(_, _, kind)) => kind,
-                None => {
+            let kind = match known.entry((bits(&step.motion), step.surface)) {
+                Entry::Occupied(kind) => *kind.get(),
+                Entry::Vacant(new) => {
                     let name = surfaces.get(step.surface).unwrap_or(&robot.default_surface);
-                    let kind = self.kind(robot, paced(step.motion), name)?;
-                    known.push((step.motion, step.surface, kind));
-                    kind
+                    *new.insert(self.kind(robot, paced(step.motion), name)?)
                 }
             };
             let motion = &self.kinds[kind].motion;
@@ -166,4 +163,11 @@ impl Journey {
             self.kinds.len() - 1
         }))
     }
+}
+
+/// A motion as what it can be looked up by.
+fn bits(motion: &Motion) -> ([u64; 4], Option<u64>) {
+    let Motion { speed_mps, yaw_rate_radps, rim_speeds_mps, heading_rad } = motion;
+    let speeds = [*speed_mps, *yaw_rate_radps, rim_speeds_mps.left, rim_speeds_mps.right];
+    (speeds.map(f64::to_bits), heading_rad.map(f64::to_bits))
 }

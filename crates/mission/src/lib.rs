@@ -1,6 +1,6 @@
 //! Whether the battery lasts: range with its uncertainty, the last point to turn back, and the order of waypoints.
 //!
-//! A [`Journey`] is a way to drive with its stops, prepared from the planner's routes. [`Journey::run`] drives it with one robot,
+//! A [`Journey`] is a way to drive with its stops, prepared from the planner's routes. `Journey::run` drives it with one robot,
 //! battery and ground as they may be, a [`Chance`]: power comes from the model's one power function, motors warm on the way
 //! (eqs. 7-10), the [`Pack`] drains by Peukert's law and sags. [`range()`] does so a thousand times.
 //!
@@ -10,12 +10,15 @@ mod carries;
 mod chance;
 mod error;
 mod journey;
+mod level;
 mod likely;
+mod meter;
 mod mission;
 mod pace;
 mod pack;
 mod range;
 mod replanned;
+mod round_trip;
 mod run;
 mod turning;
 

@@ -56,8 +56,22 @@ pub struct Delivery {
 const ABSORPTION_FROM: f64 = 0.8;
 /// Least share of that current that cells take until they are full: what a charger floats them at.
 const FLOAT_SHARE: f64 = 0.02;
-/// Longest stretch of time over which voltage and acceptance are held [s].
-const LONGEST_S: f64 = 20.0;
+/// Shortest time over which voltage and acceptance are held [s].
+const HELD_S: f64 = 20.0;
+/// Change of the charge over which they are held however long it takes: the open voltage changes by a hundredth of a per cent.
+const HELD_CHARGE: f64 = 1e-3;
+/// Most stretches of one delivery: twice as many as a pack from full to empty has, after which the rest is one.
+const MOST_HELD: usize = 2000;
+
+/// What flows at one moment.
+#[derive(Clone, Copy, Debug)]
+struct Flow {
+    /// Change of the charge [1/s].
+    charge_per_s: f64,
+    voltage_v: f64,
+    drawn_w: f64,
+    refused_w: f64,
+}
 
 impl Pack {
     /// The pack that a robot file describes, with `capacity_factor` times the capacity.
@@ -109,38 +123,50 @@ impl Pack {
 
     /// Delivers a power for a time, or takes it where it is negative.
     pub fn deliver(&self, charge: f64, power_w: f64, duration_s: f64) -> Delivery {
-        let mut so_far = self.hold(charge, power_w, duration_s.min(LONGEST_S));
-        let mut left_s = duration_s - LONGEST_S;
-        while left_s > 0.0 {
-            let next = self.hold(so_far.charge, power_w, left_s.min(LONGEST_S));
-            so_far = Delivery {
-                drawn_j: so_far.drawn_j + next.drawn_j,
-                refused_j: so_far.refused_j + next.refused_j,
-                ..next
-            };
-            left_s -= LONGEST_S;
+        let (mut charge, mut left_s) = (charge, duration_s);
+        let (mut drawn_j, mut refused_j) = (0.0, 0.0);
+        let mut stretches = 0;
+        loop {
+            stretches += 1;
+            let flow = self.flow(charge, power_w);
+            let held_s = if stretches < MOST_HELD { held_s(charge, &flow, left_s) } else { left_s };
+            drawn_j += flow.drawn_w * held_s;
+            refused_j += flow.refused_w * held_s;
+            charge = charged(charge, &flow, held_s);
+            left_s -= held_s;
+            if stretches >= MOST_HELD || left_s.is_nan() || left_s <= 0.0 {
+                return Delivery { charge, voltage_v: flow.voltage_v, drawn_j, refused_j };
+            }
         }
-        so_far
     }
 
     /// Time that a charger of a power takes to bring a pack to a level [s]; `None` where it never does.
     pub fn charging_time_s(&self, charge: f64, level: f64, power_w: f64) -> Option<f64> {
         let (mut charge, mut time_s) = (charge, 0.0);
-        while charge < level {
-            let next = self.hold(charge, -power_w, LONGEST_S);
-            let gain = next.charge - charge;
-            if gain <= 0.0 {
+        for stretch in 0..=MOST_HELD {
+            if charge >= level {
+                break;
+            }
+            let flow = self.flow(charge, -power_w);
+            if flow.charge_per_s.is_nan() || flow.charge_per_s <= 0.0 {
                 return None;
             }
-            time_s += LONGEST_S * ((level - charge) / gain).min(1.0);
-            charge = next.charge;
+            let left_s = (level - charge) / flow.charge_per_s;
+            let held_s = if stretch < MOST_HELD { held_s(charge, &flow, left_s) } else { left_s };
+            time_s += held_s;
+            charge = if held_s < left_s { charged(charge, &flow, held_s) } else { level };
         }
         Some(time_s)
     }
 
-    /// The same over a time so short that voltage and acceptance stay.
+    /// Change of the charge while a power is delivered [1/s].
+    pub(crate) fn charge_per_s(&self, charge: f64, power_w: f64) -> f64 {
+        self.flow(charge, power_w).charge_per_s
+    }
+
+    /// What flows at a charge and a power.
     #[inline]
-    fn hold(&self, charge: f64, power_w: f64, duration_s: f64) -> Delivery {
+    fn flow(&self, charge: f64, power_w: f64) -> Flow {
         let open_v = self.open_voltage_v(charge);
         // V (V_o − V) = P R has its larger root at the load that packs are made for; beyond V_o²/4R there is none.
         let root_v2 = open_v * open_v - 4.0 * self.resistance_ohm * power_w;
@@ -149,21 +175,36 @@ impl Pack {
         if power_w >= 0.0 {
             let rate = current_a / self.rated_a;
             let hurry = if rate > 1.0 { rate.powf(self.peukert_excess) } else { 1.0 };
-            let charge = charge - hurry * current_a * duration_s / self.capacity_as;
-            return Delivery { charge, voltage_v, drawn_j: power_w * duration_s, refused_j: 0.0 };
+            let charge_per_s = -hurry * current_a / self.capacity_as;
+            return Flow { charge_per_s, voltage_v, drawn_w: power_w, refused_w: 0.0 };
         }
         let taken_a = self.acceptance_a(charge).min(-current_a);
         let voltage_v = open_v + self.resistance_ohm * taken_a;
         let taken_w = voltage_v * taken_a;
-        let charge =
-            (charge + self.efficiency * taken_a * duration_s / self.capacity_as).min(charge.max(1.0));
-        Delivery {
-            charge,
+        Flow {
+            charge_per_s: self.efficiency * taken_a / self.capacity_as,
             voltage_v,
-            drawn_j: -taken_w * duration_s,
-            refused_j: (-power_w - taken_w) * duration_s,
+            drawn_w: -taken_w,
+            refused_w: -power_w - taken_w,
         }
     }
+}
+
+/// Time for which a flow may be held, at most what is left [s]. Below empty the voltage stays, and so does everything else.
+#[inline]
+fn held_s(charge: f64, flow: &Flow, left_s: f64) -> f64 {
+    if left_s <= HELD_S || flow.charge_per_s == 0.0 || (charge <= 0.0 && flow.charge_per_s < 0.0) {
+        return left_s;
+    }
+    let change = HELD_CHARGE.max(-charge);
+    (change / flow.charge_per_s.abs()).max(HELD_S).min(left_s)
+}
+
+/// Charge after a flow was held; what comes back fills a pack and no more.
+#[inline]
+fn charged(charge: f64, flow: &Flow, duration_s: f64) -> f64 {
+    let after = charge + flow.charge_per_s * duration_s;
+    if flow.charge_per_s > 0.0 { after.min(charge.max(1.0)) } else { after }
 }
 
 #[cfg(test)]
@@ -264,7 +305,42 @@ mod tests {
         assert!(full > pack.charging_time_s(0.2, 0.8, 500.0).unwrap() * 1.5, "absorption takes its time");
     }
 
+    #[test]
+    fn a_delivery_without_end_ends() {
+        // 1 W of 480 Wh for longer than the universe has lasted: empty, and overdrawn by the rest at the empty voltage.
+        let pack = Pack::new(&stiff(), 1.0);
+        for duration_s in [1e10, 1e18, 1e300] {
+            let after = pack.deliver(1.0, 1.0, duration_s);
+            assert_relative_eq!(after.drawn_j, duration_s, max_relative = 1e-9);
+            assert_relative_eq!(after.charge, 1.0 - duration_s / (480.0 * 3600.0), max_relative = 1e-6);
+        }
+        assert_eq!(pack.deliver(0.5, 0.0, 1e300).charge, 0.5, "nothing is drawn");
+        assert_eq!(pack.deliver(0.5, -1.0, 1e300).charge, 1.0, "full, and stays so");
+        let overdrawn = pack.deliver(-1e9, -24.0, 3600.0);
+        assert_relative_eq!(overdrawn.charge, -1e9 + 0.85 / 20.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_charger_too_weak_for_its_pack_takes_its_time_and_is_not_waited_for() {
+        // 1 MWh by 1 mW at an efficiency of 0.85: 10⁶ · 3600 J / (0.85 · 0.001 W), a hundredth of that for 10 kWh.
+        let huge = Pack::new(&Battery { capacity_wh: 1e6, ..stiff() }, 1.0);
+        let time_s = huge.charging_time_s(0.2, 0.21, 1e-3).unwrap();
+        assert_relative_eq!(time_s, 0.01 * 1e6 * 3600.0 / (0.85 * 1e-3), max_relative = 1e-9);
+        let full_s = huge.charging_time_s(0.0, 1.0, 1e-3).unwrap();
+        assert_relative_eq!(full_s, 1e6 * 3600.0 / (0.85 * 1e-3), max_relative = 1e-6);
+    }
+
     proptest! {
+        #[test]
+        fn holding_for_long_takes_what_short_steps_take(
+            charge in 0.1f64..1.0, power in -100.0f64..600.0, steps in 2u32..400,
+        ) {
+            let pack = husky();
+            let whole = pack.deliver(charge, power, 5.0 * f64::from(steps));
+            let split = (0..steps).fold(charge, |charge, _| pack.deliver(charge, power, 5.0).charge);
+            prop_assert!((whole.charge - split).abs() < 5e-3 * (1.0 + (charge - split).abs()), "{} for {split}", whole.charge);
+        }
+
         #[test]
         fn more_power_takes_more_charge_and_a_split_delivery_the_same(
             charge in 0.2f64..0.75, power in -100.0f64..600.0, seconds in 1.0f64..60.0,

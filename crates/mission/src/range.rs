@@ -1,20 +1,23 @@
 //! Whether a robot gets to a goal, and back, on its charge.
 
 use model::{Robot, robot::Battery};
-use planner::{Goal, Objective, Plan, Planner, Pose, Query, Start};
+use planner::{Goal, Objective, Plan, Planner, Pose, Query, Start, State};
 
 use crate::{
     Error,
-    carries::{Carries, farthest, level_m},
+    carries::{Carries, Reachable},
     chance::{Chance, Doubt, Drawn},
     error::within,
     journey::Journey,
+    level::level_m,
     likely::{Likely, draws},
-    pace::{BestSpeed, best_speed},
+    meter::Meter,
+    pace::{BestSpeed, Paced, best_speed},
     pack::Pack,
-    replanned::{Replanned, replanned},
+    replanned::{Anew, Replanned, replanned},
+    round_trip::{Homeward, Outward},
     run::{Conditions, Outcome, Passage},
-    turning::{TurningPoint, last_turning_point},
+    turning::{TurningPoint, last_turning_point, state_at},
 };
 
 /// Most draws of one question.
@@ -73,6 +76,8 @@ pub struct Range {
     pub replanned: Option<Replanned>,
     /// How far the charge carries, where no goal was named.
     pub carries: Option<Carries>,
+    /// Charge when it sets out.
+    pub charge: f64,
     /// Charge that must stay.
     pub reserve: f64,
 }
@@ -116,93 +121,83 @@ pub fn range(planner: &Planner, question: &Question) -> Result<Range, Error> {
     let drawn =
         Drawn { robot, battery, charge: question.charge, doubt: &question.doubt, seed: question.seed };
     let chance = Chance::nominal(robot, Pack::new(battery, 1.0), question.charge);
+    let asked = Asked { planner, question, drawn, chance, conditions };
     if !question.farthest {
         let way = Way::plan(planner, &question.query, question.back)?;
-        return way.judge(planner, question, &drawn, &chance, &conditions, None);
+        return asked.judge(way, None, None);
     }
-    let level_m = level_m(planner, question, &drawn, &conditions)?;
-    let (way, whole_map) = farthest_way(planner, question, &chance, &conditions)?;
-    way.judge(planner, question, &drawn, &chance, &conditions, Some(Carries { level_m, whole_map }))
+    let patience = &question.query.patience;
+    let level_m = level_m(planner.lattice(), &asked.drawn, &asked.conditions, question.samples, patience)?;
+    let reachable = Reachable::new(planner, &question.query, question.back)?;
+    let (way, whole_map) = asked.farthest_way(&reachable)?;
+    asked.judge(way, reachable.homeward, Some(Carries { level_m, whole_map }))
 }
 
-/// The way to the farthest place that is reached as the files say, and whether there is none farther.
-///
-/// Least energies of the lattice tell which places an energy reaches; what the battery gives for them depends on how fast and
-/// how warm the robot gets there, so that the energy is brought down until the way holds.
-fn farthest_way(
-    planner: &Planner,
-    question: &Question,
-    chance: &Chance,
-    conditions: &Conditions,
-) -> Result<(Way, bool), Error> {
-    /// Ways that are looked at before the nearest found so far has to do.
-    const TRIES: usize = 8;
-    /// By how much the energy is lowered beyond what the last way lacked.
-    const MARGIN: f64 = 0.99;
-    let battery_j = (question.charge - conditions.reserve) * chance.pack.full_j();
-    let (mut budget_j, mut last) = (battery_j, None);
-    for _ in 0..TRIES {
-        let Some((goal, whole_map)) = farthest(planner, &question.query, question.back, budget_j)? else {
-            break;
-        };
-        let way = Way::plan(planner, &Query { goal, ..question.query.clone() }, question.back)?;
-        let outcome = way.journey.run(chance, conditions, |_| {});
-        let succeeds = outcome.succeeds();
-        budget_j = MARGIN * budget_j * (1.0 - outcome.missing_j / outcome.energy_j.max(1e-9)).max(0.1);
-        last = Some((way, whole_map));
-        if succeeds {
-            break;
-        }
-    }
-    last.ok_or(Error::NowhereToGo)
+/// A question with what its answers are made of.
+struct Asked<'a> {
+    planner: &'a Planner,
+    question: &'a Question,
+    drawn: Drawn<'a>,
+    /// Everything as the files say.
+    chance: Chance,
+    conditions: Conditions,
 }
 
-/// A way there, and back where that was asked for, ready to be driven.
-struct Way {
-    queries: Vec<Query>,
-    plans: Vec<Plan>,
-    journey: Journey,
-    surfaces: Vec<String>,
-}
-
-impl Way {
-    fn plan(planner: &Planner, query: &Query, back: bool) -> Result<Self, Error> {
-        let lattice = planner.lattice();
-        let (mut queries, mut plans) = (vec![query.clone()], vec![planner.plan(query, Objective::Energy)?]);
-        if back {
-            let home = homeward(query, &plans[0]);
-            plans.push(planner.plan(&home, Objective::Energy)?);
-            queries.push(home);
+impl<'a> Asked<'a> {
+    /// The way to the farthest place that is reached as the files say, and whether there is none farther.
+    ///
+    /// Least energies of the lattice tell which places an energy reaches; what the battery gives for them depends on how fast and
+    /// how warm the robot gets there, so that the energy is brought down until the way holds.
+    fn farthest_way(&self, reachable: &Reachable<'_>) -> Result<(Way, bool), Error> {
+        /// Ways that are looked at before the nearest found so far has to do.
+        const TRIES: usize = 8;
+        /// By how much the energy is lowered beyond what the last way lacked.
+        const MARGIN: f64 = 0.99;
+        let Asked { planner, question, chance, conditions, .. } = self;
+        let mut meter = Meter::new(&question.query.patience, "driving to the farthest place");
+        let battery_j = (question.charge - conditions.reserve) * chance.pack.full_j();
+        let (mut budget_j, mut last) = (battery_j, None);
+        for _ in 0..TRIES {
+            let Some((goal, whole_map)) = reachable.farthest(planner, budget_j) else { break };
+            let query = Query { goal, ..question.query.clone() };
+            let out = planner.plan(&query, Objective::Energy)?;
+            let way = Way::along(planner, query, out, question.back)?;
+            let outcome = way.journey.run(chance, conditions, &mut meter, |_| {})?;
+            let succeeds = outcome.succeeds();
+            budget_j = MARGIN * budget_j * (1.0 - outcome.missing_j / outcome.energy_j.max(1e-9)).max(0.1);
+            last = Some((way, whole_map));
+            if succeeds {
+                break;
+            }
         }
-        let surfaces = planner::surface_names(lattice);
-        let mut journey = Journey::new(lattice.settings.power_model);
-        for plan in &plans {
-            journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?;
-        }
-        Ok(Way { queries, plans, journey, surfaces })
+        last.ok_or(Error::NowhereToGo)
     }
 
-    /// Everything about it that a question asks for.
+    /// Everything about a way that the question asks for; `homeward` where it is known already.
     fn judge(
-        self,
-        planner: &Planner,
-        question: &Question,
-        drawn: &Drawn<'_>,
-        chance: &Chance,
-        conditions: &Conditions,
+        &self,
+        way: Way,
+        homeward: Option<Homeward<'a>>,
         carries: Option<Carries>,
     ) -> Result<Range, Error> {
-        let Way { queries, plans, journey, surfaces } = self;
-        let mut passages = Vec::new();
-        let nominal = journey.run(chance, conditions, |passage| passages.push(*passage));
-        let outcomes = draws(&journey, drawn, conditions, question.samples);
-        let steps: Vec<_> = plans.iter().map(|plan| &plan.route.steps[..]).collect();
-        let best_speed = best_speed(drawn.robot, &steps, &surfaces, &journey, chance, conditions)?;
+        let Asked { planner, question, drawn, chance, conditions } = self;
+        let Way { queries, plans, journey, surfaces } = way;
         let patience = &question.query.patience;
-        let turning = last_turning_point(planner, &plans[0].route, chance, conditions, patience)?;
-        let chances: Vec<Chance> =
-            (0..question.replanned as u64).map(|number| drawn.chance(journey.length_m(), number)).collect();
-        let replanned = replanned(planner, &queries, &chances, &journey, conditions)?;
+        let mut passages = Vec::new();
+        let mut meter = Meter::new(patience, "driving the way");
+        let nominal = journey.run(chance, conditions, &mut meter, |passage| passages.push(*passage))?;
+        let outcomes = draws(&journey, drawn, conditions, question.samples, patience)?;
+        let drives: Vec<_> = plans.iter().map(|plan| &plan.route.steps[..]).collect();
+        let paced = Paced { robot: drawn.robot, drives: &drives, surfaces: &surfaces, journey: &journey };
+        let best_speed = best_speed(&paced, chance, conditions, patience)?;
+        let out = &plans[0].route;
+        let homeward = match homeward {
+            Some(homeward) => homeward,
+            None => Homeward::new(planner, start_of(planner, &plans[0])?.cell, patience)?,
+        };
+        let turning = last_turning_point(planner, (out, &homeward), chance, conditions, patience)?;
+        let anew = Anew { planner, queries: &queries, fixed: &journey, drawn, conditions };
+        let replanned = replanned(&anew, question.replanned, patience)?;
         let planned_j = plans.iter().map(|plan| plan.route.total.energy_j).sum();
         let mut left = passages.into_iter();
         let leg = |plan: Plan| Leg { passages: left.by_ref().take(plan.route.steps.len()).collect(), plan };
@@ -215,9 +210,88 @@ impl Way {
             best_speed,
             replanned,
             carries,
+            charge: question.charge,
             reserve: conditions.reserve,
         })
     }
+}
+
+/// A way there, and back where that was asked for, ready to be driven.
+struct Way {
+    queries: Vec<Query>,
+    plans: Vec<Plan>,
+    journey: Journey,
+    surfaces: Vec<String>,
+}
+
+impl Way {
+    /// The way of least energy, there and back together.
+    fn plan(planner: &Planner, query: &Query, back: bool) -> Result<Self, Error> {
+        let out = planner.plan(query, Objective::Energy)?;
+        if !back {
+            return Self::along(planner, query.clone(), out, false);
+        }
+        let homeward = Homeward::new(planner, start_of(planner, &out)?.cell, &query.patience)?;
+        match turned(planner, query, &out, &homeward)? {
+            None => Self::along(planner, query.clone(), out, true),
+            Some(goal) => {
+                let query = Query { goal, ..query.clone() };
+                let out = planner.plan(&query, Objective::Energy)?;
+                Self::along(planner, query, out, true)
+            }
+        }
+    }
+
+    /// A way there, and home from where it ends.
+    fn along(planner: &Planner, query: Query, out: Plan, back: bool) -> Result<Self, Error> {
+        let lattice = planner.lattice();
+        let home = back.then(|| homeward(&query, &out));
+        let (mut queries, mut plans) = (vec![query], vec![out]);
+        if let Some(home) = home {
+            plans.push(planner.plan(&home, Objective::Energy)?);
+            queries.push(home);
+        }
+        let surfaces = planner::surface_names(lattice);
+        let mut journey = Journey::new(lattice.settings.power_model);
+        for plan in &plans {
+            journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?;
+        }
+        Ok(Way { queries, plans, journey, surfaces })
+    }
+}
+
+/// The pose that a plan begins in.
+fn start_of(planner: &Planner, plan: &Plan) -> Result<State, Error> {
+    state_at(planner.lattice(), &plan.route, 0).ok_or(Error::NowhereToGo)
+}
+
+/// The goal in the heading that a way there has to end in, so that there and back together take least; `None` where the plan ends
+/// in it.
+///
+/// # Errors
+/// A goal that no way leads back from, or patience that ends first.
+fn turned(
+    planner: &Planner,
+    query: &Query,
+    out: &Plan,
+    homeward: &Homeward<'_>,
+) -> Result<Option<Goal>, Error> {
+    let lattice = planner.lattice();
+    let ends = planner.ends(query)?;
+    let least_j = ends.goals.iter().filter_map(|goal| homeward.energy_j(*goal)).min_by(f64::total_cmp);
+    let Goal { x_m, y_m, .. } = query.goal;
+    let least_j = least_j.ok_or(Error::NoWayBack { x_m, y_m })?;
+    let end = state_at(lattice, &out.route, out.route.poses.len().saturating_sub(1));
+    // Where nothing is nearer home than the end of the best way there, both together are best.
+    if end.and_then(|end| homeward.energy_j(end)).is_some_and(|home_j| home_j <= least_j) {
+        return Ok(None);
+    }
+    let home = start_of(planner, out)?.cell;
+    let outward = Outward::new(planner, &ends.starts, home, &query.patience)?;
+    let joined = outward.best_of(ends.goals.iter().copied(), Some(homeward));
+    let (state, _) = joined.ok_or(Error::NoWayBack { x_m, y_m })?;
+    let [x_m, y_m] = lattice.terrain.grid.center_m(state.cell);
+    Ok(Some(Goal { x_m, y_m, heading_rad: Some(state.heading.angle_rad()), tolerance_m: 0.0 }))
 }
 
 /// The question of the way back from where a plan ends to where it begins, in any heading.

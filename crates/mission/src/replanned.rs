@@ -1,9 +1,9 @@
 //! What better knowledge of the robot would change of the path.
 
-use planner::{Objective, Planner, Query};
+use planner::{Objective, Patience, Planner, Query};
 use rayon::prelude::*;
 
-use crate::{Error, chance::Chance, journey::Journey, likely::Spread, run::Conditions};
+use crate::{Error, chance::Drawn, journey::Journey, likely::Spread, meter::Meter, run::Conditions};
 
 /// The same draws over paths that each was planned with its own parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,30 +16,49 @@ pub struct Replanned {
     pub saving_j: f64,
 }
 
+/// What is planned anew.
+pub(crate) struct Anew<'a> {
+    pub(crate) planner: &'a Planner,
+    /// The question of each way.
+    pub(crate) queries: &'a [Query],
+    /// The ways as they were planned once for all draws.
+    pub(crate) fixed: &'a Journey,
+    pub(crate) drawn: &'a Drawn<'a>,
+    pub(crate) conditions: &'a Conditions,
+}
+
 /// Plans anew for each draw; those that patience leaves out are not counted, and without any there is no answer.
+///
+/// # Errors
+/// Robots that the map's ground does not suit.
 pub(crate) fn replanned(
-    planner: &Planner,
-    queries: &[Query],
-    chances: &[Chance],
-    fixed: &Journey,
-    conditions: &Conditions,
+    anew: &Anew<'_>,
+    samples: usize,
+    patience: &Patience,
 ) -> Result<Option<Replanned>, Error> {
+    let Anew { planner, queries, fixed, drawn, conditions } = anew;
     let lattice = planner.lattice();
     let surfaces = planner::surface_names(lattice);
-    let one = |chance: &Chance| -> Result<Option<[f64; 2]>, Error> {
+    let one = |number: usize| -> Result<Option<[f64; 2]>, Error> {
+        let mut meter = Meter::new(patience, "planning anew");
+        if meter.look().is_err() {
+            return Ok(None);
+        }
+        let chance = drawn.chance(fixed.length_m(), number as u64);
         let own = Planner::new(&lattice.terrain, &chance.robot, lattice.settings)?;
         let mut journey = Journey::new(lattice.settings.power_model);
-        for query in queries {
+        for query in *queries {
             match own.plan(query, Objective::Energy) {
                 Ok(plan) => journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?,
                 // A draw whose robot cannot go there, or no time for it, tells nothing of the others.
                 Err(_) => return Ok(None),
             }
         }
-        let energy_j = |journey: &Journey| journey.run(chance, conditions, |_| {}).energy_j;
-        Ok(Some([energy_j(&journey), energy_j(fixed)]))
+        let mut energy_j =
+            |journey: &Journey| journey.run(&chance, conditions, &mut meter, |_| {}).map(|run| run.energy_j);
+        Ok(energy_j(&journey).and_then(|own_j| Ok([own_j, energy_j(fixed)?])).ok())
     };
-    let found: Result<Vec<_>, Error> = chances.par_iter().map(one).collect();
+    let found: Result<Vec<_>, Error> = (0..samples).into_par_iter().map(one).collect();
     let found: Vec<[f64; 2]> = found?.into_iter().flatten().collect();
     if found.is_empty() {
         return Ok(None);

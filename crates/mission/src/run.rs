@@ -6,8 +6,10 @@ use model::{
 };
 
 use crate::{
+    Error,
     chance::Chance,
     journey::{Journey, Part, Step, Stop},
+    meter::Meter,
     pack::Delivery,
 };
 
@@ -88,7 +90,7 @@ pub struct Passage {
 const STALE_K: f64 = 0.25;
 
 /// The robot under way.
-struct Traveller<'a> {
+pub(crate) struct Traveller<'a> {
     journey: &'a Journey,
     chance: &'a Chance,
     conditions: &'a Conditions,
@@ -96,21 +98,61 @@ struct Traveller<'a> {
     /// Manoeuvres of each kind of step at the temperature that they were prepared for.
     ready: Vec<Option<(Sides<f64>, Manoeuvre)>>,
     out: Outcome,
-    charge: f64,
+    pub(crate) charge: f64,
     /// Drawn where the charge was first below the reserve, and since then where it was least [J].
     below_j: Option<f64>,
 }
 
+/// Work of a stop beside that of a step: its delivery may have as many stretches as a charge has thousandths.
+const WORK_PER_STOP: usize = 200;
+
 impl Journey {
     /// Drives the journey and shows every part of it to `visit`.
-    pub fn run(&self, chance: &Chance, conditions: &Conditions, mut visit: impl FnMut(&Passage)) -> Outcome {
+    ///
+    /// # Errors
+    /// Patience that ends before the journey.
+    pub(crate) fn run(
+        &self,
+        chance: &Chance,
+        conditions: &Conditions,
+        meter: &mut Meter<'_>,
+        mut visit: impl FnMut(&Passage),
+    ) -> Result<Outcome, Error> {
+        let mut traveller = Traveller::new(self, chance, conditions);
+        for (number, part) in self.parts.iter().enumerate() {
+            let voltage_v = match part {
+                Part::Step(step) => {
+                    meter.spend(1)?;
+                    traveller.step(step)
+                }
+                Part::Stop(stop) => {
+                    meter.spend(WORK_PER_STOP)?;
+                    traveller.stay(stop)
+                }
+            };
+            visit(&Passage {
+                part: number,
+                t_s: traveller.out.duration_s,
+                energy_j: traveller.out.energy_j,
+                charge: traveller.charge,
+                voltage_v,
+                winding_c: traveller.out.heat.map(|h| h.winding_c),
+            });
+        }
+        Ok(Outcome { arrival_charge: traveller.charge, ..traveller.out })
+    }
+}
+
+impl<'a> Traveller<'a> {
+    /// A robot that sets out on a journey.
+    pub(crate) fn new(journey: &'a Journey, chance: &'a Chance, conditions: &'a Conditions) -> Self {
         let heat = Sides::both(MotorHeat { winding_c: conditions.motor_c, case_c: conditions.motor_c });
-        let mut traveller = Traveller {
-            journey: self,
+        Traveller {
+            journey,
             chance,
             conditions,
             thermal: ThermalModel::of(&chance.robot),
-            ready: vec![None; self.kinds.len()],
+            ready: vec![None; journey.kinds.len()],
             out: Outcome {
                 energy_j: 0.0,
                 refused_j: 0.0,
@@ -126,27 +168,11 @@ impl Journey {
             },
             charge: chance.charge,
             below_j: None,
-        };
-        for (number, part) in self.parts.iter().enumerate() {
-            let voltage_v = match part {
-                Part::Step(step) => traveller.step(step),
-                Part::Stop(stop) => traveller.stay(stop),
-            };
-            visit(&Passage {
-                part: number,
-                t_s: traveller.out.duration_s,
-                energy_j: traveller.out.energy_j,
-                charge: traveller.charge,
-                voltage_v,
-                winding_c: traveller.out.heat.map(|h| h.winding_c),
-            });
         }
-        Outcome { arrival_charge: traveller.charge, ..traveller.out }
     }
-}
 
-impl Traveller<'_> {
-    fn step(&mut self, step: &Step) -> f64 {
+    /// Drives a step; the voltage in it [V].
+    pub(crate) fn step(&mut self, step: &Step) -> f64 {
         let winding_c = self.out.heat.map(|h| h.winding_c);
         let Some((power, standing_w)) = self.power(step, winding_c) else { return self.out.least_voltage_v };
         let losses = losses_w(&self.chance.robot, &power, winding_c);
@@ -157,11 +183,23 @@ impl Traveller<'_> {
             motor.advance(&self.thermal, copper_w, gear_w, ambient_c, step.duration_s);
             self.out.hottest_c = self.out.hottest_c.max(motor.winding_c);
         }
-        let drives_w = power.bus_w - standing_w;
-        let drives_w = drives_w + self.chance.model_error * drives_w.abs();
-        let delivered = self.deliver(standing_w + drives_w, step.duration_s);
+        let drawn_w = standing_w + self.drives_w(&power, standing_w);
+        let delivered = self.deliver(drawn_w, step.duration_s);
         self.sag(&power, step, standing_w, delivered.voltage_v);
         delivered.voltage_v
+    }
+
+    /// Change of the charge while a step is driven as warm as the motors are [1/s]; `None` where it cannot be driven.
+    pub(crate) fn charge_per_s(&mut self, step: &Step) -> Option<f64> {
+        let (power, standing_w) = self.power(step, self.out.heat.map(|h| h.winding_c))?;
+        let drawn_w = standing_w + self.drives_w(&power, standing_w);
+        Some(self.chance.pack.charge_per_s(self.charge, drawn_w))
+    }
+
+    /// What drives draw, with what the model says too little [W].
+    fn drives_w(&self, power: &Power, standing_w: f64) -> f64 {
+        let drives_w = power.bus_w - standing_w;
+        drives_w + self.chance.model_error * drives_w.abs()
     }
 
     /// The power on the ground as it may be, and how much of it is hotel load and electronics [W].
@@ -238,15 +276,10 @@ impl Traveller<'_> {
         delivered.voltage_v
     }
 
-    /// Motors at rest; the case is the slow store, so that a minute is a short step.
+    /// Motors at rest.
     fn cool(&mut self, duration_s: f64) {
-        const STEP_S: f64 = 60.0;
-        let mut left_s = duration_s;
-        while left_s > 0.0 {
-            for motor in [&mut self.out.heat.left, &mut self.out.heat.right] {
-                motor.advance(&self.thermal, 0.0, 0.0, self.conditions.ambient_c, left_s.min(STEP_S));
-            }
-            left_s -= STEP_S;
+        for motor in [&mut self.out.heat.left, &mut self.out.heat.right] {
+            motor.advance(&self.thermal, 0.0, 0.0, self.conditions.ambient_c, duration_s);
         }
     }
 

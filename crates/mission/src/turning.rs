@@ -1,12 +1,14 @@
 //! The last point of a way from which turning back still works.
 
-use planner::{ExactField, Found, Heading, Lattice, Objective, Patience, Place, Planner, Route, State};
+use planner::{Heading, Lattice, Patience, Planner, Route, State};
 use rayon::prelude::*;
 
 use crate::{
     Error,
     chance::Chance,
     journey::Journey,
+    meter::Meter,
+    round_trip::Homeward,
     run::{Conditions, Outcome},
 };
 
@@ -38,27 +40,28 @@ const BATCH: usize = 16;
 /// where not even standing at the start does. Everything is as the files say, motors as warm as they are by then.
 pub(crate) fn last_turning_point(
     planner: &Planner,
-    route: &Route,
+    (route, homeward): (&Route, &Homeward<'_>),
     chance: &Chance,
     conditions: &Conditions,
     patience: &Patience,
 ) -> Result<Option<TurningPoint>, Error> {
     let lattice = planner.lattice();
     let surfaces = planner::surface_names(lattice);
-    let ways = Homeward::new(planner, route, patience)?;
     let back = |pose: usize| -> Result<Option<TurningPoint>, Error> {
+        let mut meter = Meter::new(patience, "looking for the last turning point");
+        meter.look()?;
         let Some(state) = state_at(lattice, route, pose) else { return Ok(None) };
-        let Some(way) = ways.from(state)? else { return Ok(None) };
+        let Some(way) = homeward.route(state, patience)? else { return Ok(None) };
         let mut journey = Journey::new(lattice.settings.power_model);
         journey.drive(&lattice.robot, &route.steps[..pose], &surfaces)?;
         journey.drive(&lattice.robot, &way.steps, &surfaces)?;
         let mut charge = chance.charge;
         let mut spent_j = 0.0;
-        let outcome: Outcome = journey.run(chance, conditions, |passage| {
+        let outcome: Outcome = journey.run(chance, conditions, &mut meter, |passage| {
             if passage.part < pose {
                 (charge, spent_j) = (passage.charge, passage.energy_j);
             }
-        });
+        })?;
         let place = &route.poses[pose];
         Ok(outcome.succeeds().then_some(TurningPoint {
             pose,
@@ -81,43 +84,14 @@ pub(crate) fn last_turning_point(
     Ok(None)
 }
 
-/// The best way to the start of a route from every pose, whatever the heading there.
-struct Homeward<'p> {
-    planner: &'p Planner,
-    field: ExactField,
-    patience: &'p Patience,
-}
-
-impl<'p> Homeward<'p> {
-    fn new(planner: &'p Planner, route: &Route, patience: &'p Patience) -> Result<Self, Error> {
-        let [x_m, y_m] = route.poses.first().map_or([f64::NAN; 2], |pose| [pose.x_m, pose.y_m]);
-        let states = planner.states_at(Place::Start, [x_m, y_m], None, None)?;
-        // All in one cell, so that no height tells them apart.
-        let goals: Vec<(State, f64)> = states.into_iter().map(|state| (state, 0.0)).collect();
-        let table = planner.table(Objective::Energy);
-        let field = ExactField::to_goals(table, &goals, f64::INFINITY, patience);
-        let field = field.ok_or(planner::Error::Timeout { expanded: 0 })?;
-        Ok(Homeward { planner, field, patience })
-    }
-
-    /// The way from a pose; `None` where none leads home.
-    fn from(&self, state: State) -> Result<Option<Route>, planner::Error> {
-        let table = self.planner.table(Objective::Energy);
-        let Some((start, motions)) = self.field.walk(table, &[state], self.patience)? else {
-            return Ok(None);
-        };
-        self.planner.drive(Objective::Energy, &Found::along(start, motions), self.patience).map(Some)
-    }
-}
-
 /// Numbers of the poses of a route that lie on the lattice: its start and the end of every motion.
 pub(crate) fn lattice_poses(route: &Route) -> Vec<usize> {
-    /// Sums of the same times in another order differ by less [s].
-    const SAME_S: f64 = 1e-6;
+    /// Sums of the same times in another order differ by less, as a share of them.
+    const ROUNDING: f64 = 1e-9;
     let (mut places, mut pose, mut t_s) = (vec![0], 0, 0.0);
     for edge in &route.edges {
         t_s += edge.duration_s;
-        while pose + 1 < route.poses.len() && route.poses[pose].t_s < t_s - SAME_S {
+        while pose + 1 < route.poses.len() && route.poses[pose].t_s < t_s * (1.0 - ROUNDING) {
             pose += 1;
         }
         places.push(pose);

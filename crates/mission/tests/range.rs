@@ -8,7 +8,7 @@ use approx::assert_relative_eq;
 use ground::{ground as hills, ideal_husky, level, planner, query, question};
 use mission::{Doubt, Error, Question, Spread, range};
 use model::{Robot, robot::Uncertainty};
-use planner::{Objective, Planner};
+use planner::{Objective, Planner, Query};
 
 /// Force of each side of a Husky on level marble: 0.063 · 90 kg · g / 2 [N].
 const SIDE_N: f64 = 0.063 * 90.0 * 9.80665 / 2.0;
@@ -112,19 +112,107 @@ fn a_long_climb_costs_more_than_the_sum_of_its_edges() {
     assert!(found.nominal.hottest_c > 35.0 && found.nominal.hottest_c < 120.0, "{:?}", found.nominal);
 }
 
+/// The least energy there and home from there, by a plan to every heading and one from it; `None` where no two join.
+fn joined_j(planner: &Planner, from: [f64; 2], to: [f64; 2]) -> Option<f64> {
+    let headings = planner::Heading::all().map(|heading| heading.angle_rad());
+    let total_j = |query: &Query| Some(planner.plan(query, Objective::Energy).ok()?.route.total.energy_j);
+    // Another cell would be another place.
+    let exact = |from, to| Query { snap_radius_m: Some(0.0), ..query(planner, from, to) };
+    let both_j = headings.filter_map(|heading_rad| {
+        let mut out = exact(from, to);
+        out.goal.heading_rad = Some(heading_rad);
+        let mut home = exact(to, from);
+        home.start.heading_rad = Some(heading_rad);
+        Some(total_j(&out)? + total_j(&home)?)
+    });
+    both_j.min_by(f64::total_cmp)
+}
+
 #[test]
-fn there_and_back_is_two_plans() {
-    let slope = hills(30, 30, |x_m, y_m| 0.1 * x_m + (y_m / 5.0).sin());
+fn there_and_back_is_the_least_of_both_together_over_all_headings() {
+    // Along the edges of the map a robot can stand in some headings only, so that there is no room to turn.
+    let slope = hills(12, 12, |x_m, y_m| 0.1 * x_m + (y_m / 3.0).sin());
     let planner = planner(&slope, &certain(ideal_husky(480.0)));
-    let out = query(&planner, [4.5, 4.5], [24.5, 20.5]);
-    let found = range(&planner, &Question { back: true, ..question(out.clone()) }).unwrap();
-    let there = planner.plan(&out, Objective::Energy).unwrap().route;
-    let end = there.poses.last().unwrap();
-    let mut home = query(&planner, [end.x_m, end.y_m], [4.5, 4.5]);
-    home.start.heading_rad = Some(end.heading_rad);
-    let back = planner.plan(&home, Objective::Energy).unwrap().route;
-    assert_relative_eq!(found.planned_j, there.total.energy_j + back.total.energy_j, epsilon = 1e-6);
-    assert_eq!(found.legs[1].plan.route, back);
+    let from = [4.5, 4.5];
+    let (mut dead_ends, mut ways) = (0, 0);
+    for to in [[0.5, 0.5], [5.5, 0.5], [11.5, 5.5], [11.5, 11.5], [0.5, 11.5], [8.5, 8.5], [10.5, 11.5]] {
+        let out = Query { snap_radius_m: Some(0.0), ..query(&planner, from, to) };
+        let found = range(&planner, &Question { back: true, samples: 1, ..question(out.clone()) });
+        match (joined_j(&planner, from, to), found) {
+            (Some(least_j), Ok(found)) => {
+                ways += 1;
+                assert_relative_eq!(found.planned_j, least_j, max_relative = 1e-3);
+                let [out, back] = [0, 1].map(|leg| &found.legs[leg].plan.route.poses);
+                let (end, begin) = (out.last().unwrap(), back.first().unwrap());
+                assert_eq!(
+                    (end.x_m, end.y_m, end.heading_rad),
+                    (begin.x_m, begin.y_m, begin.heading_rad),
+                    "the way home begins where the way there ends"
+                );
+            }
+            (None, Err(error)) => {
+                dead_ends += 1;
+                let there = planner.plan(&out, Objective::Energy).is_ok();
+                assert_eq!(matches!(error, Error::NoWayBack { .. }), there, "{error}");
+            }
+            (joined, found) => panic!("{to:?}: {joined:?} by brute force, {:?}", found.map(|f| f.planned_j)),
+        }
+    }
+    assert!(ways >= 2 && dead_ends >= 1, "{ways} ways, {dead_ends} dead ends: the ground tells nothing");
+}
+
+#[test]
+fn the_farthest_place_is_one_that_a_way_leads_back_from() {
+    let planner = planner(&level(30, 30), &certain(ideal_husky(480.0)));
+    let asked = question(query(&planner, [4.5, 4.5], [4.5, 4.5]));
+    let found = range(&planner, &Question { farthest: true, back: true, ..asked.clone() }).unwrap();
+    let end = found.legs[0].plan.route.poses.last().unwrap();
+    let farthest_m = (end.x_m - 4.5).hypot(end.y_m - 4.5);
+    // The cell next to the far corner is 33.9 m away and leads back.
+    assert!(found.legs.len() == 2 && farthest_m > 33.0, "{farthest_m}");
+    assert!(found.carries.unwrap().whole_map && found.likely.is_reachable());
+    let oneway = range(&planner, &Question { farthest: true, ..asked }).unwrap();
+    let end = oneway.legs[0].plan.route.poses.last().unwrap();
+    assert!((end.x_m - 4.5).hypot(end.y_m - 4.5) >= farthest_m, "no farther with a way back");
+}
+
+#[test]
+fn a_way_of_no_length_arrives_as_it_set_out() {
+    let planner = planner(&level(9, 9), &certain(ideal_husky(480.0)));
+    for back in [false, true] {
+        let asked = question(query(&planner, [4.5, 4.5], [4.5, 4.5]));
+        let found = range(&planner, &Question { back, charge: 0.5, ..asked }).unwrap();
+        assert_eq!((found.nominal.arrival_charge, found.charge, found.planned_j), (0.5, 0.5, 0.0));
+        assert_eq!(found.likely.arrival_charge.p50, 0.5);
+    }
+}
+
+/// The right answer, or an error that says that time ran out: whatever the look at the deadline at which it ends.
+#[test]
+fn a_deadline_anywhere_gives_the_right_answer_or_says_that_time_ran_out() {
+    let slope = hills(12, 12, |x_m, y_m| 0.1 * x_m + (y_m / 3.0).sin());
+    let planner = planner(&slope, &certain(ideal_husky(480.0)));
+    for (farthest, back) in [(false, false), (false, true), (true, false), (true, true)] {
+        let asked =
+            Question { farthest, back, samples: 9, ..question(query(&planner, [4.5, 4.5], [9.5, 8.5])) };
+        let whole = range(&planner, &asked).unwrap();
+        let (mut late, mut looks) = (0, 0_u64);
+        loop {
+            let mut hurried = asked.clone();
+            hurried.query.patience = planner::Patience::for_looks(looks);
+            match range(&planner, &hurried) {
+                Ok(found) => {
+                    assert_eq!((found.nominal, found.planned_j), (whole.nominal, whole.planned_j));
+                    assert_eq!(found.likely, whole.likely);
+                    break;
+                }
+                Err(Error::Timeout { .. } | Error::Plan(planner::Error::Timeout { .. })) => late += 1,
+                Err(other) => panic!("{other}"),
+            }
+            looks += 1 + looks / 8;
+        }
+        assert!(late > 5, "the deadline is looked at again and again, not {late} times");
+    }
 }
 
 #[test]
@@ -221,7 +309,11 @@ fn without_a_goal_level_ground_carries_as_far_as_the_charge_divides_by_the_metre
     let found = range(&planner, &Question { farthest: true, ..asked.clone() }).unwrap();
     let carries = found.carries.unwrap();
     // 0.8 · 3600 J at 103 J a metre.
-    assert_relative_eq!(carries.level_m.p50, 0.8 * 3600.0 / (2.0 * level_w(0.5)), max_relative = 2e-3);
+    assert_relative_eq!(
+        carries.level_m.unwrap().p50,
+        0.8 * 3600.0 / (2.0 * level_w(0.5)),
+        max_relative = 2e-3
+    );
     // The farthest place of the map is reached: 25 m away.
     assert!(carries.whole_map && found.likely.is_reachable());
     let short = certain(ideal_husky(0.4));

@@ -49,6 +49,18 @@ impl ThermalModel {
             case_to_air_k_per_w: husky.case_to_air_k_per_w / size,
         }
     }
+
+    /// Time in which a motor without losses loses all but 1/e of its heat to the air, the winding through the case [s].
+    ///
+    /// ```text
+    /// τ = (C_w + C_c) R_ca + C_w R_wc
+    /// ```
+    ///
+    /// The sum of both time constants of the two stores, and so no less than the slower.
+    pub fn time_constant_s(&self) -> f64 {
+        (self.winding_j_per_k + self.case_j_per_k) * self.case_to_air_k_per_w
+            + self.winding_j_per_k * self.winding_to_case_k_per_w
+    }
 }
 
 /// Temperatures of one motor [°C].
@@ -66,8 +78,41 @@ impl MotorHeat {
         MotorHeat { winding_c: ambient_c, case_c: ambient_c }
     }
 
-    /// Advances by `step_s` with losses held constant; exact for the winding, which is the fast store.
+    /// Advances by `step_s`, which may be of any length, with losses held constant.
+    ///
+    /// Long steps are cut into short ones. After [`SETTLED_TIME_CONSTANTS`] both stores have settled where losses and air hold them:
+    ///
+    /// ```text
+    /// T_c = T_a + R_ca (k1 F² + gear loss)
+    /// T_w = T_c + R_wc k1 F²
+    /// ```
     pub fn advance(&mut self, model: &ThermalModel, copper_w: f64, gear_w: f64, ambient_c: f64, step_s: f64) {
+        /// The explicit step of the case is stable below two of its time constants of 13 min, and accurate well below [s].
+        const SHORT_S: f64 = 60.0;
+        if step_s <= SHORT_S {
+            return self.advance_shortly(model, copper_w, gear_w, ambient_c, step_s);
+        }
+        if step_s >= SETTLED_TIME_CONSTANTS * model.time_constant_s() {
+            self.case_c = ambient_c + model.case_to_air_k_per_w * (copper_w + gear_w);
+            self.winding_c = self.case_c + model.winding_to_case_k_per_w * copper_w;
+            return;
+        }
+        let steps = (step_s / SHORT_S).ceil();
+        for _ in 0..steps as usize {
+            self.advance_shortly(model, copper_w, gear_w, ambient_c, step_s / steps);
+        }
+    }
+
+    /// The same for a step that is short beside the time constant of the case; exact for the winding, which is the fast store.
+    #[inline]
+    fn advance_shortly(
+        &mut self,
+        model: &ThermalModel,
+        copper_w: f64,
+        gear_w: f64,
+        ambient_c: f64,
+        step_s: f64,
+    ) {
         let settled_c = self.case_c + copper_w * model.winding_to_case_k_per_w;
         let decay = (-step_s / (model.winding_j_per_k * model.winding_to_case_k_per_w)).exp();
         let winding_c = settled_c + (self.winding_c - settled_c) * decay;
@@ -78,6 +123,9 @@ impl MotorHeat {
         self.winding_c = winding_c;
     }
 }
+
+/// Time constants after which a store differs from where it settles by less than rounding: e⁻⁴⁰ is 4 · 10⁻¹⁸.
+pub const SETTLED_TIME_CONSTANTS: f64 = 40.0;
 
 /// Copper and gear losses of both sides at one instant [W].
 pub fn losses_w(robot: &Robot, power: &Power, winding_c: Sides<f64>) -> Sides<(f64, f64)> {
@@ -165,5 +213,33 @@ mod tests {
             warm.advance(&model, 0.0, 0.0, 20.0, 1.0);
         }
         assert!((warm.winding_c - 20.0).abs() < 0.01 && (warm.case_c - 20.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_step_of_any_length_warms_as_many_short_ones_do() {
+        let model = ThermalModel::default();
+        for minutes in [1_u32, 5, 60, 600, 6000] {
+            let (mut long, mut short) = (MotorHeat::at_rest(20.0), MotorHeat::at_rest(20.0));
+            long.advance(&model, 40.0, 15.0, 20.0, 60.0 * f64::from(minutes));
+            (0..600 * minutes).for_each(|_| short.advance(&model, 40.0, 15.0, 20.0, 0.1));
+            assert!((long.case_c - short.case_c).abs() < 1.5, "{minutes} min: {long:?} {short:?}");
+            assert!((long.winding_c - short.winding_c).abs() < 1.5, "{minutes} min: {long:?} {short:?}");
+        }
+        // 55 W over 0.65 K/W, and 40 W over 0.3 K/W on top.
+        for endless_s in [1e6, 1e300, f64::INFINITY] {
+            let mut settled = MotorHeat::at_rest(20.0);
+            settled.advance(&model, 40.0, 15.0, 20.0, endless_s);
+            assert!((settled.case_c - 55.75).abs() < 1e-9 && (settled.winding_c - 67.75).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_time_constant_is_no_less_than_that_of_the_slow_store() {
+        let model = ThermalModel::default();
+        let mut warm = MotorHeat { winding_c: 90.0, case_c: 90.0 };
+        for _ in 0..(SETTLED_TIME_CONSTANTS * model.time_constant_s()) as u32 {
+            warm.advance(&model, 0.0, 0.0, 20.0, 1.0);
+        }
+        assert!((warm.case_c - 20.0).abs() < 1e-12 && (warm.winding_c - 20.0).abs() < 1e-12, "{warm:?}");
     }
 }

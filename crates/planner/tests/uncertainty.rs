@@ -12,6 +12,15 @@ const CERTAIN: Uncertainty = Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, 
 
 /// From one corner to the other over ground of 1 m cells.
 fn across(robot: &Robot, height_m: impl Fn(f64, f64) -> f64) -> Plan {
+    over(robot, 10.5, height_m)
+}
+
+/// Straight ahead over level ground, which is the best way whatever the robot.
+fn ahead(robot: &Robot) -> Plan {
+    over(robot, 2.5, |_, _| 0.0)
+}
+
+fn over(robot: &Robot, to_y_m: f64, height_m: impl Fn(f64, f64) -> f64) -> Plan {
     const SIDE: usize = 14;
     let grid = Grid { rows: SIDE, columns: SIDE, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
     let height = |i: usize| {
@@ -21,8 +30,8 @@ fn across(robot: &Robot, height_m: impl Fn(f64, f64) -> f64) -> Plan {
     let heights: Vec<f64> = (0..grid.cells()).map(height).collect();
     let terrain = Terrain::new(grid, &heights).unwrap();
     let query = Query {
-        start: Start { x_m: 2.5, y_m: 2.5, heading_rad: None },
-        goal: Goal { x_m: 11.5, y_m: 10.5, heading_rad: None, tolerance_m: 0.0 },
+        start: Start { x_m: 2.5, y_m: 2.5, heading_rad: Some(0.0) },
+        goal: Goal { x_m: 11.5, y_m: to_y_m, heading_rad: None, tolerance_m: 0.0 },
         settings: Settings::of(robot),
         snap_radius_m: None,
         bound: 1.0,
@@ -85,21 +94,20 @@ fn a_doubt_in_one_parameter_gives_the_energies_at_its_quantiles() {
     ];
     let mut plain = builtin::husky_a200();
     plain.uncertainty = CERTAIN;
-    let certain = across(&plain, |_, _| 0.0);
+    let certain = ahead(&plain);
     assert_eq!(certain.energy_interval_j, [certain.route.total.energy_j; 2], "nothing is in doubt");
     for (uncertainty, scale) in set {
         for sigma in [0.05, 0.3, 1.0] {
             let mut doubted = plain.clone();
             doubted.uncertainty = uncertainty(sigma);
-            // On level ground the best way is the same for all.
             let quantile_j = |z: f64| {
                 let mut robot = plain.clone();
                 scale(&mut robot, (z * sigma).exp());
-                across(&robot, |_, _| 0.0).route.total.energy_j
+                ahead(&robot).route.total.energy_j
             };
-            let [low_j, high_j] = across(&doubted, |_, _| 0.0).energy_interval_j;
-            assert_relative_eq!(low_j, quantile_j(-1.959_964), max_relative = 1e-3);
-            assert_relative_eq!(high_j, quantile_j(1.959_964), max_relative = 1e-3);
+            let [low_j, high_j] = ahead(&doubted).energy_interval_j;
+            assert_relative_eq!(low_j, quantile_j(-1.959_964), max_relative = 1e-9);
+            assert_relative_eq!(high_j, quantile_j(1.959_964), max_relative = 1e-9);
         }
     }
 }
@@ -109,11 +117,11 @@ fn small_independent_doubts_add_up_as_variances() {
     let half_j = |uncertainty: Uncertainty| {
         let mut robot = builtin::husky_a200();
         robot.uncertainty = uncertainty;
-        let [low_j, high_j] = across(&robot, |_, _| 0.0).energy_interval_j;
+        let [low_j, high_j] = ahead(&robot).energy_interval_j;
         (high_j - low_j) / 2.0
     };
     let roll_j = half_j(Uncertainty { mu_roll: 0.01, ..CERTAIN });
     let mass_j = half_j(Uncertainty { mass_kg: 0.01, ..CERTAIN });
     let both_j = half_j(Uncertainty { mu_roll: 0.01, mass_kg: 0.01, ..CERTAIN });
-    assert_relative_eq!(both_j, roll_j.hypot(mass_j), max_relative = 1e-3);
+    assert_relative_eq!(both_j, roll_j.hypot(mass_j), max_relative = 5e-3);
 }

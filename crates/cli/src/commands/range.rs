@@ -12,6 +12,7 @@ use service::routes::{
 use crate::{
     arguments::{Place, patience, read_map, read_robot},
     failure::{OutOfCharge, Refused},
+    output,
     table::{energy, time},
 };
 
@@ -98,9 +99,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found =
         plan.patience(&patience()).and_then(|p| answer(&planner, &request, &plan, &p)).map_err(Refused)?;
     if arguments.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        println!("{}", summary(&found, arguments.back));
+        output::line(summary(&found, arguments.back))?;
     }
     if found.reachable {
         return Ok(());
@@ -148,14 +149,14 @@ fn summary(found: &RangeAnswer, back: bool) -> String {
         text += &format!("\nreplanned  {count} draws on paths of their own save {saving}");
     }
     if let Some(carries) = &found.carries {
-        let level = &carries.level_m;
-        text += &format!(
-            "\nlevel      {:.0} m on level ground  ({:.0} to {:.0} m){}",
-            level.p50,
-            level.p05,
-            level.p95,
-            if carries.whole_map { ", all of the map is in reach" } else { "" }
-        );
+        let level = match &carries.level_m {
+            Some(level) => {
+                format!("{:.0} m on level ground  ({:.0} to {:.0} m)", level.p50, level.p05, level.p95)
+            }
+            None => "without end on level ground, which takes nothing".to_owned(),
+        };
+        let reach = if carries.whole_map { ", all of the map is in reach" } else { "" };
+        text += &format!("\nlevel      {level}{reach}");
     }
     text
 }

@@ -1,5 +1,7 @@
 //! The best order of stops, exact over all subsets.
 
+use crate::{Error, meter::Meter};
+
 /// Places with the poses that stand for each, and least costs between poses.
 pub(crate) struct Poses<'a> {
     /// Poses of each place: the start first, then all that are to be visited, then the end if there is one.
@@ -15,7 +17,13 @@ pub(crate) struct Poses<'a> {
 ///
 /// Held & Karp, J. SIAM 10 (1962) 196, over poses instead of places: the state is the set of places visited and the pose last
 /// taken, so that legs join up in every place. Time and memory grow as 2ⁿ with the places.
-pub(crate) fn cheapest_order(poses: &Poses<'_>) -> Option<(f64, Vec<usize>)> {
+///
+/// # Errors
+/// Patience that ends first.
+pub(crate) fn cheapest_order(
+    poses: &Poses<'_>,
+    meter: &mut Meter<'_>,
+) -> Result<Option<(f64, Vec<usize>)>, Error> {
     let visits = poses.places.len() - 1 - usize::from(poses.ends);
     let place = |i: usize| &poses.places[i + 1];
     let count = poses.cost.len();
@@ -31,6 +39,7 @@ pub(crate) fn cheapest_order(poses: &Poses<'_>) -> Option<(f64, Vec<usize>)> {
                 continue;
             }
             let row = &poses.cost[*p];
+            meter.spend(count)?;
             for i in (0..visits).filter(|i| set >> i & 1 == 0) {
                 let next = (set | 1 << i) * count;
                 for &q in place(i) {
@@ -42,7 +51,7 @@ pub(crate) fn cheapest_order(poses: &Poses<'_>) -> Option<(f64, Vec<usize>)> {
             }
         }
     }
-    trace(poses, &least, visits)
+    Ok(trace(poses, &least, visits))
 }
 
 /// Walks back from the best end.
@@ -90,9 +99,11 @@ fn trace(poses: &Poses<'_>, least: &[f64], visits: usize) -> Option<(f64, Vec<us
 
 #[cfg(test)]
 mod tests {
+    use planner::Patience;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::meter::WORK_PER_LOOK;
 
     /// Every order and every choice of poses.
     fn brute_force(poses: &Poses<'_>) -> f64 {
@@ -140,7 +151,8 @@ mod tests {
             }).collect()).collect();
             let poses = Poses { places: &places, ends, cost: &cost };
             let expected = brute_force(&poses);
-            match cheapest_order(&poses) {
+            let patience = Patience::default();
+            match cheapest_order(&poses, &mut Meter::new(&patience, "testing")).unwrap() {
                 None => prop_assert_eq!(expected, f64::INFINITY),
                 Some((total, order)) => {
                     prop_assert!((total - expected).abs() < 1e-9, "{} for {}", total, expected);
@@ -150,5 +162,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn twelve_places_are_left_at_the_deadline() {
+        let count = 13;
+        let cost: Vec<Vec<f64>> =
+            (0..count).map(|p| (0..count).map(|q| ((p * 7 + q * 3) % 11) as f64).collect()).collect();
+        let places: Vec<Vec<usize>> = (0..count).map(|p| vec![p]).collect();
+        let poses = Poses { places: &places, ends: false, cost: &cost };
+        // Each of 4095 sets has up to twelve last places, and each of those up to twelve next ones.
+        let comparisons = 4095 * 6 * 6;
+        let over = Patience::for_looks((comparisons / WORK_PER_LOOK) as u64);
+        let late = cheapest_order(&poses, &mut Meter::new(&over, "testing"));
+        assert_eq!(late, Err(Error::Timeout { step: "testing" }));
     }
 }

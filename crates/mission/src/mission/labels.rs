@@ -2,10 +2,8 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use planner::Patience;
-
 use super::graph::{Network, Way};
-use crate::{journey::Stop, pack::Pack};
+use crate::{Error, journey::Stop, meter::Meter, pack::Pack};
 
 /// Limits and what stops take.
 pub(crate) struct Limits<'a> {
@@ -32,19 +30,24 @@ struct Label {
 /// Most partial missions that are kept.
 const MOST_LABELS: usize = 2_000_000;
 const NONE: usize = usize::MAX;
+/// Work of a stop beside that of comparing two partial missions: charging may have as many stretches as a charge has thousandths.
+const WORK_PER_STOP: usize = 200;
 
 /// The nodes, in order, of the mission that draws least energy within the limits, chargers included; `None` where there is none,
-/// or none was found before patience or memory ended.
+/// or none was found before memory ended.
 ///
 /// Label setting over sets of waypoints (Desrochers & Soumis 1988): a partial mission is dropped where another one with the same
 /// waypoints at the same place has drawn no more, is no later and has no less charge. `fixed` allows the waypoints' own order
 /// alone. Ways are those of the network, whose headings join nearly, so what is found is driven before it is believed.
+///
+/// # Errors
+/// Patience that ends first.
 pub(crate) fn cheapest_within(
     network: &Network,
     limits: &Limits<'_>,
     fixed: Option<&[usize]>,
-    patience: &Patience,
-) -> Option<Vec<usize>> {
+    meter: &mut Meter<'_>,
+) -> Result<Option<Vec<usize>>, Error> {
     let all = (1_u64 << network.waypoints) - 1;
     // Descents may return energy; the most that one way can return keeps keys in order.
     let gain_j = (0..network.chargers().end)
@@ -55,21 +58,21 @@ pub(crate) fn cheapest_within(
         vec![Label { visited: 0, node: 0, energy_j: 0.0, time_s: 0.0, charge: limits.charge, parent: NONE }];
     let mut fronts = std::collections::HashMap::<(u64, usize), Vec<usize>>::new();
     let mut queue = BinaryHeap::from([Reverse((Key(0.0), 0_usize))]);
-    let mut steps = 0_u64;
     while let Some(Reverse((_, at))) = queue.pop() {
-        steps += 1;
-        if labels.len() > MOST_LABELS || (steps.is_multiple_of(1024) && patience.is_over()) {
-            return None;
+        if labels.len() > MOST_LABELS {
+            return Ok(None);
         }
         let label = labels[at];
         let done = label.visited == all && network.home().is_none_or(|home| home == label.node);
         if done {
-            return Some(trace(&labels, at));
+            return Ok(Some(trace(&labels, at)));
         }
         for next in successors(network, &label, all, fixed) {
             let Some(way) = network.way(label.node, next) else { continue };
+            meter.spend(WORK_PER_STOP)?;
             let Some(arrived) = extended(network, limits, &label, at, next, way) else { continue };
             let front = fronts.entry((arrived.visited, next)).or_default();
+            meter.spend(front.len())?;
             let beaten = |other: &usize| dominates(&labels[*other], &arrived);
             if front.iter().any(beaten) {
                 continue;
@@ -82,7 +85,7 @@ pub(crate) fn cheapest_within(
             labels.push(arrived);
         }
     }
-    None
+    Ok(None)
 }
 
 fn successors(network: &Network, label: &Label, all: u64, fixed: Option<&[usize]>) -> Vec<usize> {

@@ -2,31 +2,60 @@
 
 use pathfinding::{kuhn_munkres::kuhn_munkres_min, matrix::Matrix};
 
+use crate::{Error, meter::Meter};
+
 /// A good order of places 1 to n of a cost matrix whose row 0 is the start and whose column n + 1, if there is one, the end.
 ///
 /// Nearest neighbours from every first place, each improved by moving up to three places elsewhere (Or 1976) and by turning
 /// stretches round (2-opt), as long as that pays; costs may differ by direction. `None` where no order was found.
-pub(crate) fn good_order(cost: &[Vec<f64>], visits: usize) -> Option<(f64, Vec<usize>)> {
+///
+/// # Errors
+/// Patience that ends first.
+pub(crate) fn good_order(
+    cost: &[Vec<f64>],
+    visits: usize,
+    meter: &mut Meter<'_>,
+) -> Result<Option<(f64, Vec<usize>)>, Error> {
+    let mut best: Option<(f64, Vec<usize>)> = None;
+    for first in 1..=visits {
+        let found = improved(cost, visits, nearest_neighbours(cost, visits, first), meter)?;
+        if best.as_ref().is_none_or(|(least, _)| found.0 < *least) {
+            best = Some(found);
+        }
+    }
+    Ok(best.filter(|(least, _)| *least < f64::INFINITY))
+}
+
+/// An order that no move makes cheaper, with its cost. Every move makes it cheaper, so that none comes twice.
+fn improved(
+    cost: &[Vec<f64>],
+    visits: usize,
+    mut order: Vec<usize>,
+    meter: &mut Meter<'_>,
+) -> Result<(f64, Vec<usize>), Error> {
+    /// What a move has to save, as a share of the cost: rounding must not go round in circles.
+    const LEAST_SAVING: f64 = 1e-9;
     let ends = cost.len() > visits + 1;
     let total = |order: &[usize]| -> f64 {
         let mut sum = cost[0][order[0]];
         sum += order.windows(2).map(|leg| cost[leg[0]][leg[1]]).sum::<f64>();
         sum + if ends { cost[order[order.len() - 1]][visits + 1] } else { 0.0 }
     };
-    let improved = |mut order: Vec<usize>| {
-        let mut best = total(&order);
-        // Rounding must not go round in circles.
-        let pays =
-            |cost: f64, best: f64| cost < best - 1e-9 * if best.is_finite() { best.abs() } else { 0.0 };
-        loop {
-            let better =
-                neighbours(&order).map(|next| (total(&next), next)).find(|(cost, _)| pays(*cost, best));
-            let Some(better) = better else { return (best, order) };
-            (best, order) = better;
+    let mut best = total(&order);
+    loop {
+        let most = best - if best.is_finite() { LEAST_SAVING * best.abs() } else { 0.0 };
+        let mut better = None;
+        for next in neighbours(&order) {
+            meter.spend(visits)?;
+            let cost = total(&next);
+            if cost < most {
+                better = Some((cost, next));
+                break;
+            }
         }
-    };
-    let found = (1..=visits).map(|first| improved(nearest_neighbours(cost, visits, first)));
-    found.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(cost, _)| *cost < f64::INFINITY)
+        let Some(found) = better else { return Ok((best, order)) };
+        (best, order) = found;
+    }
 }
 
 fn nearest_neighbours(cost: &[Vec<f64>], visits: usize, first: usize) -> Vec<usize> {
@@ -90,10 +119,28 @@ pub(crate) fn lower_bound(cost: &[Vec<f64>], visits: usize) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use planner::Patience;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mission::held_karp::{Poses, cheapest_order};
+    use crate::{
+        meter::WORK_PER_LOOK,
+        mission::held_karp::{Poses, cheapest_order},
+    };
+
+    #[test]
+    fn many_places_are_left_at_the_deadline() {
+        // Places at random on a circle, which take many moves to put in order.
+        let visits = 40;
+        let place = |p: usize| (p * 17 % 41) as f64 / 41.0 * std::f64::consts::TAU;
+        let away = |p: usize, q: usize| (2.0 * ((place(p) - place(q)) / 2.0).sin()).abs();
+        let cost: Vec<Vec<f64>> = (0..=visits).map(|p| (0..=visits).map(|q| away(p, q)).collect()).collect();
+        // No order is found before each of forty has been held against each of its neighbours, of some 40 legs each.
+        let legs = 40 * (3 * 37 * 36 + 39 * 38 / 2) * 40;
+        let over = Patience::for_looks((legs / WORK_PER_LOOK) as u64);
+        let late = good_order(&cost, visits, &mut Meter::new(&over, "testing"));
+        assert_eq!(late, Err(Error::Timeout { step: "testing" }));
+    }
 
     proptest! {
         #[test]
@@ -106,9 +153,12 @@ mod tests {
                 dx.hypot(dy) + 0.3 * (f64::from(seed[q + 40]) - f64::from(seed[p + 40]))
             }).collect()).collect();
             let places: Vec<Vec<usize>> = (0..count).map(|p| vec![p]).collect();
-            let (best, _) = cheapest_order(&Poses { places: &places, ends, cost: &cost }).unwrap();
+            let patience = Patience::default();
+            let mut meter = Meter::new(&patience, "testing");
+            let poses = Poses { places: &places, ends, cost: &cost };
+            let (best, _) = cheapest_order(&poses, &mut meter).unwrap().unwrap();
             let bound = lower_bound(&cost, visits).unwrap();
-            let (found, order) = good_order(&cost, visits).unwrap();
+            let (found, order) = good_order(&cost, visits, &mut meter).unwrap().unwrap();
             prop_assert!(bound <= best + 1e-6 && best <= found + 1e-6, "{} {} {}", bound, best, found);
             let mut sorted = order;
             sorted.sort_unstable();

@@ -24,6 +24,7 @@ use crate::{
     error::within,
     journey::{Journey, Stop},
     likely::{Likely, draws},
+    meter::Meter,
     pack::Pack,
     range::{check_doubt, set_out},
     run::{Conditions, Outcome, Passage},
@@ -207,7 +208,7 @@ pub fn mission(planner: &Planner, question: &MissionQuestion) -> Result<Mission,
     let driven = if first.keeps(question) { first } else { tour.within_limits(&order, first, &chance)? };
     let drawn =
         Drawn { robot, battery, charge: question.charge, doubt: &question.doubt, seed: question.seed };
-    let outcomes = draws(&driven.journey, &drawn, &conditions, question.samples);
+    let outcomes = draws(&driven.journey, &drawn, &conditions, question.samples, &question.patience)?;
     Ok(driven.answer(&tour, &order, Likely::of(&outcomes)))
 }
 
@@ -275,7 +276,7 @@ fn refuse_deadline(network: &Network, question: &MissionQuestion, pack: &Pack) -
     if question.deadline_s == f64::INFINITY {
         return Ok(());
     }
-    let least_s = order::least_driving_s(network, question.in_order)
+    let least_s = order::least_driving_s(network, question)?
         + question
             .waypoints
             .iter()
@@ -326,7 +327,8 @@ impl Tour<'_> {
             self.network.node(*node).site.stops.iter().for_each(|stop| journey.stop(*stop));
         }
         let mut passages = Vec::new();
-        let outcome = journey.run(chance, &self.conditions, |passage| passages.push(*passage));
+        let mut meter = Meter::new(&self.question.patience, "driving the mission");
+        let outcome = journey.run(chance, &self.conditions, &mut meter, |passage| passages.push(*passage))?;
         Ok(Some(Driven { nodes: nodes.to_vec(), routes, journey, passages, outcome }))
     }
 
@@ -336,6 +338,7 @@ impl Tour<'_> {
         const TRIES: usize = 4;
         let question = self.question;
         let mut charge_factor = 1.02;
+        let mut meter = Meter::new(&question.patience, "looking for an order within charge and time");
         let exact = !question.in_order && question.waypoints.len() <= MOST_EXACT;
         let waypoints: Vec<usize> = (1..=self.network.waypoints).collect();
         let given: Vec<usize> = order.nodes.iter().copied().filter(|node| waypoints.contains(node)).collect();
@@ -349,9 +352,7 @@ impl Tour<'_> {
                 charge_factor,
             };
             let fixed = (!exact).then_some(&given[..]);
-            let Some(nodes) = cheapest_within(self.network, &limits, fixed, &question.patience) else {
-                break;
-            };
+            let Some(nodes) = cheapest_within(self.network, &limits, fixed, &mut meter)? else { break };
             match self.drive(&nodes, chance)? {
                 Some(driven) if driven.keeps(question) => return Ok(driven),
                 _ => charge_factor *= 1.05,

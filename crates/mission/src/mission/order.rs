@@ -11,6 +11,7 @@ use super::{
     held_karp::{Poses, cheapest_order},
     local_search::{good_order, lower_bound},
 };
+use crate::meter::Meter;
 
 /// An order of nodes, the start first and home last, and what no order takes less than.
 pub(crate) struct Order {
@@ -25,7 +26,13 @@ pub(crate) struct Order {
 /// one core. Beyond, it is searched over places, each way with the headings that suit it best.
 const MOST_FIELD_STATES: usize = 100_000_000;
 
+/// The long step in the words of an error.
+const STEP: &str = "looking for the best order";
+
 /// The order of least energy: as given, exact over poses or places, or good with a bound.
+///
+/// # Errors
+/// No chain of motions through all places, or patience that ends first.
 pub(crate) fn best_order(
     planner: &Planner,
     network: &Network,
@@ -39,9 +46,10 @@ pub(crate) fn best_order(
         return Ok(Order { nodes: (0..count).collect(), bound_j, time: Duration::ZERO });
     }
     let visits = network.waypoints;
+    let mut meter = Meter::new(&question.patience, STEP);
     if visits > MOST_EXACT {
         let began = Instant::now();
-        let (_, mut nodes) = good_order(&cost, visits).ok_or(MissionError::NoChain)?;
+        let (_, mut nodes) = good_order(&cost, visits, &mut meter)?.ok_or(MissionError::NoChain)?;
         nodes.insert(0, 0);
         nodes.extend(network.home());
         let bound_j = lower_bound(&cost, visits).unwrap_or(f64::NEG_INFINITY);
@@ -54,7 +62,7 @@ pub(crate) fn best_order(
     let places: Vec<Vec<usize>> = (0..count).map(|node| vec![node]).collect();
     let poses = Poses { places: &places, ends: question.back, cost: &cost };
     let began = Instant::now();
-    let (bound_j, nodes) = cheapest_order(&poses).ok_or(MissionError::NoChain)?;
+    let (bound_j, nodes) = cheapest_order(&poses, &mut meter)?.ok_or(MissionError::NoChain)?;
     Ok(Order { nodes, bound_j, time: began.elapsed() })
 }
 
@@ -85,23 +93,28 @@ fn over_poses(
         found.cost.iter().map(|row| row.iter().map(|cost| cost.unwrap_or(f64::INFINITY)).collect()).collect();
     let poses = Poses { places: &places, ends: question.back, cost: &cost };
     let began = Instant::now();
-    let (bound_j, order) = cheapest_order(&poses).ok_or(MissionError::NoChain)?;
+    let mut meter = Meter::new(&question.patience, STEP);
+    let (bound_j, order) = cheapest_order(&poses, &mut meter)?.ok_or(MissionError::NoChain)?;
     let time = began.elapsed();
     let node = |pose: &usize| places.iter().position(|place| place.contains(pose)).unwrap_or(0);
     Ok(Order { nodes: order.iter().map(node).collect(), bound_j, time })
 }
 
 /// Time of the fastest order of the ways at hand, or a bound of it where there are many [s].
-pub(crate) fn least_driving_s(network: &Network, in_order: bool) -> f64 {
+///
+/// # Errors
+/// Patience that ends first.
+pub(crate) fn least_driving_s(network: &Network, question: &MissionQuestion) -> Result<f64, MissionError> {
     let cost = network.dense(|way| way.duration_s);
     let count = cost.len();
-    if in_order {
-        return (1..count).map(|node| cost[node - 1][node]).sum();
+    if question.in_order {
+        return Ok((1..count).map(|node| cost[node - 1][node]).sum());
     }
     if network.waypoints > MOST_EXACT {
-        return lower_bound(&cost, network.waypoints).unwrap_or(0.0);
+        return Ok(lower_bound(&cost, network.waypoints).unwrap_or(0.0));
     }
     let places: Vec<Vec<usize>> = (0..count).map(|node| vec![node]).collect();
     let poses = Poses { places: &places, ends: network.returns, cost: &cost };
-    cheapest_order(&poses).map_or(0.0, |(least_s, _)| least_s)
+    let mut meter = Meter::new(&question.patience, STEP);
+    Ok(cheapest_order(&poses, &mut meter)?.map_or(0.0, |(least_s, _)| least_s))
 }

@@ -212,8 +212,8 @@ pub struct ReplannedAnswer {
 /// How far a charge carries.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct CarriesAnswer {
-    /// Straight on over level ground of the robot's default surface [m].
-    pub level_m: SpreadAnswer,
+    /// Straight on over level ground of the robot's default surface; null where that draws nothing and so never ends [m].
+    pub level_m: Option<SpreadAnswer>,
     /// Whether every place of the map that a way leads to can be reached.
     pub whole_map: bool,
 }
@@ -310,7 +310,7 @@ impl From<&Range> for RangeAnswer {
             },
             duration_s: nominal.duration_s,
             distance_m: found.legs.iter().map(|leg| leg.plan.route.total.length_m).sum(),
-            legs: legs(&found.legs),
+            legs: legs(&found.legs, found.charge),
             turning_point: found.turning.as_ref().map(TurningAnswer::from),
             best_speed: (&found.best_speed).into(),
             replanned: found.replanned.as_ref().map(ReplannedAnswer::from),
@@ -328,24 +328,14 @@ pub(crate) fn stalled(stall: Stall) -> &'static str {
     }
 }
 
-fn legs(legs: &[Leg]) -> Vec<LegAnswer> {
-    let mut before_j = 0.0;
-    let mut before_s = 0.0;
+/// The legs, each from where and with what the one before left off; `charge` is that of setting out.
+fn legs(legs: &[Leg], charge: f64) -> Vec<LegAnswer> {
+    let (mut before_j, mut before_s, mut before_charge) = (0.0, 0.0, charge);
     let leg = |leg: &Leg| {
-        let poses =
-            leg.plan.route.poses.iter().skip(1).zip(&leg.passages).map(|(pose, passage)| ChargedPose {
-                x_m: pose.x_m,
-                y_m: pose.y_m,
-                z_m: pose.z_m,
-                heading_rad: pose.heading_rad,
-                t_s: passage.t_s,
-                energy_j: passage.energy_j,
-                charge: passage.charge.clamp(0.0, 1.0),
-                voltage_v: passage.voltage_v,
-            });
-        let poses: Vec<ChargedPose> = poses.collect();
+        let poses = charged_poses(leg);
+        // A leg of no length has no poses, and changes nothing.
         let (energy_j, t_s, arrival_charge) =
-            poses.last().map_or((before_j, before_s, 1.0), |p| (p.energy_j, p.t_s, p.charge));
+            poses.last().map_or((before_j, before_s, before_charge), |p| (p.energy_j, p.t_s, p.charge));
         let answer = LegAnswer {
             energy_j: energy_j - before_j,
             duration_s: t_s - before_s,
@@ -353,10 +343,25 @@ fn legs(legs: &[Leg]) -> Vec<LegAnswer> {
             arrival_charge,
             poses,
         };
-        (before_j, before_s) = (energy_j, t_s);
+        (before_j, before_s, before_charge) = (energy_j, t_s, arrival_charge);
         answer
     };
     legs.iter().map(leg).collect()
+}
+
+fn charged_poses(leg: &Leg) -> Vec<ChargedPose> {
+    let poses = leg.plan.route.poses.iter().skip(1).zip(&leg.passages);
+    let charged = poses.map(|(pose, passage)| ChargedPose {
+        x_m: pose.x_m,
+        y_m: pose.y_m,
+        z_m: pose.z_m,
+        heading_rad: pose.heading_rad,
+        t_s: passage.t_s,
+        energy_j: passage.energy_j,
+        charge: passage.charge.clamp(0.0, 1.0),
+        voltage_v: passage.voltage_v,
+    });
+    charged.collect()
 }
 
 impl From<Spread> for SpreadAnswer {
@@ -398,6 +403,6 @@ impl From<&Replanned> for ReplannedAnswer {
 
 impl From<&Carries> for CarriesAnswer {
     fn from(c: &Carries) -> Self {
-        CarriesAnswer { level_m: c.level_m.into(), whole_map: c.whole_map }
+        CarriesAnswer { level_m: c.level_m.map(SpreadAnswer::from), whole_map: c.whole_map }
     }
 }
