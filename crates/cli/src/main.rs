@@ -1,10 +1,14 @@
 //! The `joulepath` command: energy-minimal paths for skid-steered robots.
 
+// Everything is printed by `output`, which does not panic where nobody reads.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 mod arguments;
 mod commands;
 mod config;
 mod failure;
 mod limit_arguments;
+mod output;
 mod picture;
 mod progress;
 mod reach_picture;
@@ -62,8 +66,9 @@ fn main() -> ExitCode {
     let outcome = config::parse().and_then(|arguments| run(&arguments.command));
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<output::ReaderLeft>() => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("joulepath: {error:#}");
+            output::note(service::with_exponents(format!("joulepath: {error:#}")));
             failure::exit_code(&error)
         }
     }

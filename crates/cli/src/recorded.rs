@@ -6,7 +6,7 @@ use clap::Args;
 use model::{Robot, builtin};
 use recording::{Map, ReadingReport, Recording, Watch, read_paths_watched};
 
-use crate::{failure::BadInput, progress};
+use crate::{failure::BadInput, output, progress};
 
 /// What `predict`, `calibrate` and `diagnose` share.
 #[derive(Args)]
@@ -58,19 +58,19 @@ impl Recorded {
 fn warn(report: &ReadingReport) {
     let source = &report.source;
     if !report.aside.is_empty() {
-        eprintln!("{source}: kept aside: {}", report.aside.join(", "));
+        output::note(format_args!("{source}: kept aside: {}", report.aside.join(", ")));
     }
     if !report.ignored.is_empty() {
         let ignored: Vec<String> =
             report.ignored.iter().map(|i| format!("{} ({})", i.name, i.reason)).collect();
-        eprintln!("{source}: not used: {}", ignored.join("; "));
+        output::note(format_args!("{source}: not used: {}", ignored.join("; ")));
     }
     for repair in &report.repairs {
-        eprintln!("{source}: {}: {}", repair.place, repair.what);
+        output::note(format_args!("{source}: {}: {}", repair.place, repair.what));
     }
     for doubt in &report.suspicions {
         let run = doubt.run.as_deref().map_or(String::new(), |run| format!(", run {run}"));
-        eprintln!("{source}{run}: {}: {}", doubt.channel, doubt.statement);
+        output::note(format_args!("{source}{run}: {}: {}", doubt.channel, doubt.statement));
     }
 }
 

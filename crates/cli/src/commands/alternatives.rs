@@ -9,6 +9,7 @@ use service::routes::{
 use crate::{
     arguments::{PathLimits, Question, patience},
     failure::Refused,
+    output,
     table::{aligned, energy, time},
 };
 
@@ -64,9 +65,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = plan.patience(&patience()).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
     if arguments.question.driving.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        print!("{}", text(&found));
+        output::text(text(&found))?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use bench::{Report, SIDES};
 use clap::Args;
 use terrain::{Terrain, io};
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, output};
 
 /// The lidar terrain of the demo, mirrored to size.
 const TILE: &[u8] = include_bytes!("../../../../maps/minnesota.tif");
@@ -38,13 +38,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let on_terminal = std::io::stderr().is_terminal();
     let report = bench::run(&tile, &sides, |next| {
         if on_terminal {
-            eprintln!("measuring {next}");
+            output::note(format_args!("measuring {next}"));
         }
     })?;
     if arguments.json {
-        println!("{}", serde_json::to_string(&report)?);
+        output::json(&report)?;
     } else {
-        println!("{}", text(&report));
+        output::line(text(&report))?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 
 use crate::{
     failure::BadInput,
-    progress,
+    output, progress,
     recorded::{Recorded, text},
 };
 
@@ -58,9 +58,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     std::fs::write(out, file + "\n")
         .with_context(|| format!("cannot write the robot to {}", out.display()))?;
     if arguments.recorded.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        println!("{}", summary(&found));
+        output::line(summary(&found))?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use service::routes::{compare::answer, plan::ObjectiveName};
 use crate::{
     arguments::{Question, patience},
     failure::Refused,
-    table,
+    output, table,
 };
 
 #[derive(Args)]
@@ -21,9 +21,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found =
         request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
     if arguments.question.driving.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        println!("{}", table::compare(&found));
+        output::line(table::compare(&found))?;
     }
     Ok(())
 }

@@ -12,7 +12,7 @@ use serde_json::json;
 use service::{Engine, Limits, routes::compare::CompareAnswer, start};
 use terrain::{Terrain, io};
 
-use crate::{picture, table};
+use crate::{output, picture, table};
 
 /// Bare-earth lidar of 400 m × 400 m in Minnesota; `maps/README.md` states its origin and licence.
 const MAP: &[u8] = include_bytes!("../../../../maps/minnesota.tif");
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let listener = TcpListener::bind("127.0.0.1:0").context("no free loopback port")?;
     let service = start(listener, Engine::new(Limits::default(), None)?)?;
     let url = format!("http://{}", service.address);
-    println!("service    {url}, started in {:.0} ms", milliseconds(began));
+    output::line(format_args!("service    {url}, started in {:.0} ms", milliseconds(began)))?;
 
     let terrain = io::geotiff::read(MAP, Terrain::MAX_CELLS)?;
     let began = Instant::now();
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .context("POST /v1/maps")?
         .body_mut()
         .read_json()?;
-    println!(
+    output::line(format_args!(
         "map        {} × {} cells of {} m, {:.0} to {:.0} m above the sea, posted in {:.0} ms",
         stored["rows"],
         stored["columns"],
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         stored["elevation_range_m"][0].as_f64().unwrap_or(f64::NAN),
         stored["elevation_range_m"][1].as_f64().unwrap_or(f64::NAN),
         milliseconds(began)
-    );
+    ))?;
 
     let began = Instant::now();
     let place = |[east, north]: [f64; 2]| {
@@ -64,10 +64,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .with_config()
         .limit(LARGEST_ANSWER_BYTES)
         .read_json()?;
-    println!("compare    three best paths of a Husky A200 in {:.1} s\n", began.elapsed().as_secs_f64());
-    println!("{}\n", table::compare(&answer));
+    output::line(format_args!(
+        "compare    three best paths of a Husky A200 in {:.1} s\n",
+        began.elapsed().as_secs_f64()
+    ))?;
+    output::line(format_args!("{}\n", table::compare(&answer)))?;
     write_picture(&arguments.out, &picture::draw(&terrain, &answer)?)?;
-    println!("picture    {}", std::path::absolute(&arguments.out)?.display());
+    output::line(format_args!("picture    {}", std::path::absolute(&arguments.out)?.display()))?;
     Ok(())
 }
 

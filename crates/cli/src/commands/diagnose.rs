@@ -11,7 +11,7 @@ use clap::{Args, builder::PossibleValuesParser};
 use diagnosis::{Diagnosis, Question, diagnose, report::Finding};
 use model::mechanism;
 
-use crate::{failure::BadInput, progress, recorded::Recorded};
+use crate::{failure::BadInput, output, progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -60,9 +60,9 @@ fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
     write("report.html", found.html(&robot.name))?;
     write("corrected-robot.json", serde_json::to_string_pretty(&found.corrected_robot)? + "\n")?;
     if recorded.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        print!("{}", summary(&found, out));
+        output::text(summary(&found, out))?;
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ use service::routes::{
 use crate::{
     arguments::{Driving, Place, patience},
     failure::Refused,
+    output,
     table::{energy, time},
 };
 
@@ -46,9 +47,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = plan.patience(&patience()).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
     if driving.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        print!("{}", text(&found));
+        output::text(text(&found))?;
     }
     Ok(())
 }

@@ -11,6 +11,7 @@ use service::routes::{
 use crate::{
     arguments::{Place, patience, read_map, read_robot},
     failure::{OutOfCharge, Refused},
+    output,
     table::{energy, time},
 };
 
@@ -115,9 +116,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found =
         plan.patience(&patience()).and_then(|p| answer(&planner, &request, &plan, &p)).map_err(Refused)?;
     if arguments.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        println!("{}", summary(&found));
+        output::line(summary(&found))?;
     }
     if found.feasible {
         return Ok(());

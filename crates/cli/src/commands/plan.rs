@@ -6,7 +6,7 @@ use service::routes::plan::{ObjectiveName, answer};
 use crate::{
     arguments::{PathLimits, Question, patience},
     failure::Refused,
-    table,
+    output, table,
 };
 
 #[derive(Args)]
@@ -39,9 +39,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found =
         request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
     if arguments.question.driving.json {
-        println!("{}", serde_json::to_string(&found)?);
+        output::json(&found)?;
     } else {
-        println!("{}", table::plan(&found));
+        output::line(table::plan(&found))?;
     }
     Ok(())
 }

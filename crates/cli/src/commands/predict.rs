@@ -6,7 +6,7 @@ use anyhow::Context;
 use calibration::{RunPrediction, predict};
 use clap::Args;
 
-use crate::{progress, recorded::Recorded};
+use crate::{output, progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -29,11 +29,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .with_context(|| format!("cannot write the report to {}", path.display()))?;
     }
     if arguments.recorded.json {
-        println!("{}", serde_json::to_string(&found.prediction)?);
+        output::json(&found.prediction)?;
         return Ok(());
     }
     let currents = found.prediction.total.r2_a.is_some();
-    println!(
+    output::line(format_args!(
         "{:<20} {:>8} {:>9} {:>9} {:>7} {:>11} {:>11} {:>8}{}",
         "run",
         "rows",
@@ -44,9 +44,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "predicted",
         "error",
         if currents { "   R² (A)" } else { "" }
-    );
+    ))?;
     for run in found.prediction.runs.iter().chain([&found.prediction.total]) {
-        println!("{}", line(run));
+        output::line(line(run))?;
     }
     Ok(())
 }

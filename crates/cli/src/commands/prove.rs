@@ -13,7 +13,7 @@ use model::Robot;
 use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Stage, Trial};
 use recording::read_paths;
 
-use crate::{failure::BadInput, progress, recorded::robot, scored::summary};
+use crate::{failure::BadInput, output, progress, recorded::robot, scored::summary};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -74,7 +74,7 @@ impl From<Only> for Kind {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else {
-        println!("{}", summary(&prove::together(&arguments.together)?));
+        output::line(summary(&prove::together(&arguments.together)?))?;
         return Ok(());
     };
     check(arguments, out)?;
@@ -100,14 +100,15 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         peers: &peers,
         at_once: available_parallelism().map_or(1, usize::from),
         progress: &told,
-        published: &|hash| println!("committed to all keys: SHA-256 {hash}"),
+        // The commitment is in a file too; a reader that left ends the command at the summary.
+        published: &|hash| drop(output::line(format_args!("committed to all keys: SHA-256 {hash}"))),
     };
     let board = trial.run()?;
     if let Ok(bar) = bar.lock() {
         bar.finish_and_clear();
     }
-    println!("{}", summary(&board));
-    println!("{}", out.join("scoreboard.html").display());
+    output::line(summary(&board))?;
+    output::line(out.join("scoreboard.html").display())?;
     Ok(())
 }
 

@@ -9,6 +9,7 @@ use service::routes::reachable::{Found, KindName, ReachableRequest};
 use crate::{
     arguments::{Driving, Place, patience},
     failure::Refused,
+    output,
     reach_picture::draw,
     table::energy,
 };
@@ -84,20 +85,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         fs::write(path, picture).with_context(|| path.display().to_string())?;
     }
     if driving.json {
-        println!("{}", serde_json::to_string(&contours)?);
+        output::json(&contours)?;
         return Ok(());
     }
     let whole_m2 = terrain.grid.cells() as f64 * terrain.grid.cell_size_m.powi(2);
     for feature in &contours.features {
         let properties = &feature.properties;
         let charge = properties.charge.map_or(String::new(), |charge| format!("charge {charge:<5} "));
-        println!(
+        output::line(format_args!(
             "{charge}{:>12}  {:>10.0} m²  {:>5.1} % of the map",
             energy(properties.energy_j),
             properties.area_m2,
             100.0 * properties.area_m2 / whole_m2
-        );
+        ))?;
     }
-    println!("in {:.0} ms", 1e3 * taken_s);
+    output::line(format_args!("in {:.0} ms", 1e3 * taken_s))?;
     Ok(())
 }

@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum, builder::FalseyValueParser};
 use service::{Access, Engine, Tokens, serve};
 use tracing_subscriber::EnvFilter;
 
-use crate::{failure::BadInput, limit_arguments::LimitArguments};
+use crate::{failure::BadInput, limit_arguments::LimitArguments, output};
 
 /// Variable of the environment that holds tokens themselves.
 const TOKENS: &str = "JOULEPATH_TOKENS";
@@ -75,7 +75,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let limits = arguments.limits.limits();
     let engine =
         Engine::new(limits, arguments.store.as_deref()).map_err(|error| BadInput(error.to_string()))?;
-    println!("listening on http://{}", listener.local_addr()?);
+    // The service is there for who asks it, whether or not somebody reads its output.
+    match output::line(format_args!("listening on http://{}", listener.local_addr()?)) {
+        Err(error) if !error.is::<output::ReaderLeft>() => return Err(error),
+        _ => {}
+    }
     serve(listener, engine, &access)?;
     Ok(())
 }
@@ -138,6 +142,8 @@ fn tokens(file: Option<&Path>) -> Result<Tokens, BadInput> {
 fn log(format: LogFormat) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
     let subscriber = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    // Who no longer reads the log does not end the service: by default a failed write is itself printed, which panics.
+    let subscriber = subscriber.log_internal_errors(false);
     match format {
         LogFormat::Json => subscriber.json().with_span_list(false).init(),
         LogFormat::Text => subscriber.init(),

@@ -12,6 +12,7 @@ use world::{Drive, Key, RobotFile, World, simulate};
 
 use crate::{
     failure::BadInput,
+    output,
     recorded::{robot, text},
 };
 
@@ -51,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let file = serde_json::to_string_pretty(&key)? + "\n";
         std::fs::write(path, file).with_context(|| unwritable(path))?;
     }
-    println!("{}: {} rows", arguments.out.display(), log.rows.len());
+    output::line(format_args!("{}: {} rows", arguments.out.display(), log.rows.len()))?;
     Ok(())
 }
 
