@@ -75,8 +75,9 @@ proptest! {
 
 #[test]
 fn a_doubt_in_one_parameter_gives_the_energies_at_its_quantiles() {
+    type Doubted = fn(f64) -> Uncertainty;
     type Scale = fn(&mut Robot, f64);
-    let set: [(fn(f64) -> Uncertainty, Scale); 3] = [
+    let set: [(Doubted, Scale); 3] = [
         (
             |sigma| Uncertainty { mu_roll: sigma, ..CERTAIN },
             |robot, factor| {
