@@ -18,7 +18,11 @@ use joulepath_tests::{Server, file};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::{Value, json};
-use terrain::{MapFile, Terrain, io::read_path, synthetic::mirrored};
+use terrain::{
+    Terrain,
+    io::{json::JsonText, read_path},
+    synthetic::mirrored,
+};
 
 /// Clients at the same time.
 const CLIENTS: usize = 32;
@@ -96,7 +100,7 @@ struct Places {
 
 impl Places {
     fn new(server: &Server, terrain: &Terrain) -> Self {
-        let body = serde_json::to_vec(&MapFile::from(terrain)).unwrap();
+        let body: Vec<u8> = JsonText::of(terrain).flatten().collect();
         let stored = server.post("/v1/maps", "application/json", &body);
         assert!(stored.status < 300, "{}", stored.text);
         let mut places = Places { map_id: stored.json()["id"].clone(), places_m: Vec::new() };

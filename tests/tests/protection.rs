@@ -143,17 +143,17 @@ fn a_client_that_stalls_in_the_head_or_the_body_is_let_go() {
     let server = Server::start_with(&["--head-time-s", "0.2", "--body-pause-s", "0.2"]);
     let mut silent = connect(&server);
     let mut half = connect(&server);
-    half.write_all(b"GET /healthz HTTP/1.1\r\nhost: a\r\nx-").unwrap();
+    half.write_all(b"GET /healthz HTTP/1.1\r\nhost: localhost\r\nx-").unwrap();
     assert!(!rest(&mut silent).contains(" 200 "));
     assert!(!rest(&mut half).contains(" 200 "));
     let mut body = connect(&server);
-    body.write_all(b"POST /v1/plan HTTP/1.1\r\nhost: a\r\ncontent-type: application/json\r\ncontent-length: 100\r\n\r\n{")
+    body.write_all(b"POST /v1/plan HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-length: 100\r\n\r\n{")
         .unwrap();
     let said = rest(&mut body);
     assert!(said.starts_with("HTTP/1.1 408") && said.contains("too-slow"), "{said}");
     let mut recording = connect(&server);
     recording
-        .write_all(b"POST /v1/recordings HTTP/1.1\r\nhost: a\r\ncontent-type: text/csv\r\ncontent-length: 100\r\n\r\nt_s")
+        .write_all(b"POST /v1/recordings HTTP/1.1\r\nhost: localhost\r\ncontent-type: text/csv\r\ncontent-length: 100\r\n\r\nt_s")
         .unwrap();
     assert!(rest(&mut recording).starts_with("HTTP/1.1 408"));
     assert_eq!(server.get("/healthz").status, 200);
@@ -169,7 +169,7 @@ fn more_connections_than_allowed_are_refused_at_once() {
     drop(held);
     wait_until("a place", || {
         let mut stream = connect(&server);
-        let _ = stream.write_all(b"GET /healthz HTTP/1.1\r\nhost: a\r\nconnection: close\r\n\r\n");
+        let _ = stream.write_all(b"GET /healthz HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
         rest(&mut stream).starts_with("HTTP/1.1 200")
     });
 }

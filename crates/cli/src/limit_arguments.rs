@@ -1,6 +1,6 @@
 //! The service's limits as flags of `serve`.
 
-use std::time::Duration;
+use std::{str::FromStr, time::Duration};
 
 use clap::Args;
 use service::Limits;
@@ -10,16 +10,16 @@ use service::Limits;
 #[command(next_help_heading = "Limits")]
 pub(crate) struct LimitArguments {
     /// Largest request body, unpacked [bytes]
-    #[arg(long, env = "JOULEPATH_BODY_BYTES", default_value_t = Limits::default().body_bytes)]
+    #[arg(long, env = "JOULEPATH_BODY_BYTES", default_value_t = Limits::default().body_bytes, value_parser = some::<usize>)]
     body_bytes: usize,
     /// Longest time for one plan [s]
-    #[arg(long, env = "JOULEPATH_PLAN_TIME_S", default_value = "60", value_parser = seconds)]
+    #[arg(long, env = "JOULEPATH_PLAN_TIME_S", default_value = "60", value_parser = some_seconds)]
     plan_time_s: Duration,
     /// Most states (cells × 16 headings) of one plan
-    #[arg(long, env = "JOULEPATH_PLAN_STATES", default_value_t = Limits::default().plan_states)]
+    #[arg(long, env = "JOULEPATH_PLAN_STATES", default_value_t = Limits::default().plan_states, value_parser = some::<usize>)]
     plan_states: usize,
     /// Most entries of a matrix: sources times targets
-    #[arg(long, env = "JOULEPATH_MATRIX_ENTRIES", default_value_t = Limits::default().matrix_entries)]
+    #[arg(long, env = "JOULEPATH_MATRIX_ENTRIES", default_value_t = Limits::default().matrix_entries, value_parser = some::<usize>)]
     matrix_entries: usize,
     /// Most cells over all stored maps
     #[arg(long, env = "JOULEPATH_STORED_CELLS", default_value_t = Limits::default().stored_cells)]
@@ -31,10 +31,10 @@ pub(crate) struct LimitArguments {
     #[arg(long, env = "JOULEPATH_KEPT_BYTES", default_value_t = Limits::default().kept_bytes)]
     kept_bytes: usize,
     /// Most bytes that requests under way may take together, as estimated
-    #[arg(long, env = "JOULEPATH_REQUEST_MEMORY_BYTES", default_value_t = Limits::default().request_memory_bytes)]
+    #[arg(long, env = "JOULEPATH_REQUEST_MEMORY_BYTES", default_value_t = Limits::default().request_memory_bytes, value_parser = some::<u64>)]
     request_memory_bytes: u64,
     /// Computations that run at the same time; the default is one for each core, but two
-    #[arg(long, env = "JOULEPATH_PARALLEL_PLANS", default_value_t = Limits::default().parallel_plans)]
+    #[arg(long, env = "JOULEPATH_PARALLEL_PLANS", default_value_t = Limits::default().parallel_plans, value_parser = some::<usize>)]
     parallel_plans: usize,
     /// Requests that may wait to compute, however long it takes
     #[arg(long, env = "JOULEPATH_PATIENT_PLANS", default_value_t = Limits::default().patient_plans)]
@@ -55,7 +55,7 @@ pub(crate) struct LimitArguments {
     #[arg(long, env = "JOULEPATH_OPEN_JOBS", default_value_t = Limits::default().open_jobs)]
     open_jobs: usize,
     /// Jobs that run at the same time; the default is one less than cores, but one
-    #[arg(long, env = "JOULEPATH_PARALLEL_JOBS", default_value_t = Limits::default().parallel_jobs)]
+    #[arg(long, env = "JOULEPATH_PARALLEL_JOBS", default_value_t = Limits::default().parallel_jobs, value_parser = some::<usize>)]
     parallel_jobs: usize,
     /// Jobs that ended and are kept for who asks later
     #[arg(long, env = "JOULEPATH_KEPT_JOBS", default_value_t = Limits::default().kept_jobs)]
@@ -64,16 +64,16 @@ pub(crate) struct LimitArguments {
     #[arg(long, env = "JOULEPATH_LEASE_S", default_value = "15", value_parser = lease)]
     lease_s: Duration,
     /// Connections that may be open
-    #[arg(long, env = "JOULEPATH_CONNECTIONS", default_value_t = Limits::default().connections)]
+    #[arg(long, env = "JOULEPATH_CONNECTIONS", default_value_t = Limits::default().connections, value_parser = some::<usize>)]
     connections: usize,
     /// Longest wait for the head of a request, and for the next one on a connection [s]
-    #[arg(long, env = "JOULEPATH_HEAD_TIME_S", default_value = "30", value_parser = seconds)]
+    #[arg(long, env = "JOULEPATH_HEAD_TIME_S", default_value = "30", value_parser = some_seconds)]
     head_time_s: Duration,
     /// Longest pause while a body is sent or an answer is taken [s]
-    #[arg(long, env = "JOULEPATH_BODY_PAUSE_S", default_value = "30", value_parser = seconds)]
+    #[arg(long, env = "JOULEPATH_BODY_PAUSE_S", default_value = "30", value_parser = some_seconds)]
     body_pause_s: Duration,
     /// Least mean speed of a body that takes longer than a pause [bytes/s]
-    #[arg(long, env = "JOULEPATH_BODY_BYTES_PER_S", default_value_t = Limits::default().body_bytes_per_s)]
+    #[arg(long, env = "JOULEPATH_BODY_BYTES_PER_S", default_value_t = Limits::default().body_bytes_per_s, value_parser = some::<u64>)]
     body_bytes_per_s: u64,
     /// How long the service goes on when asked to end, while `/readyz` says so [s]
     #[arg(long, env = "JOULEPATH_UNREADY_TIME_S", default_value = "0", value_parser = seconds)]
@@ -92,6 +92,18 @@ fn seconds(text: &str) -> Result<Duration, String> {
         return Err(format!("give 0 to {MOST_S} seconds"));
     }
     Ok(Duration::from_secs_f64(value))
+}
+
+/// A time of which none would let nothing happen.
+fn some_seconds(text: &str) -> Result<Duration, String> {
+    let time = seconds(text)?;
+    if time.is_zero() { Err("must be above 0 s".to_owned()) } else { Ok(time) }
+}
+
+/// A count of which none would let nothing happen.
+fn some<T: FromStr + PartialOrd + From<u8>>(text: &str) -> Result<T, String> {
+    let count: T = text.parse().map_err(|_| "give a whole number".to_owned())?;
+    if count < T::from(1) { Err("must be at least 1".to_owned()) } else { Ok(count) }
 }
 
 fn lease(text: &str) -> Result<Duration, String> {
@@ -143,6 +155,29 @@ mod tests {
         let command = LimitArguments::augment_args(Command::new("serve"));
         let matches = command.try_get_matches_from(["serve"]).unwrap();
         assert_eq!(LimitArguments::from_arg_matches(&matches).unwrap().limits(), Limits::default());
+    }
+
+    #[test]
+    fn limits_that_let_nothing_happen_are_refused() {
+        for flag in [
+            "body-bytes",
+            "plan-time-s",
+            "plan-states",
+            "matrix-entries",
+            "request-memory-bytes",
+            "parallel-plans",
+            "parallel-jobs",
+            "connections",
+            "head-time-s",
+            "body-pause-s",
+            "body-bytes-per-s",
+        ] {
+            let command = LimitArguments::augment_args(Command::new("serve"));
+            let error =
+                command.try_get_matches_from(["serve".to_owned(), format!("--{flag}=0")]).unwrap_err();
+            let said = error.to_string();
+            assert!(said.contains(flag) && said.contains("must be"), "{said}");
+        }
     }
 
     #[test]

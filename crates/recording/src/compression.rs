@@ -30,29 +30,94 @@ pub(crate) fn decompress(
             "a chunk claims {claimed_bytes} bytes, more than the {LONGEST_BYTES} of any writer"
         )));
     }
-    let mut reader: Box<dyn Read> = match compression {
-        b"" | b"none" => Box::new(packed),
+    Ok(Ok(match compression {
+        b"" | b"none" => read_whole(packed, claimed_bytes, plain, looks)?,
         b"zstd" => match zstd::stream::read::Decoder::with_buffer(packed) {
-            Ok(decoder) => Box::new(decoder),
-            Err(_) => return Ok(Ok(false)),
+            Ok(decoder) => read_whole(decoder, claimed_bytes, plain, looks)?,
+            Err(_) => false,
         },
         b"lz4" => match lz4::Decoder::new(packed) {
-            Ok(decoder) => Box::new(decoder),
-            Err(_) => return Ok(Ok(false)),
+            Ok(mut decoder) => {
+                let whole = read_whole(&mut decoder, claimed_bytes, plain, looks)?;
+                let (rest, end) = decoder.finish();
+                whole && end.is_ok() && rest.is_empty()
+            }
+            Err(_) => false,
         },
-        b"bz2" => Box::new(bzip2::bufread::BzDecoder::new(packed)),
+        b"bz2" => read_whole(bzip2::bufread::MultiBzDecoder::new(packed), claimed_bytes, plain, looks)?,
         other => {
             let name = String::from_utf8_lossy(other);
             return Ok(Err(format!("its chunks are compressed with `{name}`")));
         }
-    };
-    for _ in 0..claimed_bytes.div_ceil(BYTES_A_LOOK) {
+    }))
+}
+
+/// Reads the bytes that a chunk claims. False: there are fewer, or something is left over.
+fn read_whole(
+    mut reader: impl Read,
+    claimed_bytes: u64,
+    plain: &mut Vec<u8>,
+    looks: &Looks,
+) -> Result<bool, Error> {
+    while (plain.len() as u64) < claimed_bytes {
         looks.go_on()?;
         let piece_bytes = (claimed_bytes - plain.len() as u64).min(BYTES_A_LOOK);
-        match reader.as_mut().take(piece_bytes).read_to_end(plain) {
+        match reader.by_ref().take(piece_bytes).read_to_end(plain) {
             Ok(bytes) if bytes as u64 == piece_bytes => {}
-            _ => return Ok(Ok(false)),
+            _ => return Ok(false),
         }
     }
-    Ok(Ok(plain.len() as u64 == claimed_bytes))
+    Ok(matches!(reader.read(&mut [0]), Ok(0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+    use crate::watch::unwatched;
+
+    const TEXT: &[u8] = b"a message of a topic, and another one";
+
+    fn packed(compression: &[u8]) -> Vec<u8> {
+        match compression {
+            b"zstd" => zstd::encode_all(TEXT, 1).unwrap(),
+            b"lz4" => {
+                let mut encoder = lz4::EncoderBuilder::new().build(Vec::new()).unwrap();
+                encoder.write_all(TEXT).unwrap();
+                let (packed, end) = encoder.finish();
+                end.unwrap();
+                packed
+            }
+            b"bz2" => {
+                let mut encoder = bzip2::write::BzEncoder::new(Vec::new(), bzip2::Compression::fast());
+                encoder.write_all(TEXT).unwrap();
+                encoder.finish().unwrap()
+            }
+            _ => TEXT.to_vec(),
+        }
+    }
+
+    fn decompressed(compression: &[u8], packed: &[u8], claimed_bytes: usize) -> (bool, Vec<u8>) {
+        let (mut plain, looks) = (Vec::new(), Looks::new(&unwatched()));
+        let whole = decompress(compression, packed, claimed_bytes as u64, &mut plain, &looks).unwrap().unwrap();
+        (whole, plain)
+    }
+
+    #[test]
+    fn a_chunk_is_whole_when_it_holds_what_it_claims_and_nothing_more() {
+        for compression in [&b"none"[..], b"zstd", b"lz4", b"bz2"] {
+            let name = String::from_utf8_lossy(compression);
+            let packed = packed(compression);
+            assert_eq!(decompressed(compression, &packed, TEXT.len()), (true, TEXT.to_vec()), "{name}");
+            let fewer = decompressed(compression, &packed, TEXT.len() - 5);
+            assert_eq!(fewer, (false, TEXT[..TEXT.len() - 5].to_vec()), "{name}: bytes are left over");
+            assert!(!decompressed(compression, &packed, TEXT.len() + 1).0, "{name}: bytes are missing");
+            let rest = [&packed[..], b"rest"].concat();
+            assert!(!decompressed(compression, &rest, TEXT.len()).0, "{name}: packed bytes are left over");
+            assert!(
+                !decompressed(compression, &packed[..packed.len() - 2], TEXT.len()).0,
+                "{name}: it is cut off"
+            );
+        }
+    }

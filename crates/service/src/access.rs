@@ -4,6 +4,8 @@ use axum::http::HeaderValue;
 use sha2::{Digest, Sha256};
 use subtle::{Choice, ConstantTimeEq};
 
+use crate::Hosts;
+
 /// Who may ask. The default is anybody who reaches the service, and no page of another origin.
 #[derive(Clone, Debug, Default)]
 pub struct Access {
@@ -13,6 +15,8 @@ pub struct Access {
     pub open_metrics: bool,
     /// Origins whose pages may ask, as `https://maps.example.org`.
     pub cors_origins: Vec<HeaderValue>,
+    /// Names by which the service may be asked where no token is.
+    pub hosts: Hosts,
 }
 
 /// Tokens, of which only hashes are kept.

@@ -1,4 +1,4 @@
-//! Who may compute: so many at a time, so many waiting for so long, and no more memory than there is.
+//! Who may compute: so many at a time, so many waiting for so long.
 
 use std::{
     sync::{
@@ -12,19 +12,18 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use crate::{
     Limits,
+    memory::{Memory, Reserved},
     metrics::{Metrics, ShedLabels, StateLabels},
     problem::{Problem, ProblemType},
 };
 
-/// Memory is given out in pieces of so many bytes, because what is taken at once is counted in 32 bits.
-const PIECE_BYTES: u64 = 1 << 16;
 /// Share of the latest computation in the mean of how long one takes.
 const LATEST_SHARE: f64 = 0.1;
 
 /// Turns and memory for computations.
 pub(crate) struct Admission {
     turns: Arc<Semaphore>,
-    memory: Arc<Semaphore>,
+    memory: Memory,
     limits: Limits,
     waiting: AtomicUsize,
     /// Mean time that a computation took of late [s].
@@ -40,18 +39,11 @@ pub(crate) struct Turn {
     _turn: OwnedSemaphorePermit,
 }
 
-/// The right to memory until it is dropped.
-pub(crate) struct Reserved {
-    bytes: i64,
-    metrics: Metrics,
-    _pieces: OwnedSemaphorePermit,
-}
-
 impl Admission {
     pub(crate) fn new(limits: &Limits, metrics: &Metrics) -> Self {
         Admission {
             turns: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
-            memory: Arc::new(Semaphore::new(pieces(limits.request_memory_bytes) as usize)),
+            memory: Memory::new(limits.request_memory_bytes, metrics),
             limits: *limits,
             waiting: AtomicUsize::new(0),
             mean_s: Mutex::new(0.0),
@@ -109,27 +101,14 @@ impl Admission {
         *mean_s += LATEST_SHARE * (time.as_secs_f64() - *mean_s);
     }
 
-    /// Memory for a request, as estimated; refused at once where others have it.
+    /// Memory for a request; refused at once where others have it.
     pub(crate) fn reserve(&self, bytes: u64) -> Result<Reserved, Problem> {
-        let most = self.limits.request_memory_bytes;
-        if bytes > most {
-            let detail = format!(
-                "the request would take about {} MB, more than the {} MB that requests may: send a smaller map, or store it first",
-                bytes / 1_000_000,
-                most / 1_000_000
-            );
-            return Err(Problem::new(ProblemType::TooLarge, detail));
-        }
-        let wanted = u32::try_from(pieces(bytes)).unwrap_or(u32::MAX);
-        let pieces = Arc::clone(&self.memory).try_acquire_many_owned(wanted).map_err(|_| {
-            self.metrics.shed.get_or_create(&ShedLabels { reason: "memory" }).inc();
-            let detail =
-                "requests under way have the memory that this one needs: try again when they are done";
-            Problem::new(ProblemType::Overloaded, detail)
-        })?;
-        let bytes = i64::try_from(bytes).unwrap_or(i64::MAX);
-        self.metrics.reserved_bytes.inc_by(bytes);
-        Ok(Reserved { bytes, metrics: self.metrics.clone(), _pieces: pieces })
+        self.memory.reserve(bytes)
+    }
+
+    /// The memory that requests share.
+    pub(crate) fn memory(&self) -> &Memory {
+        &self.memory
     }
 
     /// Brings what is counted elsewhere up to date.
@@ -165,16 +144,6 @@ impl Drop for Turn {
             self.admission.took(began.elapsed());
         }
     }
-}
-
-impl Drop for Reserved {
-    fn drop(&mut self) {
-        self.metrics.reserved_bytes.dec_by(self.bytes);
-    }
-}
-
-fn pieces(bytes: u64) -> u64 {
-    bytes.div_ceil(PIECE_BYTES)
 }
 
 fn stopping() -> Problem {
@@ -236,16 +205,5 @@ mod tests {
             assert!(left.await.is_err());
         }
         assert_eq!(admission.waiting.load(Ordering::Relaxed), 0, "who leaves does not wait");
-    }
-
-    #[test]
-    fn memory_is_given_out_once_and_given_back() {
-        let admission = admission(Limits { request_memory_bytes: 10_000_000, ..Limits::default() });
-        assert_eq!(admission.reserve(11_000_000).err().unwrap().kind, ProblemType::TooLarge);
-        let most = admission.reserve(9_000_000).unwrap();
-        assert_eq!(admission.reserve(2_000_000).err().unwrap().kind, ProblemType::Overloaded);
-        drop(most);
-        assert!(admission.reserve(2_000_000).is_ok());
-        assert_eq!(admission.metrics.reserved_bytes.get(), 0);
     }
 }

@@ -1,15 +1,18 @@
 //! Reading what a request carries: bounded, with the place of every mistake.
 
+use std::sync::Arc;
+
 use axum::{
-    body::{Bytes, to_bytes},
     extract::{FromRequest, FromRequestParts, Path, Request},
     http::{header, request::Parts},
 };
+use futures_util::StreamExt;
 use serde::de::DeserializeOwned;
 
 use crate::{
     Engine,
     layers::TOO_SLOW,
+    memory::{Reserved, document_bytes, hold},
     problem::{Problem, ProblemType},
 };
 
@@ -28,8 +31,28 @@ impl<T: DeserializeOwned + Send + 'static> FromRequest<Engine> for JsonBody<T> {
                 format!("this path takes application/json, but the request has {found}"),
             ));
         }
-        let bytes = read(request, engine).await?;
-        engine.read(bytes.len(), move || from_json(&bytes)).await.map(JsonBody)
+        let content = read(request, engine).await?;
+        let length = content.bytes.len();
+        engine.read(length, move || content.parsed(from_json)).await.map(JsonBody)
+    }
+}
+
+/// What a body holds, and the memory that it takes.
+pub(crate) struct Content {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) reserved: Reserved,
+}
+
+impl Content {
+    /// Parses a JSON document, whose memory is reserved before and belongs to the request from then on.
+    pub(crate) fn parsed<T>(mut self, parse: impl FnOnce(&[u8]) -> Result<T, Problem>) -> Result<T, Problem> {
+        let document = document_bytes(&self.bytes);
+        self.reserved.grow_to(self.bytes.len() as u64 + document)?;
+        let value = parse(&self.bytes)?;
+        drop(self.bytes);
+        self.reserved.shrink_to(document);
+        hold(Arc::new(self.reserved));
+        Ok(value)
     }
 }
 
@@ -39,8 +62,8 @@ pub(crate) fn content_type(request: &Request) -> String {
     value.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
 }
 
-/// The body, refused once it exceeds the limit.
-pub(crate) async fn read(request: Request, engine: &Engine) -> Result<Bytes, Problem> {
+/// The body, refused once it exceeds the limit, or the memory that there is. What has come is reserved as it comes.
+pub(crate) async fn read(request: Request, engine: &Engine) -> Result<Content, Problem> {
     let limit = engine.limits().body_bytes;
     let too_large = || {
         Problem::new(
@@ -52,13 +75,18 @@ pub(crate) async fn read(request: Request, engine: &Engine) -> Result<Bytes, Pro
     if declared.and_then(|v| v.parse::<usize>().ok()).is_some_and(|length| length > limit) {
         return Err(too_large());
     }
-    let declared = declared.and_then(|v| v.parse().ok());
-    // What does not say how long it is may become as long as it may be.
-    let _reserved = engine.admission().reserve(declared.unwrap_or(limit as u64))?;
-    to_bytes(request.into_body(), limit).await.map_err(|error| match broken(&error) {
-        problem if problem.kind == ProblemType::TooLarge => too_large(),
-        problem => problem,
-    })
+    let mut content = Content { bytes: Vec::new(), reserved: engine.admission().reserve(0)? };
+    let mut pieces = request.into_body().into_data_stream();
+    while let Some(piece) = pieces.next().await {
+        let piece = piece.map_err(|error| broken(&error))?;
+        let length = content.bytes.len() + piece.len();
+        if length > limit {
+            return Err(too_large());
+        }
+        content.reserved.grow_to(length as u64)?;
+        content.bytes.extend_from_slice(&piece);
+    }
+    Ok(content)
 }
 
 /// Why a body did not arrive.
@@ -66,9 +94,6 @@ pub(crate) fn broken(error: &axum::Error) -> Problem {
     let mut source: Option<&dyn std::error::Error> = Some(error);
     while let Some(cause) = source {
         let said = cause.to_string();
-        if said.contains("length limit") {
-            return Problem::new(ProblemType::TooLarge, "the body is too large");
-        }
         if said.contains(TOO_SLOW) {
             return Problem::new(
                 ProblemType::TooSlow,
@@ -77,7 +102,7 @@ pub(crate) fn broken(error: &axum::Error) -> Problem {
         }
         source = cause.source();
     }
-    Problem::new(ProblemType::InvalidRequest, format!("the body ended early or cannot be unpacked: {error}"))
+    Problem::new(ProblemType::InvalidRequest, format!("the body ended early or cannot be decoded: {error}"))
 }
 
 /// Parses a JSON document and names the place of every mistake.

@@ -1,6 +1,6 @@
 //! Connections: so many at most, none of which may stall.
 
-use std::{io, sync::Arc, time::Duration};
+use std::{io, pin::Pin, sync::Arc, time::Duration};
 
 use axum::Router;
 use hyper::server::conn::http1;
@@ -17,11 +17,15 @@ use tokio_io_timeout::TimeoutStream;
 
 use crate::{
     Engine,
+    bare_refusal::WithProblems,
     metrics::{Metrics, ShedLabels},
 };
 
 /// Pause after a failed accept, as when the process has no more file handles.
 const AFTER_FAILURE: Duration = Duration::from_millis(100);
+/// Largest head of a request, and most of an answer that waits to be sent [bytes]. A target of 64 KiB, the longest that is
+/// taken, has room in it.
+const BUFFER_BYTES: usize = 128 << 10;
 /// What a client is told that comes to a full house.
 const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nretry-after: 1\r\nconnection: close\r\n\
 content-type: application/problem+json\r\ncontent-length: 123\r\n\r\n\
@@ -38,7 +42,7 @@ pub(crate) async fn accept(
     let places = Arc::new(Semaphore::new(limits.connections));
     let open = GracefulShutdown::new();
     let mut builder = http1::Builder::new();
-    builder.timer(TokioTimer::new()).header_read_timeout(limits.head_time);
+    builder.timer(TokioTimer::new()).header_read_timeout(limits.head_time).max_buf_size(BUFFER_BYTES);
     let mut stop = std::pin::pin!(stop);
     loop {
         let accepted = tokio::select! {
@@ -56,7 +60,7 @@ pub(crate) async fn accept(
         };
         let Ok(io) = prepared(stream, limits.body_pause) else { continue };
         let service = TowerToHyperService::new(routes.clone());
-        let connection = open.watch(builder.serve_connection(TokioIo::new(Box::pin(io)), service));
+        let connection = open.watch(builder.serve_connection(TokioIo::new(io), service));
         let place = Place::take(place, engine.metrics());
         tokio::spawn(async move {
             let _place = place;
@@ -69,11 +73,14 @@ pub(crate) async fn accept(
 }
 
 /// Sends small answers at once, and gives up on a client that does not take them.
-fn prepared(stream: TcpStream, pause: Duration) -> io::Result<TimeoutStream<TcpStream>> {
+fn prepared(
+    stream: TcpStream,
+    pause: Duration,
+) -> io::Result<WithProblems<Pin<Box<TimeoutStream<TcpStream>>>>> {
     stream.set_nodelay(true)?;
     let mut io = TimeoutStream::new(stream);
     io.set_write_timeout(Some(pause));
-    Ok(io)
+    Ok(WithProblems::new(Box::pin(io)))
 }
 
 /// Tells a client without waiting for it.

@@ -89,6 +89,8 @@ fn describe(operation: &mut Operation, method: &Method, secured: bool, tagged: b
             "An id for the request, which the answer and the log repeat. Default: a new one",
         );
     }
+    add(operation, "400", "The request has no `Host` field, or two");
+    add(operation, "421", "`Host` names another than this service, which asks for no token");
     add(operation, "500", "A fault of the service");
     add(operation, "503", "Too much to do; `Retry-After` says when to try again");
     let tagged = tagged && *method == Method::GET;

@@ -20,6 +20,7 @@ use crate::{
     jobs::Jobs,
     limits::Limits,
     maps::MapStore,
+    memory::Account,
     metrics::{Metrics, StateLabels},
     planners::Planners,
     problem::{Problem, ProblemType},
@@ -42,8 +43,8 @@ struct Shared {
     store: Store,
     jobs: Jobs,
     admission: Arc<Admission>,
-    /// Documents are read here, so that no question waits behind long ones.
-    readers: Semaphore,
+    /// Documents are read and answers written here, so that no question waits behind long ones.
+    readers: Arc<Semaphore>,
     metrics: Metrics,
     /// Whether the service has been asked to end.
     ending: AtomicBool,
@@ -69,17 +70,18 @@ impl Engine {
     pub fn new(limits: Limits, store: Option<&str>) -> Result<Self, StoreError> {
         let store = Store::open(store)?;
         let metrics = Metrics::new();
+        let admission = Admission::new(&limits, &metrics);
         Ok(Engine(Arc::new(Shared {
             limits,
-            maps: MapStore::new(&store, limits.kept_map_bytes),
+            maps: MapStore::new(&store, limits.kept_map_bytes, admission.memory()),
             planners: Planners::default(),
             recordings: RecordingStore::new(&store),
             robots: RobotStore::new(&store),
             records: JobRecords::new(&store),
             store,
             jobs: Jobs::default(),
-            admission: Arc::new(Admission::new(&limits, &metrics)),
-            readers: Semaphore::new(limits.parallel_plans.max(1)),
+            admission: Arc::new(admission),
+            readers: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
             metrics,
             ending: AtomicBool::new(false),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
@@ -191,8 +193,28 @@ impl Engine {
         if bytes <= SHORT_BYTES {
             return read();
         }
-        let _turn = self.0.readers.acquire().await;
-        self.on_disk(read).await
+        self.beside(read).await
+    }
+
+    /// Writes an answer on a thread of its own, beside those that read documents.
+    pub(crate) async fn write<T: Send + 'static>(
+        &self,
+        write: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        self.beside(write).await
+    }
+
+    /// Does what takes time only by its size, so many at a time, beside those who compute.
+    async fn beside<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let turn = Arc::clone(&self.0.readers).acquire_owned().await.map_err(|_| stopping())?;
+        self.on_disk(move || {
+            let _turn = turn;
+            work()
+        })
+        .await
     }
 
     /// Runs work on a thread of its own, in turn, for as long as it takes; it is told when the request ends.
@@ -211,10 +233,11 @@ impl Engine {
     ) -> Result<T, Problem> {
         let cancelled = Arc::new(AtomicBool::new(false));
         let asked = Asked(Arc::clone(&cancelled));
+        let account = Account::current();
         let running = tokio::task::spawn_blocking(move || {
             // The turn ends with the work, not with the request: who leaves early makes no room before it is there.
             let _turn = turn;
-            work(&cancelled)
+            account.during(|| work(&cancelled))
         });
         let outcome = running.await;
         drop(asked);
@@ -226,7 +249,9 @@ impl Engine {
         &self,
         work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        tokio::task::spawn_blocking(work).await.unwrap_or_else(|failure| Err(self.fault(&failure)))
+        let account = Account::current();
+        let working = tokio::task::spawn_blocking(move || account.during(work));
+        working.await.unwrap_or_else(|failure| Err(self.fault(&failure)))
     }
 
     fn fault(&self, failure: &JoinError) -> Problem {

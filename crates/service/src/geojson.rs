@@ -1,31 +1,47 @@
 //! Paths as GeoJSON, in the map's own metres.
 
-use serde_json::{Value, json};
+use std::io::{self, Write};
 
-use crate::routes::plan::PlanAnswer;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
-/// A path with its totals: a 3-D line string or, where start and goal are one place, a point. Coordinates are the map's
+use crate::routes::plan::{PlanAnswer, PoseAnswer};
+
+/// Writes a path with its totals: a 3-D line string or, where start and goal are one place, a point. Coordinates are the map's
 /// projected metres. A line has two positions or more (RFC 7946, 3.1.4).
-pub(crate) fn path(plan: &PlanAnswer) -> Value {
-    let positions: Vec<[f64; 3]> = plan.poses.iter().map(|p| [p.x_m, p.y_m, p.z_m]).collect();
-    let geometry = match positions.as_slice() {
-        [position] => json!({ "type": "Point", "coordinates": position }),
-        line => json!({ "type": "LineString", "coordinates": line }),
-    };
-    json!({
-        "type": "FeatureCollection",
-        "features": [{
-            "type": "Feature",
-            "geometry": geometry,
-            "properties": {
-                "energy_j": plan.energy_j,
-                "energy_interval_j": plan.energy_interval_j,
-                "duration_s": plan.duration_s,
-                "distance_m": plan.distance_m,
-                "climb_m": plan.climb_m,
-                "descent_m": plan.descent_m,
-                "recovered_j": plan.recovered_j,
-            },
-        }],
-    })
+pub(crate) fn path(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
+    let properties = json!({
+        "energy_j": plan.energy_j,
+        "energy_interval_j": plan.energy_interval_j,
+        "duration_s": plan.duration_s,
+        "distance_m": plan.distance_m,
+        "climb_m": plan.climb_m,
+        "descent_m": plan.descent_m,
+        "recovered_j": plan.recovered_j,
+    });
+    out.write_all(br#"{"type":"FeatureCollection","features":[{"type":"Feature","geometry":"#)?;
+    match plan.poses.as_slice() {
+        [pose] => write!(out, "{}", json!({ "type": "Point", "coordinates": position(pose) }))?,
+        poses => {
+            out.write_all(br#"{"type":"LineString","coordinates":"#)?;
+            serde_json::to_writer(&mut *out, &Line(poses))?;
+            out.write_all(b"}")?;
+        }
+    }
+    out.write_all(br#","properties":"#)?;
+    serde_json::to_writer(&mut *out, &properties)?;
+    out.write_all(b"}]}")
+}
+
+/// Poses as positions.
+struct Line<'a>(&'a [PoseAnswer]);
+
+impl Serialize for Line<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(position))
+    }
+}
+
+fn position(pose: &PoseAnswer) -> [f64; 3] {
+    [pose.x_m, pose.y_m, pose.z_m]
 }

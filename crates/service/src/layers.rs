@@ -1,18 +1,20 @@
 //! What every request passes through before it reaches its route, and every answer on its way out; outermost first.
 
 mod conditional;
+mod encoder;
 mod encoding;
+mod host;
 mod log;
 mod measure;
 mod negotiate;
 mod pace;
+mod request_id;
 mod token;
 
 use std::any::Any;
 
 use axum::{
     Router,
-    body::Body,
     http::{HeaderName, Method, header},
     middleware::{from_fn, from_fn_with_state},
     response::{IntoResponse, Response},
@@ -21,10 +23,12 @@ use tower::ServiceBuilder;
 use tower_http::{
     ServiceBuilderExt,
     catch_panic::CatchPanicLayer,
-    compression::{CompressionLayer, CompressionLevel},
+    compression::{
+        CompressionLayer, CompressionLevel,
+        predicate::{DefaultPredicate, Predicate},
+    },
     cors::{AllowOrigin, CorsLayer},
     csrf::{CsrfLayer, ProtectionError},
-    decompression::RequestDecompressionLayer,
     request_id::MakeRequestUuid,
     trace::TraceLayer,
 };
@@ -37,7 +41,7 @@ pub(crate) use pace::TOO_SLOW;
 pub(crate) use token::needs_token;
 
 use crate::{
-    Access, Engine,
+    Access, Engine, answer, memory,
     problem::{Problem, ProblemType},
 };
 
@@ -54,6 +58,7 @@ pub(crate) fn layered(
     let panics = engine.metrics().clone();
     routes.layer(
         ServiceBuilder::new()
+            .map_request(request_id::without_unusable)
             .set_request_id(REQUEST_ID, MakeRequestUuid)
             .layer(
                 TraceLayer::new_for_http()
@@ -68,15 +73,21 @@ pub(crate) fn layered(
                 panicked()
             }))
             .layer(from_fn_with_state(Pace::from(engine.limits()), pace::paced))
+            .layer(from_fn_with_state(host::Rule::of(access), host::check))
             // What a better level saves of the wire takes longer to find than to send.
-            .layer(CompressionLayer::new().quality(CompressionLevel::Fastest))
+            .layer(
+                CompressionLayer::new()
+                    .quality(CompressionLevel::Fastest)
+                    .compress_when(DefaultPredicate::new().and(encoder::has_room)),
+            )
+            .layer(from_fn_with_state(engine.admission().memory().clone(), encoder::reserve))
             .layer(cors(access))
             .layer(csrf(access))
             .layer(from_fn_with_state(Offers::of(description), negotiate::negotiate))
             .layer(from_fn(conditional::conditional))
-            .layer(from_fn(encoding::refuse_unknown))
-            .layer(RequestDecompressionLayer::new())
-            .map_request_body(Body::new),
+            .layer(from_fn(memory::accounted))
+            .layer(from_fn_with_state(engine.clone(), encoding::decode))
+            .layer(from_fn_with_state(engine.clone(), answer::write)),
     )
 }
 
@@ -105,10 +116,12 @@ fn csrf(access: &Access) -> CsrfLayer<impl Fn(ProtectionError) -> Response + Clo
     // An origin that the layer does not take is one that no browser sends.
     let layer = trusted
         .fold(CsrfLayer::new(), |layer, origin| layer.clone().add_trusted_origin(origin).unwrap_or(layer));
-    layer.with_rejection_response(|_: ProtectionError| {
-        let detail = "the request comes from a page of another origin: the service has to be started with --cors-origin for it";
-        Problem::new(ProblemType::CrossOrigin, detail).into_response()
-    })
+    layer.with_rejection_response(|_: ProtectionError| cross_origin().into_response())
+}
+
+fn cross_origin() -> Problem {
+    let detail = "the request comes from a page of another origin: the service has to be started with --cors-origin for it";
+    Problem::new(ProblemType::CrossOrigin, detail)
 }
 
 fn panicked() -> Response {
@@ -118,7 +131,12 @@ fn panicked() -> Response {
 
 #[cfg(test)]
 mod tests {
-    use axum::{body::to_bytes, http::Request, http::StatusCode, routing::get};
+    use axum::{
+        body::{Body, to_bytes},
+        http::Request,
+        http::StatusCode,
+        routing::get,
+    };
     use tower::ServiceExt;
 
     use super::*;
@@ -140,7 +158,11 @@ mod tests {
         let routes = Router::new().route("/faulty", get(faulty)).route("/sound", get(|| async { "sound" }));
         let routes = layered(routes, &engine, &Access::default(), &openapi()).with_state(engine.clone());
         let ask = |path: &str| {
-            let request = Request::get(path).header("x-request-id", "mine").body(Body::empty()).unwrap();
+            let request = Request::get(path)
+                .header("host", "localhost")
+                .header("x-request-id", "mine")
+                .body(Body::empty())
+                .unwrap();
             routes.clone().oneshot(request)
         };
         let answer = ask("/faulty").await.unwrap();

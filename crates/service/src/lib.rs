@@ -7,12 +7,15 @@
 mod accept;
 mod access;
 mod admission;
+mod answer;
+mod bare_refusal;
 mod body;
 mod cells;
 mod connections;
 mod describe;
 mod engine;
 mod geojson;
+mod hosts;
 mod job;
 mod job_records;
 mod job_run;
@@ -38,6 +41,7 @@ mod store;
 
 pub use access::{Access, Tokens, WeakToken};
 pub use engine::Engine;
+pub use hosts::Hosts;
 pub use limits::Limits;
 pub use numbers::with_exponents;
 pub use planner::Patience;

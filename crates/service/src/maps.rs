@@ -3,7 +3,7 @@
 use std::{
     io::{BufReader, BufWriter},
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, PoisonError, Weak,
         atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
@@ -13,6 +13,7 @@ use quick_cache::{DefaultHashBuilder, OptionsBuilder, Weighter, sync::Cache};
 use terrain::{Terrain, io::cells};
 
 use crate::{
+    memory::{Memory, Reserved, hold},
     problem::{Problem, ProblemType},
     routes::maps::MapSummary,
     store::{Pairs, Store, cannot, full, is_id, shown},
@@ -33,6 +34,7 @@ pub(crate) struct MapStore {
     maps: Pairs<MapSummary>,
     held: Cache<String, Arc<Held>, Bytes>,
     reads: AtomicU64,
+    memory: Memory,
 }
 
 /// A map with what is told of it.
@@ -48,6 +50,8 @@ struct Held {
     terrain: Arc<Terrain>,
     /// When it was last known to be in the store.
     seen: Mutex<Instant>,
+    /// What those have reserved together who use it: it may leave the cache before they are done.
+    in_use: Mutex<Weak<Reserved>>,
 }
 
 /// Maps weigh what they take in memory.
@@ -62,7 +66,7 @@ impl Weighter<String, Arc<Held>> for Bytes {
 
 impl MapStore {
     /// The maps of a store, of which so many bytes at most are kept in memory.
-    pub(crate) fn new(store: &Store, most_bytes: usize) -> Self {
+    pub(crate) fn new(store: &Store, most_bytes: usize, memory: &Memory) -> Self {
         let options = OptionsBuilder::new()
             .estimated_items_capacity(MAPS)
             .weight_capacity(most_bytes as u64)
@@ -76,7 +80,7 @@ impl MapStore {
             }
             Err(_) => Cache::with_weighter(MAPS, most_bytes as u64, Bytes),
         };
-        MapStore { maps: Pairs::new(store, "maps"), held, reads: AtomicU64::new(0) }
+        MapStore { maps: Pairs::new(store, "maps"), held, reads: AtomicU64::new(0), memory: memory.clone() }
     }
 
     /// Keeps a map; the same map twice is one. Returns whether it is new.
@@ -118,13 +122,15 @@ impl MapStore {
                 Err(_) => {}
             }
         }
+        hold(held.in_use(&self.memory)?);
         Ok(Arc::clone(&held.terrain))
     }
 
     async fn read(&self, id: &str) -> Result<Arc<Held>, Problem> {
-        if !self.maps.has(id).await? {
-            return Err(unknown(id));
-        }
+        let summary = self.maps.note(id).await?.ok_or_else(|| unknown(id))?;
+        let in_use = Arc::new(self.memory.reserve(
+            CELL_BYTES.saturating_mul(summary.rows as u64).saturating_mul(summary.columns as u64),
+        )?);
         let file = self.maps.open(id).await?.ok_or_else(|| unknown(id))?;
         let read = tokio::task::spawn_blocking(move || {
             cells::read(BufReader::with_capacity(BUFFER_BYTES, file))
@@ -138,7 +144,10 @@ impl MapStore {
             return Err(Problem::new(ProblemType::Internal, detail));
         }
         self.reads.fetch_add(1, Ordering::Relaxed);
-        Ok(Arc::new(Held::now(Arc::new(terrain))))
+        let held = Held::now(Arc::new(terrain));
+        *held.in_use.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(&in_use);
+        hold(in_use);
+        Ok(Arc::new(held))
     }
 
     /// All maps in brief, in the order of their ids.
@@ -156,7 +165,18 @@ impl MapStore {
 
 impl Held {
     fn now(terrain: Arc<Terrain>) -> Self {
-        Held { terrain, seen: Mutex::new(Instant::now()) }
+        Held { terrain, seen: Mutex::new(Instant::now()), in_use: Mutex::default() }
+    }
+
+    /// The right to its memory for one more who uses it; it is counted once for all of them.
+    fn in_use(&self, memory: &Memory) -> Result<Arc<Reserved>, Problem> {
+        let mut in_use = self.in_use.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(reserved) = in_use.upgrade() {
+            return Ok(reserved);
+        }
+        let reserved = Arc::new(memory.reserve(CELL_BYTES * self.terrain.grid.cells() as u64)?);
+        *in_use = Arc::downgrade(&reserved);
+        Ok(reserved)
     }
 
     fn is_to_be_checked(&self) -> bool {
@@ -178,6 +198,11 @@ mod tests {
     use terrain::Grid;
 
     use super::*;
+    use crate::metrics::Metrics;
+
+    fn memory() -> Memory {
+        Memory::new(1 << 30, &Metrics::new())
+    }
 
     fn map(rows: usize) -> Stored {
         let grid = Grid { rows, columns: 3, cell_size_m: 1.0, origin_m: [0.0; 2] };
@@ -189,7 +214,8 @@ mod tests {
     async fn who_ask_for_a_map_at_the_same_time_read_it_once() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open_here(folder.path());
-        let (one, other) = (MapStore::new(&store, 1 << 20), MapStore::new(&store, 1 << 20));
+        let (one, other) =
+            (MapStore::new(&store, 1 << 20, &memory()), MapStore::new(&store, 1 << 20, &memory()));
         let stored = map(5);
         assert!(one.insert(stored.clone(), usize::MAX).await.unwrap());
         assert!(!other.insert(stored.clone(), usize::MAX).await.unwrap());
@@ -203,7 +229,7 @@ mod tests {
     #[tokio::test]
     async fn maps_beyond_the_room_in_memory_are_read_again() {
         let folder = tempfile::tempdir().unwrap();
-        let maps = MapStore::new(&Store::open_here(folder.path()), 3 * 100 * CELL_BYTES as usize);
+        let maps = MapStore::new(&Store::open_here(folder.path()), 3 * 100 * CELL_BYTES as usize, &memory());
         let all: Vec<Stored> = (1..=100).map(map).collect();
         for stored in &all {
             maps.insert(stored.clone(), usize::MAX).await.unwrap();
@@ -220,13 +246,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open_here(folder.path());
         let stored = map(4);
-        MapStore::new(&store, 1 << 20).insert(stored.clone(), usize::MAX).await.unwrap();
+        MapStore::new(&store, 1 << 20, &memory()).insert(stored.clone(), usize::MAX).await.unwrap();
         let path = folder.path().join(format!("maps/{}.data", stored.summary.id));
         let mut bytes = std::fs::read(&path).unwrap();
         let last = bytes.len() - 1;
         bytes[last] ^= 1;
         std::fs::write(&path, bytes).unwrap();
-        let problem = MapStore::new(&store, 1 << 20).get(&stored.summary.id).await.unwrap_err();
+        let problem = MapStore::new(&store, 1 << 20, &memory()).get(&stored.summary.id).await.unwrap_err();
         assert!(problem.detail.contains("was changed where it is stored"), "{problem:?}");
     }
 }

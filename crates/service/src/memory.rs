@@ -1,6 +1,16 @@
-//! What a request will take in memory, before it is begun.
+//! Memory of requests: reserved before it is taken, from the first byte of a body to the last byte of its answer.
+
+mod account;
+mod document;
+mod held_body;
+mod reserved;
 
 use terrain::{MapFile, Terrain};
+
+pub(crate) use account::{Account, accounted, hold};
+pub(crate) use document::document_bytes;
+pub(crate) use held_body::holding;
+pub(crate) use reserved::{Memory, Reserved};
 
 use crate::Engine;
 
@@ -10,8 +20,8 @@ const TABLE_BYTES_PER_CELL: u64 = 360;
 const SEARCH_BYTES_PER_CELL: u64 = 16 * 9;
 /// The least costs to a goal, four bytes a cell, and what making them takes.
 const FIELD_BYTES_PER_CELL: u64 = 8;
-/// A map in a request: heights as they are read, and the terrain that they become.
-const INLINE_BYTES_PER_CELL: u64 = 16 + 8;
+/// The terrain that a map in a request becomes; the map itself is counted from when it was read.
+const INLINE_BYTES_PER_CELL: u64 = 8;
 
 /// Bytes that a plan may take beyond what is kept already, should it go all over the map.
 pub(crate) fn estimated_bytes(
@@ -27,10 +37,7 @@ pub(crate) fn estimated_bytes(
             let table = if at_hand { 0 } else { TABLE_BYTES_PER_CELL };
             terrain.grid.cells() as u64 * (own + table)
         }
-        (None, Some(map)) => {
-            let cells: usize = map.elevation_m.iter().map(Vec::len).sum();
-            cells as u64 * (own + TABLE_BYTES_PER_CELL + INLINE_BYTES_PER_CELL)
-        }
+        (None, Some(map)) => map.cells() as u64 * (own + TABLE_BYTES_PER_CELL + INLINE_BYTES_PER_CELL),
         (None, None) => 0,
     }
 }

@@ -9,7 +9,7 @@ use prometheus_client::{
 };
 
 /// Counts, shared by all that counts; cheap to clone.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct Metrics {
     registry: Arc<Registry>,
     /// How long answers took [s].

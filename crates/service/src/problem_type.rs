@@ -24,6 +24,12 @@ pub enum ProblemType {
     Unauthorized,
     /// A page of another origin asks for a change.
     CrossOrigin,
+    /// The request asks another host than this service.
+    MisdirectedRequest,
+    /// The target of the request is too long.
+    TargetTooLong,
+    /// The header fields of the request are too large.
+    HeaderTooLarge,
     /// The body came too slowly.
     TooSlow,
     /// No such path.
@@ -89,6 +95,9 @@ impl ProblemType {
             T::NotAcceptable => StatusCode::NOT_ACCEPTABLE,
             T::Unauthorized => StatusCode::UNAUTHORIZED,
             T::CrossOrigin => StatusCode::FORBIDDEN,
+            T::MisdirectedRequest => StatusCode::MISDIRECTED_REQUEST,
+            T::TargetTooLong => StatusCode::URI_TOO_LONG,
+            T::HeaderTooLarge => StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
             T::TooSlow => StatusCode::REQUEST_TIMEOUT,
             T::NotFound | T::UnknownMap | T::UnknownRobot | T::UnknownRecording | T::UnknownJob => {
                 StatusCode::NOT_FOUND
@@ -126,6 +135,9 @@ impl ProblemType {
             T::NotAcceptable => "No such form of the answer",
             T::Unauthorized => "A token is needed",
             T::CrossOrigin => "Not for pages of other origins",
+            T::MisdirectedRequest => "Not this host",
+            T::TargetTooLong => "The target is too long",
+            T::HeaderTooLarge => "The header fields are too large",
             T::TooSlow => "The body came too slowly",
             T::NotFound => "No such path",
             T::UnknownMap => "No such map",

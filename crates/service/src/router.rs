@@ -2,7 +2,7 @@
 
 use axum::{
     Router,
-    body::Body,
+    body::{Body, Bytes},
     http::{Request, header},
     middleware::from_fn_with_state,
     routing::get,
@@ -94,7 +94,7 @@ pub fn openapi() -> utoipa::openapi::OpenApi {
 /// The service as a router.
 pub fn router(engine: Engine, access: &Access) -> Router {
     let (routes, description) = described(access);
-    let document = description.to_pretty_json().unwrap_or_default();
+    let document = Bytes::from(description.to_pretty_json().unwrap_or_default());
     let reference = SwaggerUi::new("/docs").config(Config::from("/openapi.json"));
     let routes = routes
         .merge(page::routes())

@@ -11,6 +11,7 @@ mod notes;
 mod objects;
 mod pairs;
 mod place;
+mod plain_words;
 mod spool;
 mod sweep;
 

@@ -19,7 +19,7 @@ pub struct Terrain {
 }
 
 /// What the ground is made of, cell by cell.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfaces {
     /// Class names; the classes index them.
     pub names: Vec<String>,

@@ -8,7 +8,7 @@ use std::{
 };
 
 use clap::{Args, ValueEnum, builder::FalseyValueParser};
-use service::{Access, Engine, Tokens, serve};
+use service::{Access, Engine, Hosts, Tokens, serve};
 use tracing_subscriber::EnvFilter;
 
 use crate::{failure::BadInput, limit_arguments::LimitArguments, output};
@@ -45,6 +45,10 @@ pub(crate) struct Arguments {
     /// Origin whose pages may ask, as `https://maps.example.org`; may be given several times [default: none]
     #[arg(long, env = "JOULEPATH_CORS_ORIGIN", value_delimiter = ',')]
     cors_origin: Vec<String>,
+    /// Name by which the service is asked, as `maps.example.org` behind a proxy; may be given several times. Without tokens, no
+    /// other name than localhost is answered [default: none]
+    #[arg(long, env = "JOULEPATH_HOST", value_delimiter = ',', value_name = "NAME")]
+    host: Vec<String>,
     /// Form of the log on stderr
     #[arg(long, env = "JOULEPATH_LOG_FORMAT", value_enum, default_value_t = LogFormat::Json)]
     log_format: LogFormat,
@@ -119,7 +123,8 @@ fn access(arguments: &Arguments, addresses: &[SocketAddr]) -> anyhow::Result<Acc
         text.parse().ok().filter(|_| is_origin).ok_or_else(refused)
     };
     let cors_origins = arguments.cors_origin.iter().map(origin).collect::<Result<_, _>>()?;
-    Ok(Access { tokens, open_metrics: is_local, cors_origins })
+    let hosts = Hosts::named(&arguments.host, !is_local).map_err(|error| BadInput(error.to_string()))?;
+    Ok(Access { tokens, open_metrics: is_local, cors_origins, hosts })
 }
 
 fn tokens(file: Option<&Path>) -> Result<Tokens, BadInput> {

@@ -48,34 +48,35 @@ pub(crate) async fn conditional(path: Option<MatchedPath>, request: Request, nex
     if tagged { tag(response, held.as_ref()).await } else { response }
 }
 
-/// Tags a whole body; one that is still being made, as events are, is passed on.
+/// Tags a short body that has no tag yet, and leaves out one that the client has. A body that is still being made, as events
+/// are, is passed on.
 async fn tag(response: Response, held: Option<&HeaderValue>) -> Response {
-    let (mut parts, body) = response.into_parts();
-    if body.size_hint().exact().is_none() {
-        return Response::from_parts(parts, body);
+    let (mut parts, mut body) = response.into_parts();
+    if !parts.headers.contains_key(header::ETAG) && body.size_hint().exact().is_some() {
+        let Ok(bytes) = to_bytes(body, usize::MAX).await else {
+            return Response::from_parts(parts, Body::empty());
+        };
+        let hash: String = Sha256::digest(&bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect();
+        // Weak, because the same answer may be sent compressed.
+        if let Ok(tag) = HeaderValue::from_str(&format!("W/\"{hash}\"")) {
+            parts.headers.insert(header::ETAG, tag);
+        }
+        body = Body::from(bytes);
     }
-    let Ok(bytes) = to_bytes(body, usize::MAX).await else {
-        return Response::from_parts(parts, Body::empty());
-    };
-    let hash: String = Sha256::digest(&bytes).iter().take(16).map(|byte| format!("{byte:02x}")).collect();
-    // Weak, because the same answer may be sent compressed.
-    let tag = format!("W/\"{hash}\"");
-    let is_held = held.and_then(|held| held.to_str().ok()).is_some_and(|held| holds(held, &hash));
-    if let Ok(tag) = HeaderValue::from_str(&tag) {
-        parts.headers.insert(header::ETAG, tag);
-    }
-    if is_held {
+    let tag = parts.headers.get(header::ETAG).and_then(|tag| tag.to_str().ok()).unwrap_or_default();
+    let is_held = held.and_then(|held| held.to_str().ok()).is_some_and(|held| holds(held, tag));
+    if is_held && !tag.is_empty() {
         parts.status = StatusCode::NOT_MODIFIED;
         without_content(&mut parts.headers);
-        return Response::from_parts(parts, Body::empty());
+        body = Body::empty();
     }
-    Response::from_parts(parts, Body::from(bytes))
+    Response::from_parts(parts, body)
 }
 
 /// Whether an `If-None-Match` names a tag, compared weakly.
-fn holds(held: &str, hash: &str) -> bool {
-    let quoted = format!("\"{hash}\"");
-    held.trim() == "*" || held.split(',').any(|tag| tag.trim().trim_start_matches("W/") == quoted)
+fn holds(held: &str, tag: &str) -> bool {
+    let opaque = |tag: &str| tag.trim().trim_start_matches("W/").to_owned();
+    held.trim() == "*" || held.split(',').any(|other| opaque(other) == opaque(tag))
 }
 
 fn without_content(headers: &mut HeaderMap) {
@@ -90,10 +91,10 @@ mod tests {
     #[test]
     fn tags_are_compared_weakly_and_in_lists() {
         for held in ["\"ab\"", "W/\"ab\"", "\"x\", W/\"ab\"", "*", " * "] {
-            assert!(holds(held, "ab"), "{held}");
+            assert!(holds(held, "W/\"ab\""), "{held}");
         }
         for held in ["", "ab", "\"abc\"", "W/\"a\""] {
-            assert!(!holds(held, "ab"), "{held}");
+            assert!(!holds(held, "W/\"ab\""), "{held}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `POST /v1/alternatives`: the trade-off between energy and time or length.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use planner::{Objective, Patience, Planner, Query};
 use serde::{Deserialize, Serialize};
 use terrain::MapFile;
@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     Engine,
+    answer::Json,
     body::JsonBody,
     problem::{Problem, ProblemType},
 };

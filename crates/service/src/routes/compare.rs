@@ -1,12 +1,12 @@
 //! `POST /v1/compare`: the energy-minimal, shortest and fastest paths side by side.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::plan::{PlanAnswer, PlanRequest, with_planner};
-use crate::{Engine, body::JsonBody, problem::Problem};
+use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
 
 /// Three paths between the same ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -3,7 +3,6 @@
 use std::{convert::Infallible, sync::Arc, time::Duration};
 
 use axum::{
-    Json,
     extract::State,
     http::{HeaderMap, HeaderName, StatusCode, header},
     response::{
@@ -19,6 +18,7 @@ use utoipa::ToSchema;
 
 use crate::{
     Engine,
+    answer::Json,
     body::Id,
     job::{JobState, Progress, Status},
     job_records::{Description, Report},

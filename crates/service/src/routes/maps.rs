@@ -3,20 +3,20 @@
 use std::sync::Arc;
 
 use axum::{
-    Json,
     extract::{Query, Request, State},
     http::{HeaderMap, StatusCode, Uri, header},
     response::{IntoResponse, Response},
 };
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Patch, Terrain, io};
+use terrain::{MapFile, Patch, Terrain, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
     Engine,
     accept::preferred,
-    body::{Id, JsonBody, content_type, from_json, read as read_body},
-    cells,
+    answer::{Json, streamed},
+    body::{Content, Id, JsonBody, content_type, from_json, read as read_body},
+    cells::CellBytes,
     maps::Stored,
     problem::{Problem, ProblemType},
 };
@@ -95,11 +95,11 @@ pub(crate) async fn create(
     request: Request,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
     let parse = parser(&content_type(&request))?;
-    let bytes = read_body(request, &engine).await?;
+    let content = read_body(request, &engine).await?;
     let most_cells = engine.limits().map_cells();
     let map = engine
         .compute(move |_| {
-            let terrain = parse(&bytes, most_cells)?;
+            let terrain = parse(content, most_cells)?;
             refuse_too_large(&terrain, most_cells)?;
             let summary = MapSummary::of(terrain.content_id(), &terrain);
             Ok(Stored { terrain: Arc::new(terrain), summary })
@@ -110,18 +110,29 @@ pub(crate) async fn create(
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
 }
 
-type Parser = fn(&[u8], u64) -> Result<Terrain, Problem>;
+type Parser = fn(Content, u64) -> Result<Terrain, Problem>;
+
+/// Bytes of a cell while an ESRI ASCII grid is read: as it comes, from the south, and as it is kept.
+const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
+/// The same of a GeoTIFF, of which a chunk of samples is at hand beside them, as it stands and as numbers.
+const TIFF_CELL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8;
 
 /// The reader for a content type.
 fn parser(kind: &str) -> Result<Parser, Problem> {
     Ok(match kind {
-        "application/json" => |bytes, _| terrain_from(from_json(bytes)?, ""),
-        "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => {
-            |bytes, _| io::text(bytes).and_then(io::ascii::read).map_err(|e| Problem::invalid_map(&e, ""))
-        }
-        "image/tiff" | "image/geotiff" | "application/geotiff" => {
-            |bytes, most| io::geotiff::read(bytes, most).map_err(|e| Problem::invalid_map(&e, ""))
-        }
+        "application/json" => |content, _| terrain_from(content.parsed(from_json)?, ""),
+        "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => |mut content, _| {
+            let text = io::text(&content.bytes).map_err(|e| Problem::invalid_map(&e, ""))?;
+            let cells = text.split_ascii_whitespace().count() as u64;
+            content.reserved.grow_to(text.len() as u64 + ASCII_CELL_BYTES * cells)?;
+            io::ascii::read(text).map_err(|e| Problem::invalid_map(&e, ""))
+        },
+        "image/tiff" | "image/geotiff" | "application/geotiff" => |mut content, most_cells| {
+            let invalid = |error: terrain::Error| Problem::invalid_map(&error, "");
+            let cells = io::geotiff::cells(&content.bytes).map_err(invalid)?.min(most_cells);
+            content.reserved.grow_to(content.bytes.len() as u64 + TIFF_CELL_BYTES * cells)?;
+            io::geotiff::read(&content.bytes, most_cells).map_err(invalid)
+        },
         _ => {
             let detail = format!(
                 "a map is application/json, text/plain (ESRI ASCII grid) or image/tiff (GeoTIFF), but the request has `{kind}`"
@@ -194,11 +205,15 @@ pub(crate) async fn read(
 ) -> Result<Response, Problem> {
     let CellsQuery { max_cells } = cells_query(&uri)?;
     let map: Arc<Terrain> = engine.maps().get(&id).await?;
-    if preferred(&headers, &["application/json", "application/octet-stream"]) == "application/json" {
-        return Ok(Json(MapFile::from(&*map)).into_response());
+    let form = preferred(&headers, &["application/json", "application/octet-stream"]);
+    let about = |tag: String| [(header::CONTENT_TYPE, form.to_owned()), (header::ETAG, tag)];
+    if form == "application/json" {
+        return Ok((about(format!("W/\"{id}\"")), streamed(JsonText::of(&map))).into_response());
     }
-    let bytes = engine.compute(move |_| Ok(cells::bytes(&map, max_cells.unwrap_or(usize::MAX)))).await?;
-    Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+    let cells = CellBytes::of(map, max_cells.unwrap_or(usize::MAX));
+    let length = cells.length();
+    let tag = format!("W/\"{id}-{length}\"");
+    Ok((about(tag), [(header::CONTENT_LENGTH, length)], streamed(cells)).into_response())
 }
 
 fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
@@ -247,7 +262,14 @@ pub(crate) async fn change(
     let terrain = Arc::clone(&map.terrain);
     let new = engine.maps().insert(map, engine.limits().stored_cells).await?;
     if new {
-        engine.planners().patch(&id, &summary.id, &terrain, &changed);
+        let (own, changed_id) = (engine.clone(), summary.id.clone());
+        engine
+            .compute(move |_| {
+                own.planners().patch(&id, &changed_id, &terrain, &changed);
+                own.planners().shrink(own.limits().kept_bytes);
+                Ok(())
+            })
+            .await?;
     }
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
 }

@@ -1,6 +1,6 @@
 //! `POST /v1/matrix`: energy, time and length between many poses.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use model::PowerModel;
 use planner::{Patience, Planner};
 use routing::{Question, Waypoint};
@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     Engine, Limits,
+    answer::Json,
     body::JsonBody,
     problem::{Problem, ProblemType},
 };

@@ -1,6 +1,6 @@
 //! `POST /v1/mission`: many stops in the best order.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use mission::{Call, Doubt, Mission, MissionQuestion, Role, Site, Stop, mission};
 use planner::{Patience, Planner};
 use routing::Waypoint;
@@ -13,7 +13,7 @@ use super::{
     range::{SpreadAnswer, full, stalled},
     robots::RobotChoice,
 };
-use crate::{Engine, body::JsonBody, problem::Problem};
+use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
 
 /// Waypoints to visit on a charge.
 #[derive(Clone, Debug, Deserialize, ToSchema)]

@@ -9,12 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use axum::{
-    Json,
-    extract::State,
-    http::{HeaderMap, header},
-    response::{IntoResponse, Response},
-};
+use axum::{extract::State, http::HeaderMap};
 use model::{PowerModel, Robot};
 use planner::{Goal, Objective, Patience, Planner, Query, Settings, Start};
 use routing::Limits;
@@ -26,6 +21,7 @@ use super::robots::RobotChoice;
 use crate::{
     Engine,
     accept::preferred,
+    answer::Written,
     body::JsonBody,
     geojson,
     metrics::CacheLabels,
@@ -165,18 +161,17 @@ pub(crate) async fn handler(
     State(engine): State<Engine>,
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
-) -> Result<Response, Problem> {
+) -> Result<Written, Problem> {
     let form =
         preferred(&headers, &["application/json", "application/geo+json", "text/csv", "application/gpx+xml"]);
     let found = with_planner(&engine, &mut request, answer).await?;
     engine.metrics().expansions.inc_by(found.search.expanded);
-    let body = match form {
-        "application/geo+json" => Json(geojson::path(&found)).into_response(),
-        "text/csv" => route_file::csv(&found).into_response(),
-        "application/gpx+xml" => route_file::gpx(&found).into_response(),
-        _ => Json(found).into_response(),
-    };
-    Ok(([(header::CONTENT_TYPE, form)], body).into_response())
+    Ok(Written::new(form, move |out| match form {
+        "application/geo+json" => geojson::path(&found, out),
+        "text/csv" => route_file::csv(&found, out),
+        "application/gpx+xml" => route_file::gpx(&found, out),
+        _ => Ok(serde_json::to_writer(out, &found)?),
+    }))
 }
 
 /// Longest search for the path that a slope limit forbids [s].

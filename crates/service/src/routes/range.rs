@@ -1,6 +1,6 @@
 //! `POST /v1/range`: whether the battery lasts.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use mission::{
     BestSpeed, Carries, Doubt, Leg, Question, Range, Replanned, Spread, Stall, TurningPoint, range,
 };
@@ -13,7 +13,7 @@ use super::{
     plan::{GoalPose, PlanRequest, StartPose, with_planner},
     robots::RobotChoice,
 };
-use crate::{Engine, body::JsonBody, problem::Problem};
+use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
 
 /// Whether, how likely, and with what charge left a robot gets to a goal and back.
 #[derive(Clone, Debug, Deserialize, ToSchema)]

@@ -1,7 +1,9 @@
 //! `POST /v1/reachable`: the ground within energies of a place, as contours or as a raster.
 
+use std::io::{self, Write};
+
 use axum::{
-    Json,
+    body::Body,
     extract::State,
     http::{HeaderMap, header},
     response::{IntoResponse, Response},
@@ -20,6 +22,7 @@ use super::{
 use crate::{
     Engine,
     accept::preferred,
+    answer::Pieces,
     body::JsonBody,
     problem::{Problem, ProblemType},
 };
@@ -147,14 +150,16 @@ pub(crate) async fn handler(
     let form = preferred(&headers, &["application/geo+json", "application/json", "image/tiff"]);
     let as_raster = form == "image/tiff";
     let mut plan = request.plan();
-    with_planner(&engine, &mut plan, move |planner, _, patience| {
+    let memory = engine.admission().memory().clone();
+    let pieces = with_planner(&engine, &mut plan, move |planner, _, patience| {
         let found = Found::of(planner, &request, patience)?;
         if as_raster {
-            return Ok(([(header::CONTENT_TYPE, "image/tiff")], found.raster()?).into_response());
+            let raster = found.raster()?;
+            return Pieces::written(&memory, |out| out.write_all(&raster));
         }
-        Ok(([(header::CONTENT_TYPE, form)], Json(found.contours(patience)?)).into_response())
-    })
-    .await
+        Pieces::written(&memory, |out| found.write_contours(out, patience))
+    });
+    Ok(([(header::CONTENT_TYPE, form)], Body::new(pieces.await?)).into_response())
 }
 
 impl ReachableRequest {
@@ -239,26 +244,44 @@ impl Found {
         Ok(Found { reach, kind: request.kind, energies_j })
     }
 
+    /// Writes the contours as GeoJSON, of which one at a time is in memory.
+    fn write_contours(&self, out: &mut dyn Write, patience: &Patience) -> Result<(), Problem> {
+        out.write_all(br#"{"type":"FeatureCollection","features":["#)?;
+        for (index, energy) in self.energies_j.iter().enumerate() {
+            out.write_all(if index > 0 { b"," } else { b"" })?;
+            let contour = self.contour(energy, patience)?;
+            serde_json::to_writer(&mut *out, &contour).map_err(io::Error::from)?;
+        }
+        Ok(out.write_all(b"]}")?)
+    }
+
     /// The contours as GeoJSON.
     ///
     /// # Errors
     /// Time that ran out.
     pub fn contours(&self, patience: &Patience) -> Result<ReachableAnswer, Problem> {
-        let feature = |&(energy_j, charge): &(f64, Option<f64>)| {
-            let late = |error| Problem::no_routing(&error);
-            let polygons = self.reach.within(energy_j, patience).map_err(late)?;
-            let area_m2 = self.reach.area_m2(energy_j, patience).map_err(late)?;
-            Ok(ContourFeature {
-                kind: "Feature".to_owned(),
-                geometry: ContourGeometry {
-                    kind: "MultiPolygon".to_owned(),
-                    coordinates: polygons.into_iter().map(rings).collect(),
-                },
-                properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
-            })
-        };
-        let features = self.energies_j.iter().map(feature).collect::<Result<_, Problem>>()?;
+        let features = self.energies_j.iter().map(|energy| self.contour(energy, patience));
+        let features = features.collect::<Result<_, Problem>>()?;
         Ok(ReachableAnswer { kind: "FeatureCollection".to_owned(), features })
+    }
+
+    /// The ground within an energy, which may stand for a charge.
+    fn contour(
+        &self,
+        &(energy_j, charge): &(f64, Option<f64>),
+        patience: &Patience,
+    ) -> Result<ContourFeature, Problem> {
+        let late = |error| Problem::no_routing(&error);
+        let polygons = self.reach.within(energy_j, patience).map_err(late)?;
+        let area_m2 = self.reach.area_m2(energy_j, patience).map_err(late)?;
+        Ok(ContourFeature {
+            kind: "Feature".to_owned(),
+            geometry: ContourGeometry {
+                kind: "MultiPolygon".to_owned(),
+                coordinates: polygons.into_iter().map(rings).collect(),
+            },
+            properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
+        })
     }
 
     /// The least energy of every cell as a GeoTIFF [J].

@@ -9,18 +9,19 @@ use std::{
 };
 
 use axum::{
-    Json,
     extract::{Query, Request, State},
     http::{StatusCode, Uri},
 };
-use recording::{Format, ReadingReport};
+use recording::{Format, ReadingReport, Room};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
     Engine,
+    answer::Json,
     body::{Id, content_type},
+    memory::hold,
     problem::{Problem, ProblemType},
     receive::{Received, receive},
     recordings::{Note, map_from},
@@ -123,10 +124,12 @@ pub(crate) async fn create(
     map.as_ref().map(map_from).transpose()?;
     let (parts, body) = request.into_parts();
     let received = receive(&engine, &parts.headers, body).await?;
+    let reading = Reading::of(&engine, format, received.bytes);
+    hold(Arc::new(engine.admission().reserve(reading.bytes)?));
     let name = name.unwrap_or_else(|| "recording".into());
     let note =
         Note { id: received.id.clone(), format, bytes: received.bytes, name, map, report: Value::Null };
-    let (note, received) = engine.work(move |left| checked(received, note, left)).await?;
+    let (note, received) = engine.work(move |left| checked(received, note, reading.room, left)).await?;
     let new = engine.recordings().keep(received, &note).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
 }
@@ -139,15 +142,43 @@ fn map_choice(text: String) -> Result<Value, Problem> {
     document::from_json(text.as_bytes()).map_err(|error| Problem::invalid_document(&error, "/map"))
 }
 
+/// What reading a recording may take.
+struct Reading {
+    bytes: u64,
+    room: Room,
+}
+
+/// The table of a recording of any length, 2²⁴ numbers, and as much again while topics are merged into it [bytes].
+const LARGEST_READING_BYTES: u64 = 2 * 8 * (1 << 24);
+/// The same for each byte of a CSV file, of which a number takes two at the least.
+const CSV_READING_FACTOR: u64 = 2 * 8 / 2;
+
+impl Reading {
+    /// A quarter of what all requests may take at most; longer recordings are then read into means of neighbours.
+    fn of(engine: &Engine, format: Format, file_bytes: u64) -> Self {
+        let most = LARGEST_READING_BYTES.min(engine.limits().request_memory_bytes / 4);
+        let room = Room::default().share(most, LARGEST_READING_BYTES);
+        let bytes = match format {
+            Format::Csv => file_bytes.saturating_mul(CSV_READING_FACTOR).min(most),
+            _ => most,
+        };
+        Reading { bytes, room }
+    }
+}
+
 /// Reads what was received, and notes what it is if it is a recording.
-fn checked(received: Received, mut note: Note, left: &Arc<AtomicBool>) -> Result<(Note, Spool), Problem> {
+fn checked(
+    received: Received,
+    mut note: Note,
+    room: Room,
+    left: &Arc<AtomicBool>,
+) -> Result<(Note, Spool), Problem> {
     let map = note.map.as_ref().map(map_from).transpose()?;
     let file = received.file.reader().map_err(|error| cannot("read from", &error))?;
     let left = Arc::clone(left);
     let watch: recording::Watch = Arc::new(move |_| {
         if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    let room = recording::Room::default();
     let reading = recording::read_file(file, note.format, &note.name, map.as_ref(), &watch, room)
         .map_err(|error| Problem::invalid_recording(&error))?;
     note.report = serde_json::to_value(&reading.report).map_err(|error| {

@@ -1,6 +1,6 @@
 //! `/v1/robots`: robots at hand, and robots as requests name them.
 
-use axum::{Json, extract::State, http::StatusCode};
+use axum::{extract::State, http::StatusCode};
 use model::{Robot, builtin, robot::RobotFile};
 use serde::{
     Deserialize, Deserializer, Serialize,
@@ -10,6 +10,7 @@ use utoipa::ToSchema;
 
 use crate::{
     Engine,
+    answer::Json,
     body::{Id, JsonBody},
     problem::Problem,
     robots::RobotStore,

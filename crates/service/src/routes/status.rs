@@ -1,11 +1,11 @@
 //! `GET /v1/status`: version, limits and the maps at hand.
 
-use axum::{Json, extract::State};
+use axum::extract::State;
 use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::maps::MapSummary;
-use crate::{Engine, Limits, problem::Problem};
+use crate::{Engine, Limits, answer::Json, problem::Problem};
 
 /// What the service is, what it allows, and what it has.
 #[derive(Debug, Serialize, ToSchema)]

@@ -2,6 +2,7 @@
 
 use std::{error::Error, io};
 
+use super::plain_words::plain_words;
 use crate::problem::{Problem, ProblemType};
 
 /// A store that cannot be used now; a full one is the client's to know.
@@ -9,7 +10,7 @@ pub(crate) fn cannot(action: &str, error: &(dyn Error + 'static)) -> Problem {
     if is_full(error) {
         return full("the store's disk is full: delete a map or a recording first");
     }
-    tracing::error!(%error, "cannot {action} the store");
+    tracing::error!(error = plain_words(error), "cannot {action} the store");
     let detail = format!("the service cannot {action} its store at the moment: try again in a few seconds");
     Problem::new(ProblemType::StoreUnavailable, detail)
 }

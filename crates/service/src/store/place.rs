@@ -9,7 +9,7 @@ use object_store::{
     prefix::PrefixStore,
 };
 
-use super::folder::Folder;
+use super::{folder::Folder, plain_words::plain_words};
 
 /// How long a bucket is asked again before it counts as out of reach: a client waits for it.
 const RETRY_TIME: Duration = Duration::from_secs(5);
@@ -38,7 +38,8 @@ pub enum StoreError {
     },
     /// A bucket that is not described well enough to ask it.
     #[error(
-        "--store {place}: {source}; AWS_ENDPOINT_URL, AWS_REGION, AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY say where it is and who asks"
+        "--store {place}: {}; AWS_ENDPOINT_URL, AWS_REGION, AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY say where it is and who asks",
+        plain_words(source)
     )]
     Bucket {
         /// The bucket.
@@ -53,7 +54,7 @@ pub enum StoreError {
         source: io::Error,
     },
     /// A place that does not take an object and give it back.
-    #[error("cannot use --store {place}: {source}")]
+    #[error("cannot use --store {place}: {}", plain_words(source))]
     Unusable {
         /// The place.
         place: String,

@@ -47,6 +47,15 @@ pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
     Terrain::new(grid, &south_up(&grid, &from_north))
 }
 
+/// Number of cells of a GeoTIFF, as its head has it.
+///
+/// # Errors
+/// A file that is no TIFF.
+pub fn cells(bytes: &[u8]) -> Result<u64, Error> {
+    let (columns, rows) = Decoder::new(Cursor::new(bytes))?.dimensions()?;
+    Ok(u64::from(columns) * u64::from(rows))
+}
+
 /// Writes a raster of single-precision numbers, by cell and row-major from the south, in the frame that [`read`] takes: north
 /// up, projected metres, NaN where there is nothing.
 ///

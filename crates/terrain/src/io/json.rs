@@ -1,11 +1,18 @@
 //! The JSON grid.
 
-use serde::{Deserialize, Serialize};
+mod layer;
+mod text;
 
-use crate::{Cell, Error, Surfaces, Terrain};
+use serde::Deserialize;
+
+pub use self::{
+    layer::{Cells, Layer, SurfaceNames},
+    text::JsonText,
+};
+use crate::{Error, Terrain};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MapFile {
@@ -22,13 +29,23 @@ pub struct MapFile {
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub columns: u64,
     /// Elevation by row and column, −1000 to 9000 or null [m].
-    pub elevation_m: Vec<Vec<Option<f64>>>,
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
+    pub elevation_m: Layer<Vec<f64>>,
     /// Surface names by row and column; null means the robot's default surface. Default: none named.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub surface: Option<Vec<Vec<Option<String>>>>,
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<Option<String>>>>))]
+    pub surface: Option<Layer<SurfaceNames>>,
     /// Obstacles by row and column. Default: none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub obstacle: Option<Vec<Vec<bool>>>,
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
+    pub obstacle: Option<Layer<Vec<bool>>>,
+}
+
+impl MapFile {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.elevation_m.cells()
+    }
 }
 
 /// Reads a JSON grid.
@@ -46,59 +63,14 @@ impl TryFrom<MapFile> for Terrain {
     fn try_from(file: MapFile) -> Result<Self, Error> {
         let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
         let shape = (grid.rows, grid.columns);
-        check_shape("elevation_m", &file.elevation_m, shape)?;
-        let elevation_m: Vec<f64> =
-            file.elevation_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
-        let mut terrain = Terrain::new(grid, &elevation_m)?;
-        if let Some(surface) = &file.surface {
-            check_shape("surface", surface, shape)?;
-            let names = surface.iter().flatten().map(Option::as_deref);
-            terrain = terrain.with_surfaces(Surfaces::from_names(names)?);
+        let mut terrain = Terrain::new(grid, &file.elevation_m.shaped("elevation_m", shape)?)?;
+        if let Some(surface) = file.surface {
+            terrain = terrain.with_surfaces(surface.shaped("surface", shape)?.into_surfaces()?);
         }
-        if let Some(obstacle) = &file.obstacle {
-            check_shape("obstacle", obstacle, shape)?;
-            terrain = terrain.with_obstacles(obstacle.iter().flatten().copied().collect());
+        if let Some(obstacle) = file.obstacle {
+            terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
         }
         Ok(terrain)
-    }
-}
-
-impl From<&Terrain> for MapFile {
-    fn from(terrain: &Terrain) -> Self {
-        let grid = &terrain.grid;
-        let rows_of = |row: usize| (0..grid.columns).map(move |column| Cell { row, column });
-        let surface = terrain.surfaces().map(|surfaces| {
-            let name = |cell| surfaces.names.get(usize::from(terrain.surface_class(cell))).cloned();
-            (0..grid.rows).map(|row| rows_of(row).map(name).collect()).collect()
-        });
-        let obstacle = terrain.obstacles().map(|o| {
-            (0..grid.rows).map(|row| rows_of(row).map(|cell| o[grid.index(cell)]).collect()).collect()
-        });
-        MapFile {
-            cell_size_m: grid.cell_size_m,
-            origin_m: grid.origin_m,
-            rows: grid.rows as u64,
-            columns: grid.columns as u64,
-            elevation_m: (0..grid.rows)
-                .map(|row| rows_of(row).map(|cell| terrain.elevation_m(cell)).collect())
-                .collect(),
-            surface,
-            obstacle,
-        }
-    }
-}
-
-fn check_shape<T>(
-    layer: &'static str,
-    rows: &[Vec<T>],
-    (expected_rows, columns): (usize, usize),
-) -> Result<(), Error> {
-    if rows.len() != expected_rows {
-        return Err(Error::RowCount { layer, found: rows.len(), expected: expected_rows });
-    }
-    match rows.iter().position(|row| row.len() != columns) {
-        Some(row) => Err(Error::RowLength { layer, row, found: rows[row].len(), expected: columns }),
-        None => Ok(()),
     }
 }
 
@@ -132,8 +104,23 @@ mod tests {
     fn a_map_survives_a_round_trip() {
         let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]]}"#;
         let terrain = read(text).unwrap();
-        let again = serde_json::to_string(&MapFile::from(&terrain)).unwrap();
-        assert_eq!(read(&again).unwrap().content_id(), terrain.content_id());
+        let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
+        assert_eq!(read(std::str::from_utf8(&again).unwrap()).unwrap().content_id(), terrain.content_id());
+    }
+
+    #[test]
+    fn rows_of_the_wrong_length_are_counted_and_not_kept() {
+        let with = |rows: &str| {
+            let text = format!(r#"{{"elevation_m": [{rows}], "cell_size_m": 1, "rows": 3, "columns": 2}}"#);
+            let file: MapFile = serde_json::from_str(&text).unwrap();
+            (file.elevation_m.cells.capacity(), Terrain::try_from(file).unwrap_err().to_string())
+        };
+        let many = vec!["[]"; 100_000].join(",");
+        let (kept, said) = with(&many);
+        assert!(kept == 0 && said.contains("100000"), "{kept}: {said}");
+        let long = vec!["1"; 100_000].join(",");
+        let (kept, said) = with(&format!("[1, 2], [{long}], [{long}]"));
+        assert!(kept < 100 && said.contains("elevation_m[1]") && said.contains("100000"), "{kept}: {said}");
     }
 
     #[test]
