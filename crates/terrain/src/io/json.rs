@@ -77,6 +77,7 @@ impl TryFrom<MapFile> for Terrain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Cell, Surfaces};
 
     fn refused(text: &str) -> String {
         read(text).unwrap_err().to_string()
