@@ -3,6 +3,7 @@
 // Everything is printed by `output`, which does not panic where nobody reads.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod allocator;
 mod arguments;
 mod commands;
 mod config;

@@ -75,7 +75,7 @@ mod tests {
     use std::io::Write;
 
     use super::*;
-    use crate::watch::unwatched;
+    use crate::reading::unwatched;
 
     const TEXT: &[u8] = b"a message of a topic, and another one";
 
@@ -100,7 +100,8 @@ mod tests {
 
     fn decompressed(compression: &[u8], packed: &[u8], claimed_bytes: usize) -> (bool, Vec<u8>) {
         let (mut plain, looks) = (Vec::new(), Looks::new(&unwatched()));
-        let whole = decompress(compression, packed, claimed_bytes as u64, &mut plain, &looks).unwrap().unwrap();
+        let whole =
+            decompress(compression, packed, claimed_bytes as u64, &mut plain, &looks).unwrap().unwrap();
         (whole, plain)
     }
 
@@ -121,3 +122,4 @@ mod tests {
             );
         }
     }
+}

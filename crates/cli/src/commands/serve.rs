@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum, builder::FalseyValueParser};
 use service::{Access, Engine, Hosts, Tokens, serve};
 use tracing_subscriber::EnvFilter;
 
-use crate::{failure::BadInput, limit_arguments::LimitArguments, output};
+use crate::{allocator::give_back_freed_memory, failure::BadInput, limit_arguments::LimitArguments, output};
 
 /// Variable of the environment that holds tokens themselves.
 const TOKENS: &str = "JOULEPATH_TOKENS";
@@ -71,6 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.check {
         return check(&arguments.bind);
     }
+    give_back_freed_memory();
     let addresses = addresses(&arguments.bind)?;
     let access = access(arguments, &addresses)?;
     log(arguments.log_format);

@@ -23,7 +23,9 @@ struct Plain;
 
 /// Reserves memory for the encoder of a long answer.
 pub(crate) async fn reserve(State(memory): State<Memory>, request: Request, next: Next) -> Response {
-    let may_be_encoded = request.headers().contains_key(header::ACCEPT_ENCODING);
+    let accepted = request.headers().get_all(header::ACCEPT_ENCODING).iter();
+    let names_one = |text: &str| ["gzip", "br", "zstd", "*"].iter().any(|name| text.contains(name));
+    let may_be_encoded = accepted.filter_map(|value| value.to_str().ok()).any(names_one);
     let mut response = next.run(request).await;
     // Events, for one, are never encoded.
     let may_be_encoded = may_be_encoded && DefaultPredicate::new().should_compress(&response);

@@ -34,8 +34,11 @@ impl Memory {
         Ok(reserved)
     }
 
-    /// Returns the right to so many bytes if nobody has them, for what can be done without.
+    /// Returns the right to so many bytes while half of the memory is free, for what can be done without.
     pub(crate) fn spare(&self, bytes: u64) -> Option<Reserved> {
+        if (self.pieces.available_permits() as u64) < pieces(self.most_bytes / 2) {
+            return None;
+        }
         let pieces = self.take(pieces(bytes))?;
         let mut reserved = Reserved { memory: self.clone(), bytes: 0, pieces: Some(pieces) };
         reserved.count(bytes);
@@ -140,6 +143,14 @@ mod tests {
         drop(most);
         assert!(memory.reserve(2_000_000).is_ok());
         assert_eq!(memory.metrics.reserved_bytes.get(), 0);
+    }
+
+    #[test]
+    fn only_half_of_the_memory_is_spare() {
+        let memory = memory();
+        let spare: Vec<Reserved> = std::iter::from_fn(|| memory.spare(1_000_000)).collect();
+        assert_eq!(spare.len(), 5, "the last one began while half was free");
+        assert!(memory.reserve(3_000_000).is_ok());
     }
 
     #[test]
