@@ -159,7 +159,7 @@ fn a_service_without_tokens_answers_to_its_own_names_only() {
         let origin = format!("http://{host}");
         let headers = [
             ("host", host),
-            ("origin", &origin),
+            ("origin", origin.as_str()),
             ("sec-fetch-site", "same-origin"),
             ("content-type", "application/json"),
         ];
@@ -176,7 +176,7 @@ fn a_service_without_tokens_answers_to_its_own_names_only() {
         let problem = ask(&server, &other).problem(421, "misdirected-request");
         assert!(problem["detail"].as_str().unwrap().contains("--host"), "{problem}");
         for path in ["/healthz", "/v1/maps", "/", "/docs/"] {
-            assert_eq!(server.ask("GET", path, &[("host", &other)], b"").status, 421, "{path}");
+            assert_eq!(server.ask("GET", path, &[("host", other.as_str())], b"").status, 421, "{path}");
         }
     }
     let named = Server::start_with(&["--host", "maps.example.org", "--host", "10.0.0.1"]);

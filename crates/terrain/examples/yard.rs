@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use terrain::{MapFile, synthetic};
+use terrain::{io::json::JsonText, synthetic};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -12,7 +12,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: yard SEED FILE.json".into());
     };
     let yard = synthetic::yard(seed.parse()?);
-    std::fs::write(&path, serde_json::to_string(&MapFile::from(&yard))? + "\n")?;
+    let text: Vec<u8> = JsonText::of(&yard).flatten().chain([b'\n']).collect();
+    std::fs::write(&path, text)?;
     println!("{path}: {} × {} cells, id {}", yard.grid.rows, yard.grid.columns, yard.content_id());
     Ok(())
 }
