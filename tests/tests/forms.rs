@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::process::Command;
+use std::{f64::consts::TAU, process::Command};
 
 use joulepath_tests::{Server, file, program};
 use serde_json::{Value, json};
@@ -148,11 +148,11 @@ fn angles_in_degrees_are_refused_with_their_range() {
         assert_eq!(problem["errors"][0]["pointer"], pointer, "{path}: {problem}");
         assert!(problem["detail"].as_str().unwrap().contains("give radians"), "{problem}");
     }
-    for heading_rad in [-6.2832, -1.0, 6.2832] {
+    for heading_rad in [-6.29, -1.0, TAU] {
         let answer = server.post_json("/v1/plan", &with(plan(), "/goal/heading_rad", json!(heading_rad)));
         assert_eq!(answer.status, 200, "{}", answer.text);
     }
-    let answer = server.post_json("/v1/plan", &with(plan(), "/max_slope_rad", json!(1.5707)));
+    let answer = server.post_json("/v1/plan", &with(plan(), "/max_slope_rad", json!(1.571)));
     assert_eq!(answer.status, 200, "{}", answer.text);
 }
 

@@ -51,8 +51,8 @@ pub struct AlternativesRequest {
     /// No path may be longer. Default: no limit [m].
     #[schema(exclusive_minimum = 0.0)]
     pub max_distance_m: Option<f64>,
-    /// Steepest climb, descent or sideways tilt, up to π/2. Default: the robot's limits [rad].
-    #[schema(exclusive_minimum = 0.0, maximum = 1.5707963267948966)]
+    /// Steepest climb, descent or sideways tilt, up to 1.571, which is π/2. Default: the robot's limits [rad].
+    #[schema(exclusive_minimum = 0.0, maximum = 1.571)]
     pub max_slope_rad: Option<f64>,
     /// Forward speed; lowered where the outer wheel would be too fast. Default: half the wheels' top speed [m/s].
     pub speed_mps: Option<f64>,

@@ -4,7 +4,6 @@ mod document;
 mod work;
 
 use std::{
-    f64::consts::FRAC_PI_2,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -82,8 +81,8 @@ pub struct PlanRequest {
     /// The path may be no longer. Default: no limit [m].
     #[schema(exclusive_minimum = 0.0)]
     pub max_distance_m: Option<f64>,
-    /// Steepest climb, descent or sideways tilt on the way, up to π/2. Default: the robot's limits [rad].
-    #[schema(exclusive_minimum = 0.0, maximum = 1.5707963267948966)]
+    /// Steepest climb, descent or sideways tilt on the way, up to 1.571, which is π/2. Default: the robot's limits [rad].
+    #[schema(exclusive_minimum = 0.0, maximum = 1.571)]
     pub max_slope_rad: Option<f64>,
 }
 
@@ -173,6 +172,9 @@ pub(crate) async fn handler(
         _ => Ok(serde_json::to_writer(out, &found)?),
     }))
 }
+
+/// Largest limit on slopes: π/2, a vertical wall, rounded up [rad]. Degrees are nearly always beyond it.
+const MAX_SLOPE_RAD: f64 = 1.571;
 
 /// Longest search for the path that a slope limit forbids [s].
 const STEEP_TIME: Duration = Duration::from_secs(5);
@@ -276,9 +278,9 @@ impl PlanRequest {
     fn limited_robot(&self) -> Result<Robot, Problem> {
         let mut robot = self.robot.robot()?;
         if let Some(max_slope_rad) = self.max_slope_rad {
-            if !(max_slope_rad > 0.0 && max_slope_rad <= FRAC_PI_2) {
+            if !(max_slope_rad > 0.0 && max_slope_rad <= MAX_SLOPE_RAD) {
                 let detail = format!(
-                    "max_slope_rad is {max_slope_rad}, but must be above 0 and at most 1.571 (pi/2): give radians, 0.35 for 20 degrees"
+                    "max_slope_rad is {max_slope_rad}, but must be above 0 and at most {MAX_SLOPE_RAD} (pi/2): give radians, 0.35 for 20 degrees"
                 );
                 return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/max_slope_rad"));
             }
