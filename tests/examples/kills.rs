@@ -13,13 +13,14 @@ fn main() {
     let folder = tempfile::tempdir().unwrap();
     let outcome = kill_again_and_again(folder.path(), kills as usize, seed);
     println!(
-        "{} kills: {} uploads, {} deletes and {} jobs acknowledged, {} requests cut off, {} jobs taken up again; {} faults",
+        "{} kills: {} uploads, {} deletes and {} jobs acknowledged, {} requests cut off, {} jobs taken up again, {} given up; {} faults",
         outcome.kills,
         outcome.uploads,
         outcome.deletes,
         outcome.jobs,
         outcome.cut_off,
         outcome.taken_up_again,
+        outcome.given_up,
         outcome.faults.len()
     );
     outcome.faults.iter().for_each(|fault| println!("{fault}"));

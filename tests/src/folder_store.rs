@@ -8,27 +8,26 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
-/// What is wrong with a folder: files that nobody asked for, data without its note or the other way, and recordings that are
-/// not what their ids say.
+/// What is wrong with a folder: files that nobody asked for, data without a note of any tenant or the other way, and recordings
+/// that are not what their ids say.
 pub fn faults(folder: &Path) -> Vec<String> {
     let mut faults = Vec::new();
     let names: BTreeSet<String> =
         files(folder).iter().map(|path| path.display().to_string()).filter(|name| name != ".lock").collect();
+    // Notes of `default` lie under their kind, those of others under their name.
+    let noted: BTreeSet<&str> = names.iter().filter_map(|name| of_kind(name).strip_suffix(".json")).collect();
     for name in &names {
-        let partner = match name.rsplit_once('.') {
+        match of_kind(name).rsplit_once('.') {
             Some((kept, "json")) if kept.starts_with("maps/") || kept.starts_with("recordings/") => {
-                format!("{kept}.data")
+                if !names.contains(&format!("{kept}.data")) {
+                    faults.push(format!("{name} is without {kept}.data"));
+                }
             }
-            Some((kept, "data")) => format!("{kept}.json"),
-            Some((_, "json")) => continue,
-            Some((_, lease)) if lease.starts_with("lease-") => continue,
-            _ => {
-                faults.push(format!("{name} is left over"));
-                continue;
-            }
-        };
-        if !names.contains(&partner) {
-            faults.push(format!("{name} is without {partner}"));
+            Some((kept, "data")) if noted.contains(kept) => {}
+            Some((_, "data")) => faults.push(format!("{name} is without a note")),
+            Some((_, "json")) => {}
+            Some((_, lease)) if lease.starts_with("lease-") => {}
+            _ => faults.push(format!("{name} is left over")),
         }
     }
     for name in names.iter().filter(|name| name.starts_with("recordings/") && name.ends_with(".data")) {
@@ -39,6 +38,12 @@ pub fn faults(folder: &Path) -> Vec<String> {
         }
     }
     faults
+}
+
+/// A file's path from its kind on, without the tenant that owns it.
+fn of_kind(name: &str) -> &str {
+    let rest = name.strip_prefix("tenants/").and_then(|rest| rest.split_once('/'));
+    rest.map_or(name, |(_, of_kind)| of_kind)
 }
 
 /// All files below a folder, by their paths in it.

@@ -188,6 +188,18 @@ impl Server {
         Answer::from(agent().get(format!("{}{path}", self.url)).call())
     }
 
+    /// Sends any request with a token.
+    ///
+    /// # Panics
+    /// When it cannot be put together, or the server does not answer.
+    pub fn ask_as(&self, token: &str, method: &str, path: &str, body: &Value) -> Answer {
+        let field = format!("Bearer {token}");
+        let headers = [("authorization", field.as_str()), ("content-type", "application/json")];
+        let body = if body.is_null() { String::new() } else { body.to_string() };
+        let headers = if body.is_empty() { &headers[..1] } else { &headers[..] };
+        self.ask(method, path, headers, body.as_bytes())
+    }
+
     /// Opens a stream of server-sent events, as who has seen all up to an event.
     ///
     /// # Panics

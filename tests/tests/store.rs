@@ -151,28 +151,118 @@ fn the_same_job_asked_of_several_services_runs_once() {
     assert_ne!(asked(&servers[1], &other), jobs[0], "another robot is another job");
 }
 
+/// Follows a job until it runs for the time of a number.
+fn runs(server: &Server, job: &str, attempt: u64) {
+    let mut events = server.events(&format!("{job}/events"), None);
+    let found = events.find(|event| event.data["attempt"] == attempt && event.data["state"] == "running");
+    assert!(found.is_some(), "attempt {attempt} never ran");
+}
+
 #[test]
-fn a_job_whose_service_was_killed_is_taken_up_by_another_and_by_the_next() {
+fn a_job_whose_service_was_killed_is_taken_up_by_another_once_and_then_given_up_with_a_problem() {
     let folder = tempfile::tempdir().unwrap();
     let (mut first, mut second) = (Server::start_over(folder.path()), Server::start_over(folder.path()));
     let (recording, pipe) = held(folder.path(), &first);
-    let job = asked(&first, &json!({ "robot": "husky-a200", "recordings": [recording] }));
-    let waits = |server: &Server, attempt: u64| {
-        let mut events = server.events(&format!("{job}/events"), None);
-        events
-            .find(|event| event.data["attempt"] == attempt)
-            .unwrap_or_else(|| panic!("attempt {attempt} never came"))
-    };
-    assert_eq!(first.get(&job).json()["attempt"], 1);
+    let body = json!({ "robot": "husky-a200", "recordings": [recording] });
+    let job = asked(&first, &body);
+    runs(&first, &job, 1);
     first.kill();
-    waits(&second, 2);
+    runs(&second, &job, 2);
     second.kill();
     let third = Server::start_over(folder.path());
-    waits(&third, 3);
-    OpenOptions::new().write(true).open(&pipe).unwrap().write_all(drive_csv(4, 300).as_bytes()).unwrap();
     let found = ended(&third, &job);
-    assert_eq!((&found["state"], &found["attempt"]), (&json!("done"), &json!(3)), "{found}");
+    assert_eq!((&found["state"], &found["attempt"]), (&json!("failed"), &json!(2)), "{found}");
+    let problem = &found["problem"];
+    assert_eq!(problem["type"], "abandoned", "{problem}");
+    assert!(problem["detail"].as_str().unwrap().contains("died 2 times"), "{problem}");
     assert_eq!(folder_store::files(&folder.path().join("jobs")), Vec::<std::path::PathBuf>::new());
+    // Asked again, it is done anew.
+    fs::remove_file(&pipe).unwrap();
+    fs::write(&pipe, drive_csv(4, 300)).unwrap();
+    assert_eq!(asked(&third, &body), job);
+    assert_eq!(ended(&third, &job)["state"], "done");
+}
+
+#[test]
+fn a_job_whose_service_ends_in_order_or_dies_while_the_job_waits_is_taken_up_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = || Server::start_over_with(folder.path(), &["--lease-s", "0.5", "--parallel-jobs", "1"]);
+    let mut server = start();
+    let (recording, _pipe) = held(folder.path(), &server);
+    let robots = [json!("husky-a200"), robot()];
+    let jobs = robots.map(|robot| asked(&server, &json!({ "robot": robot, "recordings": [recording] })));
+    // Which of the two runs, while the other waits.
+    let one_runs = |server: &Server| {
+        let state = |job: &String| server.get(job).json()["state"].clone();
+        while !jobs.iter().any(|job| state(job) == "running") {
+            std::thread::yield_now();
+        }
+    };
+    for _ in 0..3 {
+        one_runs(&server);
+        assert!(server.terminate().success());
+        server = start();
+    }
+    one_runs(&server);
+    server.kill();
+    let server = start();
+    one_runs(&server);
+    for job in &jobs {
+        let found = server.get(job).json();
+        assert!(["queued", "running"].map(Value::from).contains(&found["state"]), "{found}");
+        assert!(found["attempt"].as_u64().unwrap() >= 4, "{found}");
+        assert_eq!(server.delete(job).json()["state"], "cancelled");
+    }
+}
+
+#[test]
+fn a_cancelled_job_that_does_not_end_frees_the_only_worker_and_readiness_tells() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start_over_with(folder.path(), &["--parallel-jobs", "1", "--parallel-plans", "1"]);
+    let good = stored(&server, "/v1/recordings", "text/csv", drive_csv(3, 300).as_bytes());
+    let (recording, pipe) = held(folder.path(), &server);
+    let job = asked(&server, &json!({ "robot": "husky-a200", "recordings": [recording] }));
+    runs(&server, &job, 1);
+    let next = asked(&server, &json!({ "robot": "husky-a200", "recordings": [good] }));
+    assert_eq!(server.get("/readyz").status, 200);
+    assert_eq!(server.delete(&job).json()["state"], "cancelled");
+    assert_eq!(ended(&server, &next)["state"], "done");
+    let problem = server.get("/readyz").problem(503, "not-ready");
+    assert!(problem["detail"].as_str().unwrap().contains("restart"), "{problem}");
+    assert_eq!(server.metric("joulepath_stuck_threads"), 1.0);
+    assert_eq!(server.get("/healthz").status, 200);
+    // Its thread ends when the pipe does.
+    drop(OpenOptions::new().write(true).open(&pipe).unwrap());
+    while server.get("/readyz").status != 200 {
+        std::thread::yield_now();
+    }
+    assert_eq!(server.metric("joulepath_stuck_threads"), 0.0);
+}
+
+#[test]
+fn a_job_beyond_its_time_fails_with_a_problem_and_frees_the_only_worker() {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start_over_with(folder.path(), &["--parallel-jobs", "1", "--job-time-s", "0.01"]);
+    let (recording, _pipe) = held(folder.path(), &server);
+    let job = asked(&server, &json!({ "robot": "husky-a200", "recordings": [recording] }));
+    let found = ended(&server, &job);
+    assert_eq!(
+        (&found["state"], &found["problem"]["type"]),
+        (&json!("failed"), &json!("timeout")),
+        "{found}"
+    );
+    assert_eq!(server.get("/v1/status").json()["tenant"]["jobs"], 0);
+}
+
+#[test]
+fn a_store_out_of_reach_is_told_by_readiness() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("store");
+    let server = Server::start_over(&root);
+    assert_eq!(server.get("/readyz").status, 200);
+    fs::remove_dir_all(&root).unwrap();
+    fs::write(&root, "no folder").unwrap();
+    server.get("/readyz").problem(503, "store-unavailable");
 }
 
 #[test]

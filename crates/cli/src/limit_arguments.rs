@@ -51,13 +51,25 @@ pub(crate) struct LimitArguments {
     /// Most bytes over all stored recordings
     #[arg(long, env = "JOULEPATH_STORED_RECORDING_BYTES", default_value_t = Limits::default().stored_recording_bytes)]
     stored_recording_bytes: u64,
+    /// Most bytes of maps, robots and recordings that a tenant may keep
+    #[arg(long, env = "JOULEPATH_TENANT_BYTES", default_value_t = Limits::default().tenant_bytes)]
+    tenant_bytes: u64,
+    /// Most maps, robots and recordings that a tenant may keep
+    #[arg(long, env = "JOULEPATH_TENANT_OBJECTS", default_value_t = Limits::default().tenant_objects)]
+    tenant_objects: usize,
+    /// Most jobs of a tenant that may wait or run, at all services over the store together
+    #[arg(long, env = "JOULEPATH_TENANT_JOBS", default_value_t = Limits::default().tenant_jobs)]
+    tenant_jobs: usize,
+    /// Longest time for one job [s]
+    #[arg(long, env = "JOULEPATH_JOB_TIME_S", default_value = "3600", value_parser = seconds)]
+    job_time_s: Duration,
     /// Jobs that may wait or run
     #[arg(long, env = "JOULEPATH_OPEN_JOBS", default_value_t = Limits::default().open_jobs)]
     open_jobs: usize,
     /// Jobs that run at the same time; the default is one less than cores, but one
     #[arg(long, env = "JOULEPATH_PARALLEL_JOBS", default_value_t = Limits::default().parallel_jobs, value_parser = some::<usize>)]
     parallel_jobs: usize,
-    /// Jobs that ended and are kept for who asks later
+    /// Jobs of each tenant that ended and are kept for who asks later
     #[arg(long, env = "JOULEPATH_KEPT_JOBS", default_value_t = Limits::default().kept_jobs)]
     kept_jobs: usize,
     /// How long a service that works on a job may be silent before another takes the job up [s]
@@ -130,6 +142,10 @@ impl LimitArguments {
             queued_plans: self.queued_plans,
             recording_bytes: self.recording_bytes,
             stored_recording_bytes: self.stored_recording_bytes,
+            tenant_bytes: self.tenant_bytes,
+            tenant_objects: self.tenant_objects,
+            tenant_jobs: self.tenant_jobs,
+            job_time: self.job_time_s,
             open_jobs: self.open_jobs,
             parallel_jobs: self.parallel_jobs,
             kept_jobs: self.kept_jobs,

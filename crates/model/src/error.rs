@@ -21,6 +21,18 @@ pub enum Error {
         /// How to mend it.
         hint: &'static str,
     },
+    /// A name that is empty, too long to be shown, or more than one line.
+    #[error(
+        "{field} has {characters} characters, but must have 1 to {longest} on one line: give a short name"
+    )]
+    Name {
+        /// The field, as `name`.
+        field: String,
+        /// Length of the name found.
+        characters: usize,
+        /// Most characters of a name.
+        longest: usize,
+    },
     /// A surface is named that the robot has no friction for.
     #[error("the robot has no surface `{name}`; it knows {}", known.join(", "))]
     UnknownSurface {
@@ -70,7 +82,9 @@ impl Error {
     pub fn field(&self) -> Option<&str> {
         match self {
             Error::Json(error) => error.field(),
-            Error::OutOfRange { field, .. } | Error::Mechanism { field, .. } => Some(field),
+            Error::OutOfRange { field, .. } | Error::Mechanism { field, .. } | Error::Name { field, .. } => {
+                Some(field)
+            }
             Error::UnknownSurface { .. } => Some("default_surface"),
             _ => None,
         }

@@ -415,6 +415,26 @@ mod tests {
     }
 
     #[test]
+    fn names_are_neither_empty_nor_longer_than_can_be_shown() {
+        let named = |name: &str| {
+            let mut file = husky_json();
+            file["name"] = name.into();
+            read(&file)
+        };
+        for name in ["h", &"é".repeat(200)] {
+            assert_eq!(named(name).unwrap().name, name);
+        }
+        for name in ["", &"n".repeat(201), "two\nlines", "a\u{1b}[2J"] {
+            let error = named(name).unwrap_err();
+            assert_eq!(error.field(), Some("name"), "{name}");
+            assert!(error.to_string().len() < 200, "{error}");
+        }
+        let mut file = husky_json();
+        file["surfaces"]["s".repeat(300)] = file["surfaces"]["marble"].clone();
+        assert_eq!(read(&file).unwrap_err().field(), Some("surfaces"));
+    }
+
+    #[test]
     fn an_unknown_field_is_named_with_its_place() {
         let mut file = husky_json();
         file["motors"]["left"]["k3"] = 1.0.into();

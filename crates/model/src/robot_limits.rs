@@ -7,8 +7,15 @@ use crate::{Error, Robot, battery::Battery, known_limits};
 
 const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 
+/// Longest name of a robot or a surface [characters]: two lines of a report.
+const LONGEST_NAME: usize = 200;
+
 /// Checks one robot, field by field.
 pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
+    check_name("name", &robot.name)?;
+    for name in robot.surfaces.keys() {
+        check_name("surfaces", name)?;
+    }
     check_body(robot)?;
     check_motors(robot)?;
     check_electrics(robot)?;
@@ -25,6 +32,14 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
         within(field, value, 0.0, 1.0, "give a relative sigma, 0.1 for 10 %")?;
     }
     Ok(())
+}
+
+fn check_name(field: &str, name: &str) -> Result<(), Error> {
+    let (characters, longest) = (name.chars().count(), LONGEST_NAME);
+    if (1..=longest).contains(&characters) && !name.contains(char::is_control) {
+        return Ok(());
+    }
+    Err(Error::Name { field: field.to_owned(), characters, longest })
 }
 
 fn check_body(robot: &Robot) -> Result<(), Error> {

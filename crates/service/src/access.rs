@@ -2,7 +2,9 @@
 
 use axum::http::HeaderValue;
 use sha2::{Digest, Sha256};
-use subtle::{Choice, ConstantTimeEq};
+use subtle::{ConditionallySelectable, ConstantTimeEq};
+
+use crate::{Tenant, tenant::InvalidTenant};
 
 use crate::Hosts;
 
@@ -19,9 +21,9 @@ pub struct Access {
     pub hosts: Hosts,
 }
 
-/// Tokens, of which only hashes are kept.
+/// Tokens with the tenants that hold them. Only hashes of tokens are kept.
 #[derive(Clone, Default)]
-pub struct Tokens(Vec<[u8; 32]>);
+pub struct Tokens(Vec<([u8; 32], Tenant)>);
 
 impl std::fmt::Debug for Tokens {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -29,48 +31,82 @@ impl std::fmt::Debug for Tokens {
     }
 }
 
-/// A token that is easily guessed, or cannot be sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WeakToken {
-    /// Which of them, from 1.
-    pub number: usize,
+/// A token that cannot be used. Each is named by its number, from 1, and never shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TokenError {
+    /// A token that is easily guessed, or cannot be sent.
+    #[error(
+        "token {number} must be {LEAST_CHARACTERS} or more visible ASCII characters, as `openssl rand -hex 32` makes"
+    )]
+    Weak {
+        /// Which of them.
+        number: usize,
+    },
+    /// A name that no tenant can have.
+    #[error("token {number}: {source}; write each as NAME:TOKEN, or TOKEN for the tenant `default`")]
+    Name {
+        /// Which of them.
+        number: usize,
+        /// What names there can be.
+        source: InvalidTenant,
+    },
+    /// The same token under two names.
+    #[error("token {number} is also given to another name: make one for each")]
+    Shared {
+        /// Which of them.
+        number: usize,
+    },
 }
-
-impl std::fmt::Display for WeakToken {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let WeakToken { number } = self;
-        write!(
-            f,
-            "token {number} must be {LEAST_CHARACTERS} or more visible ASCII characters, as `openssl rand -hex 32` makes"
-        )
-    }
-}
-
-impl std::error::Error for WeakToken {}
 
 /// Shortest token: 64 bits if it is hexadecimal.
 const LEAST_CHARACTERS: usize = 16;
 
 impl Tokens {
-    /// Reads tokens between blanks, line ends or commas; a line that begins with # is a remark.
+    /// Reads `NAME:TOKEN` or `TOKEN` between blanks, line ends or commas; a line that begins with # is a remark. A token without
+    /// a name is held by the tenant `default`.
     ///
     /// # Errors
-    /// A token that is too short or cannot stand in a header.
-    pub fn parse(text: &str) -> Result<Self, WeakToken> {
+    /// A token that is too short or cannot stand in a header, a name that cannot be, or a token of two names.
+    pub fn parse(text: &str) -> Result<Self, TokenError> {
         let lines = text.lines().filter(|line| !line.trim_start().starts_with('#'));
         let words = lines.flat_map(|line| line.split([' ', '\t', ','])).filter(|word| !word.is_empty());
-        let hash = |(i, word): (usize, &str)| {
-            let is_fit = word.len() >= LEAST_CHARACTERS && word.bytes().all(|byte| byte.is_ascii_graphic());
-            if is_fit { Ok(hash(word)) } else { Err(WeakToken { number: i + 1 }) }
-        };
-        words.enumerate().map(hash).collect::<Result<_, _>>().map(Tokens)
+        let mut tokens = Tokens::default();
+        for (i, word) in words.enumerate() {
+            let number = i + 1;
+            let (name, token) =
+                word.split_once(':').map_or((None, word), |(name, token)| (Some(name), token));
+            let named = name.map(Tenant::named).transpose();
+            let tenant = named.map_err(|source| TokenError::Name { number, source })?.unwrap_or_default();
+            if token.len() < LEAST_CHARACTERS || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
+                return Err(TokenError::Weak { number });
+            }
+            tokens.add(hash(token), tenant).map_err(|()| TokenError::Shared { number })?;
+        }
+        Ok(tokens)
+    }
+
+    /// Adds the hash of a token, unless another tenant holds it already.
+    fn add(&mut self, token: [u8; 32], tenant: Tenant) -> Result<(), ()> {
+        match self.0.iter().find(|(known, _)| *known == token) {
+            Some((_, holder)) if *holder != tenant => Err(()),
+            Some(_) => Ok(()),
+            None => {
+                self.0.push((token, tenant));
+                Ok(())
+            }
+        }
     }
 
     /// These and others.
-    #[must_use]
-    pub fn and(mut self, others: Tokens) -> Self {
-        self.0.extend(others.0);
-        self
+    ///
+    /// # Errors
+    /// The number of the first of the others that another tenant holds here.
+    pub fn and(mut self, others: Tokens) -> Result<Self, TokenError> {
+        for (i, (token, tenant)) in others.0.into_iter().enumerate() {
+            self.add(token, tenant).map_err(|()| TokenError::Shared { number: i + 1 })?;
+        }
+        Ok(self)
     }
 
     /// Whether there are none.
@@ -78,11 +114,14 @@ impl Tokens {
         self.0.is_empty()
     }
 
-    /// Whether a token is one of them. It takes as long whichever it is like, and however much.
-    pub(crate) fn admit(&self, token: &str) -> bool {
+    /// The tenant that holds a token. It takes as long whichever it is like, and however much.
+    pub(crate) fn holder(&self, token: &str) -> Option<&Tenant> {
         let asked = hash(token);
-        let found = self.0.iter().fold(Choice::from(0), |found, known| found | known.ct_eq(&asked));
-        found.into()
+        let mut found = u32::MAX;
+        for (index, (known, _)) in (0..u32::MAX).zip(&self.0) {
+            found = u32::conditional_select(&found, &index, known.ct_eq(&asked));
+        }
+        self.0.get(found as usize).map(|(_, tenant)| tenant)
     }
 }
 
@@ -95,21 +134,42 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_of_several_tokens_is_admitted_and_nothing_like_them() {
-        let tokens =
-            Tokens::parse("# the team\n0123456789abcdef\n  fedcba9876543210, AAAAAAAAAAAAAAAA\n\n").unwrap();
-        for token in ["0123456789abcdef", "fedcba9876543210", "AAAAAAAAAAAAAAAA"] {
-            assert!(tokens.admit(token), "{token}");
+    fn each_of_several_tokens_has_its_tenant_and_nothing_like_them_has_one() {
+        let text = "# the team\n0123456789abcdef\n  alice:fedcba9876543210, Bob:AAAAAAAAAAAAAAAA\nalice:a:b:c:d:e:f:g:h:i\n\n";
+        let tokens = Tokens::parse(text).unwrap();
+        for (token, name) in [
+            ("0123456789abcdef", "default"),
+            ("fedcba9876543210", "alice"),
+            ("AAAAAAAAAAAAAAAA", "bob"),
+            ("a:b:c:d:e:f:g:h:i", "alice"),
+        ] {
+            assert_eq!(tokens.holder(token).map(Tenant::name), Some(name), "{token}");
         }
-        for token in ["", "0123456789abcde", "0123456789abcdef0", "0123456789ABCDEF", "# the team"] {
-            assert!(!tokens.admit(token), "{token}");
+        for token in [
+            "",
+            "0123456789abcde",
+            "0123456789abcdef0",
+            "0123456789ABCDEF",
+            "# the team",
+            "alice",
+            "alice:fedcba9876543210",
+        ] {
+            assert_eq!(tokens.holder(token), None, "{token}");
         }
     }
 
     #[test]
-    fn weak_tokens_are_refused_by_number() {
-        assert_eq!(Tokens::parse("0123456789abcdef short").unwrap_err(), WeakToken { number: 2 });
-        assert_eq!(Tokens::parse("0123456789abcdéfg").unwrap_err(), WeakToken { number: 1 });
+    fn tokens_that_cannot_be_used_are_refused_by_number() {
+        let refused = |text: &str| Tokens::parse(text).unwrap_err();
+        assert_eq!(refused("0123456789abcdef short"), TokenError::Weak { number: 2 });
+        assert_eq!(refused("0123456789abcdéfg"), TokenError::Weak { number: 1 });
+        assert_eq!(refused("alice:short"), TokenError::Weak { number: 1 });
+        for name in ["", "..", "a/b"] {
+            let text = format!("{name}:0123456789abcdef");
+            assert_eq!(refused(&text), TokenError::Name { number: 1, source: InvalidTenant });
+        }
+        let twice = "a:0123456789abcdef a:0123456789abcdef b:0123456789abcdef";
+        assert_eq!(refused(twice), TokenError::Shared { number: 3 });
         assert!(Tokens::parse("# none\n").unwrap().is_empty());
     }
 
@@ -117,5 +177,7 @@ mod tests {
     fn tokens_are_not_shown() {
         let shown = format!("{:?}", Tokens::parse("0123456789abcdef").unwrap());
         assert_eq!(shown, "1 tokens");
+        let refused = Tokens::parse("alice:secret").unwrap_err().to_string();
+        assert!(!refused.contains("secret"), "{refused}");
     }
 }

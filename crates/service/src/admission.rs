@@ -15,6 +15,7 @@ use crate::{
     memory::{Memory, Reserved},
     metrics::{Metrics, ShedLabels, StateLabels},
     problem::{Problem, ProblemType},
+    turns::{HeldTurn, HeldTurns},
 };
 
 /// Share of the latest computation in the mean of how long one takes.
@@ -26,6 +27,7 @@ pub(crate) struct Admission {
     memory: Memory,
     limits: Limits,
     waiting: AtomicUsize,
+    held: HeldTurns,
     /// Mean time that a computation took of late [s].
     mean_s: Mutex<f64>,
     metrics: Metrics,
@@ -36,6 +38,7 @@ pub(crate) struct Turn {
     admission: Arc<Admission>,
     /// When it began, if its time is to count for those who wait.
     began: Option<Instant>,
+    _held: HeldTurn,
     _turn: OwnedSemaphorePermit,
 }
 
@@ -46,6 +49,7 @@ impl Admission {
             memory: Memory::new(limits.request_memory_bytes, metrics),
             limits: *limits,
             waiting: AtomicUsize::new(0),
+            held: HeldTurns::default(),
             mean_s: Mutex::new(0.0),
             metrics: metrics.clone(),
         }
@@ -83,7 +87,14 @@ impl Admission {
 
     fn turn(self: &Arc<Self>, turn: OwnedSemaphorePermit, began: Option<Instant>) -> Turn {
         self.running().inc();
-        Turn { admission: Arc::clone(self), began, _turn: turn }
+        let allowed = if began.is_some() { self.limits.plan_time } else { self.limits.job_time };
+        let held = self.held.hold(Instant::now(), allowed);
+        Turn { admission: Arc::clone(self), began, _held: held, _turn: turn }
+    }
+
+    /// Whether nothing can be computed: every turn is held for longer than it may be.
+    pub(crate) fn is_stalled(&self, now: Instant) -> bool {
+        self.held.overdue(now) >= self.limits.parallel_plans.max(1)
     }
 
     fn running(&self) -> impl std::ops::Deref<Target = prometheus_client::metrics::gauge::Gauge> + '_ {
@@ -205,5 +216,21 @@ mod tests {
             assert!(left.await.is_err());
         }
         assert_eq!(admission.waiting.load(Ordering::Relaxed), 0, "who leaves does not wait");
+    }
+
+    #[tokio::test]
+    async fn nothing_can_be_computed_while_every_turn_is_held_for_too_long() {
+        let admission = admission(Limits { parallel_plans: 2, ..Limits::default() });
+        let late = Instant::now() + admission.limits.plan_time + Duration::from_secs(60);
+        let first = admission.soon().await.unwrap();
+        assert!(!admission.is_stalled(late), "one turn is free");
+        let second = admission.soon().await.unwrap();
+        assert!(!admission.is_stalled(Instant::now()), "both are within their time");
+        assert!(admission.is_stalled(late));
+        drop(first);
+        assert!(!admission.is_stalled(late));
+        let _job = admission.some_time().await.unwrap();
+        assert!(!admission.is_stalled(late), "a job may take longer than a plan");
+        drop(second);
     }
 }

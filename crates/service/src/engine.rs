@@ -9,14 +9,17 @@ use std::{
 };
 
 use planner::Patience;
-use serde_json::Value;
-use tokio::{sync::Semaphore, task::JoinError};
+use tokio::{
+    sync::{OwnedSemaphorePermit, Semaphore},
+    task::JoinError,
+};
 
 use crate::{
+    Tenant,
     admission::{Admission, Turn},
-    job::{Job, JobState},
+    job::JobState,
     job_records::JobRecords,
-    job_run::{Work, called_off},
+    job_supervision::StuckThreads,
     jobs::Jobs,
     limits::Limits,
     maps::MapStore,
@@ -26,7 +29,7 @@ use crate::{
     problem::{Problem, ProblemType},
     recordings::RecordingStore,
     robots::RobotStore,
-    store::{Store, StoreError},
+    store::{Store, StoreError, Usage},
 };
 
 /// The state behind the router; cheap to clone.
@@ -50,6 +53,7 @@ struct Shared {
     ending: AtomicBool,
     /// Jobs take a turn here before they wait for one among all computations.
     job_turns: Arc<Semaphore>,
+    stuck_threads: StuckThreads,
 }
 
 /// Cancels a computation when its request is dropped, as it is when the client leaves.
@@ -85,6 +89,7 @@ impl Engine {
             metrics,
             ending: AtomicBool::new(false),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
+            stuck_threads: StuckThreads::default(),
         })))
     }
 
@@ -127,6 +132,19 @@ impl Engine {
         self.0.store.check().await
     }
 
+    /// What a tenant keeps.
+    pub(crate) async fn usage(&self, tenant: &Tenant) -> Result<Usage, Problem> {
+        Usage::of(&self.0.store, tenant).await
+    }
+
+    /// Bytes that a tenant may still store.
+    pub(crate) async fn free_bytes(&self, tenant: &Tenant) -> Result<u64, Problem> {
+        if tenant.is_admin() {
+            return Ok(u64::MAX);
+        }
+        Ok(self.limits().tenant_bytes.saturating_sub(self.usage(tenant).await?.bytes))
+    }
+
     pub(crate) fn admission(&self) -> &Admission {
         &self.0.admission
     }
@@ -148,6 +166,7 @@ impl Engine {
     pub(crate) fn counts(&self) -> String {
         self.admission().tell();
         let metrics = self.metrics();
+        metrics.stuck_threads.set(i64::try_from(self.stuck_threads().count()).unwrap_or(i64::MAX));
         metrics.kept_bytes.set(i64::try_from(self.planners().bytes()).unwrap_or(i64::MAX));
         let states = self.jobs().states();
         for (state, name) in JobState::ALL {
@@ -241,7 +260,7 @@ impl Engine {
         });
         let outcome = running.await;
         drop(asked);
-        outcome.unwrap_or_else(|failure| Err(self.fault(&failure)))
+        self.outcome(outcome)
     }
 
     /// Asks the disk, which may take its time, on a thread of its own.
@@ -260,15 +279,43 @@ impl Engine {
         Problem::new(ProblemType::Internal, "the computation failed; the fault has been logged")
     }
 
-    /// Does a job's work, which takes its turn among jobs and among computations.
-    pub(crate) async fn run(&self, job: &Arc<Job>, work: Box<dyn Work>) -> Result<Value, Problem> {
+    /// A turn among jobs and one among all computations.
+    pub(crate) async fn job_turns(&self) -> Result<(OwnedSemaphorePermit, Turn), Problem> {
         let turn = Arc::clone(&self.0.job_turns).acquire_owned().await.map_err(|_| stopping())?;
-        let (engine, running) = (self.clone(), Arc::clone(job));
-        self.work(move |_| {
-            let _turn = turn;
-            if running.is_called_off() { Err(called_off()) } else { work.run(&engine, &running) }
-        })
-        .await
+        Ok((turn, self.0.admission.some_time().await?))
+    }
+
+    /// Threads of jobs that do not end although they were told to.
+    pub(crate) fn stuck_threads(&self) -> &StuckThreads {
+        &self.0.stuck_threads
+    }
+
+    /// What came of work on a thread, whose panic is a fault of the service.
+    pub(crate) fn outcome<T>(&self, outcome: Result<Result<T, Problem>, JoinError>) -> Result<T, Problem> {
+        outcome.unwrap_or_else(|failure| Err(self.fault(&failure)))
+    }
+
+    /// Whether the service can do what it is there for: it goes on, computes, does jobs, and reaches its store.
+    ///
+    /// # Errors
+    /// What it cannot do.
+    pub async fn check_ready(&self) -> Result<(), Problem> {
+        let not_ready = |detail: String| Err(Problem::new(ProblemType::NotReady, detail));
+        if self.is_ending() {
+            return not_ready("the service is about to end: ask another replica".into());
+        }
+        if self.admission().is_stalled(Instant::now()) {
+            let detail = "every computation takes longer than the longest allowed time: ask another replica, and restart this one";
+            return not_ready(detail.into());
+        }
+        let stuck = self.stuck_threads().count();
+        if stuck > 0 {
+            let detail = format!(
+                "{stuck} cancelled jobs do not end and take processors from others: ask another replica, and restart this one"
+            );
+            return not_ready(detail);
+        }
+        self.check_store().await
     }
 }
 

@@ -4,7 +4,7 @@ use std::{
     ops::ControlFlow,
     sync::{
         Arc,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
 };
 
@@ -15,6 +15,7 @@ use tokio::sync::{Mutex, watch};
 use utoipa::ToSchema;
 
 use crate::{
+    Tenant,
     problem::Problem,
     store::{Beat, Lease},
 };
@@ -83,8 +84,14 @@ pub(crate) struct Job {
     pub(crate) id: String,
     /// What it does, as `calibrate`.
     pub(crate) kind: String,
+    /// Who asked for it.
+    pub(crate) owner: Tenant,
     /// The right to work on it, held while it is written to the store; none once it was given up.
     pub(crate) lease: Mutex<Option<Lease>>,
+    /// How often a service died that worked on it.
+    deaths: u64,
+    /// How often the lease has been written.
+    beats: AtomicU64,
     called_off: AtomicBool,
     status: watch::Sender<Status>,
 }
@@ -92,17 +99,25 @@ pub(crate) struct Job {
 impl Job {
     /// A job that has been taken up, and whose followers have been told so much.
     pub(crate) fn new(id: &str, kind: &str, lease: Lease, beat: Beat) -> Self {
-        let Beat { sequence, state, progress, .. } = beat;
+        let Beat { sequence, state, progress, deaths, .. } = beat;
         let (result, problem, handed_back) = (None, None, false);
         let attempt = lease.number;
         let status = Status { sequence, attempt, state, progress, result, problem, handed_back };
         Job {
             id: id.to_owned(),
             kind: kind.to_owned(),
+            owner: Tenant::default(),
             lease: Mutex::new(Some(lease)),
+            deaths,
+            beats: AtomicU64::new(0),
             called_off: AtomicBool::new(false),
             status: watch::Sender::new(status),
         }
+    }
+
+    /// The same job of another owner.
+    pub(crate) fn owned_by(self, owner: &Tenant) -> Self {
+        Job { owner: owner.clone(), ..self }
     }
 
     pub(crate) fn status(&self) -> Status {
@@ -111,6 +126,18 @@ impl Job {
 
     pub(crate) fn follow(&self) -> watch::Receiver<Status> {
         self.status.subscribe()
+    }
+
+    /// Lets its work end because its time is over. What comes of it is still told.
+    pub(crate) fn stop_work(&self) {
+        self.called_off.store(true, Ordering::Relaxed);
+    }
+
+    /// The end of the time in which somebody wants its work.
+    pub(crate) async fn unwanted(&self) {
+        let mut changes = self.follow();
+        // The job holds the other end.
+        let _ = changes.wait_for(Status::is_last).await;
     }
 
     /// Whether its work is no longer wanted. Work looks at this often and ends soon after.
@@ -155,10 +182,11 @@ impl Job {
         });
     }
 
-    /// What the holder of its lease writes down.
-    pub(crate) fn beat(&self, count: u64) -> Beat {
+    /// What the holder of its lease writes down next.
+    pub(crate) fn beat(&self) -> Beat {
         let Status { sequence, state, progress, handed_back, .. } = self.status();
-        Beat { count, released: handed_back, sequence, state, progress }
+        let count = self.beats.fetch_add(1, Ordering::Relaxed) + 1;
+        Beat { count, released: handed_back, deaths: self.deaths, sequence, state, progress }
     }
 
     /// Changes the status, unless nothing more is said of the job. Returns whether it did.
@@ -232,8 +260,9 @@ mod tests {
         job.tell("working", Some(0.5));
         job.hand_back();
         job.end(Ok(Value::Null.into()));
-        let beat = job.beat(7);
+        let beat = job.beat();
         assert!(beat.released && job.is_called_off());
-        assert_eq!((beat.state, beat.count, beat.sequence), (JobState::Queued, 7, 2));
+        assert_eq!((beat.state, beat.count, beat.sequence), (JobState::Queued, 1, 2));
+        assert_eq!(job.beat().count, 2, "every writing of a lease differs from the one before");
     }
 }

@@ -3,14 +3,17 @@
 //! What a job is to do is in the store before it is accepted, and what came of it before it is told. In between the service
 //! holds the job's lease; when it is killed, the lease ends, and whoever watches the store takes the job up.
 
-use std::{sync::Arc, time::Duration};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use serde_json::Value;
 use tokio::time::{MissedTickBehavior, interval, sleep};
 
 use crate::{
-    Engine,
-    job::{Job, Status},
+    Engine, Tenant,
+    job::{Job, JobState, Status},
     job_records::{Description, Report, cancelled},
     problem::{Problem, ProblemType},
     routes::jobs::JobAnswer,
@@ -19,6 +22,8 @@ use crate::{
 
 /// How often a holder writes its lease anew before that would have ended.
 const BEATS_OF_A_LEASE: u32 = 3;
+/// Longest time until a job stops here that was called off elsewhere, and half of what it may take to free its place.
+const LONGEST_LOOK: Duration = Duration::from_millis(500);
 /// First wait before a report is offered again to a store that is out of reach.
 const FIRST_WAIT: Duration = Duration::from_millis(500);
 /// Longest wait before a report is offered again to a store that is out of reach.
@@ -30,6 +35,16 @@ pub(crate) trait Work: Send + 'static {
     fn run(self: Box<Self>, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem>;
 }
 
+/// A job that is to be taken up here.
+pub(crate) struct Attempt<'a> {
+    pub(crate) id: &'a str,
+    pub(crate) description: &'a Description,
+    /// Number of the lease that has ended, 0 where there was none.
+    pub(crate) after: u64,
+    /// What is written first.
+    pub(crate) beat: Beat,
+}
+
 impl Engine {
     /// Accepts a job: it is in the store when this returns. The same job is the one that waits, runs or has ended already;
     /// one that was called off, or failed by a fault of the service, is done anew.
@@ -38,43 +53,42 @@ impl Engine {
         description: &Description,
         work: Box<dyn Work>,
     ) -> Result<JobAnswer, Problem> {
-        let id = description.id()?;
+        let (id, owner) = (description.id()?, &description.owner);
         if let Some(job) = self.jobs().get(&id).filter(|job| !job.status().is_last()) {
             return Ok(JobAnswer::of(&job.id, &job.kind, job.status()));
         }
-        if let Some(report) = self.records().report(&id).await? {
+        if let Some(report) = self.records().report(owner, &id).await? {
             if report.is_final() {
                 return Ok(report.job);
             }
             self.records().close(&id).await?;
-            self.records().forget(&id).await?;
+            self.records().forget(owner, &id).await?;
         }
         self.jobs().refuse_beyond(self.limits().open_jobs)?;
-        self.records().describe(&id, description).await?;
-        match self.take_up(&id, &description.kind, 0, Beat::first(0), work).await? {
+        self.records().describe(&id, description, self.limits().tenant_jobs).await?;
+        let attempt = Attempt { id: &id, description, after: 0, beat: Beat::first(0) };
+        match self.take_up(attempt, work).await? {
             Some(job) => Ok(JobAnswer::of(&job.id, &job.kind, job.status())),
-            None => Ok(self.records().look_up(&id).await?.job),
+            None => Ok(self.records().look_up(owner, &id).await?.1.job),
         }
     }
 
-    /// Takes a job up whose lease of this number has ended, if no other does.
+    /// Takes a job up whose last lease has ended, if no other does.
     pub(crate) async fn take_up(
         &self,
-        id: &str,
-        kind: &str,
-        after: u64,
-        beat: Beat,
+        attempt: Attempt<'_>,
         work: Box<dyn Work>,
     ) -> Result<Option<Arc<Job>>, Problem> {
+        let Attempt { id, description: Description { owner, kind, .. }, after, beat } = attempt;
         let Some(lease) = Lease::take(&self.records().store, id, after, &beat).await? else {
             return Ok(None);
         };
-        if self.records().has_report(id).await? {
+        if self.records().has_report(owner, id).await? {
             // It was asked here before it had ended elsewhere, and written down after.
             self.records().close(id).await?;
             return Ok(None);
         }
-        let job = Arc::new(Job::new(id, kind, lease, beat));
+        let job = Arc::new(Job::new(id, kind, lease, beat).owned_by(owner));
         if let Err(problem) = self.jobs().add(&job, self.limits().open_jobs) {
             // Another request was faster to the last place. Whoever watches the store takes the job up later.
             self.hand_back(&job).await;
@@ -91,26 +105,45 @@ impl Engine {
         Ok(Some(job))
     }
 
-    /// Keeps the lease of a job until it is given up or lost.
+    /// Keeps the lease of a job until it is given up or lost, and stops the job soon after it has ended elsewhere.
     async fn beat(self, job: Arc<Job>) {
-        let mut beats = interval(self.limits().lease_time / BEATS_OF_A_LEASE);
-        beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        for count in 1.. {
-            beats.tick().await;
+        let between_beats = self.limits().lease_time / BEATS_OF_A_LEASE;
+        let mut looks = interval(between_beats.min(LONGEST_LOOK));
+        looks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut beaten: Option<Instant> = None;
+        loop {
+            looks.tick().await;
             let mut held = job.lease.lock().await;
             let Some(lease) = held.as_ref() else { return };
+            let is_due = beaten.is_none_or(|at| at.elapsed() >= between_beats);
             let beat = async {
-                let ended = self.records().has_report(&job.id).await?;
-                Ok::<_, Problem>(!ended && lease.beat(&self.records().store, &job.beat(count)).await?)
+                let ended = self.records().has_report(&job.owner, &job.id).await?;
+                Ok::<_, Problem>(!ended && (!is_due || lease.beat(&self.records().store, &job.beat()).await?))
             };
-            // A store that is out of reach now may be back before the lease ends.
-            if let Ok(false) = beat.await {
-                tracing::info!(job = job.id, "another service has ended the job or works on it");
-                *held = None;
-                job.hand_back();
-                return;
+            match beat.await {
+                Ok(true) if is_due => beaten = Some(Instant::now()),
+                // A store that is out of reach now may be back before the lease ends.
+                Ok(true) | Err(_) => {}
+                Ok(false) => {
+                    tracing::info!(job = job.id, "another service has ended the job or works on it");
+                    *held = None;
+                    job.hand_back();
+                    return;
+                }
             }
         }
+    }
+
+    /// Writes down that work on a job begins, before it does: a service that dies of it is then known to have.
+    pub(crate) async fn begin(&self, job: &Job) -> Result<(), Problem> {
+        let held = job.lease.lock().await;
+        let Some(lease) = held.as_ref().filter(|_| !job.is_called_off()) else { return Err(called_off()) };
+        let beat = Beat { state: JobState::Running, ..job.beat() };
+        if !lease.beat(&self.records().store, &beat).await? {
+            return Err(called_off());
+        }
+        job.tell("starting", None);
+        Ok(())
     }
 
     /// Writes down what came of a job, then tells it.
@@ -121,11 +154,11 @@ impl Engine {
             let mut status = job.status();
             status.end(outcome.clone());
             status.sequence += 1;
-            if self.records().end(&job.id, &report(job, status)).await.is_ok() {
+            if self.records().end(&job.owner, &job.id, &report(job, status)).await.is_ok() {
                 *held = None;
                 job.end(outcome);
                 // Nobody waits for old reports to go.
-                let _ = self.records().keep_latest(self.limits().kept_jobs).await;
+                let _ = self.records().keep_latest(&job.owner, self.limits().kept_jobs).await;
                 return;
             }
             drop(held);
@@ -135,25 +168,25 @@ impl Engine {
         }
     }
 
-    /// Calls a job off, wherever it is worked on, or forgets it if it has ended. `None`: it had ended.
-    pub(crate) async fn call_off(&self, id: &str) -> Result<Option<JobAnswer>, Problem> {
-        if let Some(job) = self.jobs().get(id)
+    /// Calls a job off that a tenant sees, wherever it is worked on, or forgets it if it has ended. `None`: it had ended.
+    pub(crate) async fn call_off(&self, tenant: &Tenant, id: &str) -> Result<Option<JobAnswer>, Problem> {
+        if let Some(job) = self.jobs().get(id).filter(|job| tenant.sees(&job.owner))
             && job.call_off()
         {
             let mut held = job.lease.lock().await;
             let report = report(&job, job.status());
-            self.records().cancel(id, &report).await?;
+            self.records().cancel(&job.owner, id, &report).await?;
             *held = None;
             self.jobs().remove(&job);
             return Ok(Some(report.job));
         }
-        let known = self.records().look_up(id).await?;
+        let (owner, known) = self.records().look_up(tenant, id).await?;
         if known.job.state.is_final() {
-            self.records().forget(id).await?;
+            self.records().forget(&owner, id).await?;
             return Ok(None);
         }
         let report = cancelled(known);
-        self.records().cancel(id, &report).await?;
+        self.records().cancel(&owner, id, &report).await?;
         Ok(Some(report.job))
     }
 
@@ -173,7 +206,7 @@ impl Engine {
         job.hand_back();
         if let Some(lease) = job.lease.lock().await.take() {
             // Without a word the lease ends by itself, only later.
-            let _ = lease.beat(&self.records().store, &job.beat(u64::MAX)).await;
+            let _ = lease.beat(&self.records().store, &job.beat()).await;
         }
     }
 }

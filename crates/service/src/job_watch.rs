@@ -7,7 +7,8 @@ use tokio::time::{MissedTickBehavior, interval};
 use crate::{
     Engine,
     job::JobState,
-    job_records::Report,
+    job_records::{Description, Report},
+    job_run::Attempt,
     problem::{Problem, ProblemType},
     routes::{self, jobs::JobAnswer},
     store::{Beat, Lease, Watched, leased},
@@ -15,6 +16,8 @@ use crate::{
 
 /// How often the store is looked at while a lease lasts.
 const LOOKS_OF_A_LEASE: u32 = 2;
+/// Deaths of services after which a job that they worked on is not taken up again.
+const MOST_DEATHS: u64 = 2;
 
 impl Engine {
     /// Looks at the store's open jobs, at once and then for as long as the service runs.
@@ -34,7 +37,7 @@ impl Engine {
     async fn clear_strays(&self, seen: &mut BTreeSet<String>) -> Result<(), Problem> {
         let mut strays = leased(&self.records().store).await?;
         let open = self.records().open().await?;
-        strays.retain(|id| !open.contains(id) && self.jobs().get(id).is_none());
+        strays.retain(|id| !open.contains_key(id) && self.jobs().get(id).is_none());
         for id in strays.intersection(seen) {
             Lease::clear(&self.records().store, id).await?;
         }
@@ -44,17 +47,17 @@ impl Engine {
 
     async fn look(&self, watched: &mut BTreeMap<String, Watched>) -> Result<(), Problem> {
         let open = self.records().open().await?;
-        watched.retain(|id, _| open.contains(id));
-        for id in open {
+        watched.retain(|id, _| open.contains_key(id));
+        for (id, owner) in open {
             if self.jobs().get(&id).is_some() {
                 continue;
             }
-            if self.records().has_report(&id).await? {
+            if self.records().has_report(&owner, &id).await? {
                 // Its service was killed between the two.
                 self.records().close(&id).await?;
                 continue;
             }
-            let (number, beat) = match Lease::latest(&self.records().store, &id).await? {
+            let (after, last) = match Lease::latest(&self.records().store, &id).await? {
                 Some((number, beat)) => {
                     let seen = watched.entry(id.clone()).or_insert_with(|| Watched::new(number, &beat));
                     if !seen.has_ended(number, &beat, self.limits().lease_time) {
@@ -62,29 +65,47 @@ impl Engine {
                     }
                     (number, beat)
                 }
-                None => (0, Beat::first(0)),
+                None => (0, Beat { released: true, ..Beat::first(0) }),
             };
             if self.jobs().refuse_beyond(self.limits().open_jobs).is_err() {
                 return Ok(());
             }
-            self.take_up_again(&id, number, beat.sequence).await?;
+            let Some(description) = self.records().description(&id).await? else { continue };
+            let beat = Beat { deaths: last.deaths_at_end(), ..Beat::first(last.sequence + 1) };
+            self.take_up_again(Attempt { id: &id, description: &description, after, beat }).await?;
         }
         Ok(())
     }
 
     /// Takes up a job that was begun before, or says why that cannot be.
-    async fn take_up_again(&self, id: &str, after: u64, sequence: u64) -> Result<(), Problem> {
-        let Some(description) = self.records().description(id).await? else { return Ok(()) };
-        let kind = &description.kind;
-        tracing::info!(job = id, kind, attempt = after + 1, "takes up a job that nobody works on");
-        match routes::jobs::work(self, &description).await {
-            Ok(work) => self.take_up(id, kind, after, Beat::first(sequence + 1), work).await.map(drop),
+    async fn take_up_again(&self, attempt: Attempt<'_>) -> Result<(), Problem> {
+        let Attempt { id, description, after, .. } = attempt;
+        let deaths = attempt.beat.deaths;
+        if deaths >= MOST_DEATHS {
+            tracing::warn!(job = id, deaths, "gives up a job whose services died");
+            return self.fail(attempt, given_up(deaths)).await;
+        }
+        tracing::info!(job = id, kind = description.kind, attempt = after + 1, "takes up a job");
+        match routes::jobs::work(self, description).await {
+            Ok(work) => self.take_up(attempt, work).await.map(drop),
             Err(problem) if problem.kind == ProblemType::StoreUnavailable => Err(problem),
-            Err(problem) => {
-                let known = self.records().look_up(id).await?;
-                let job = JobAnswer { state: JobState::Failed, problem: Some(problem), ..known.job };
-                self.records().end(id, &Report { sequence: sequence + 1, job }).await
-            }
+            Err(problem) => self.fail(attempt, problem).await,
         }
     }
+
+    /// Ends a job that nobody works on with a problem.
+    async fn fail(&self, attempt: Attempt<'_>, problem: Problem) -> Result<(), Problem> {
+        let Attempt { id, description: Description { owner, .. }, beat, .. } = attempt;
+        let (_, known) = self.records().look_up(owner, id).await?;
+        let job = JobAnswer { state: JobState::Failed, problem: Some(problem), ..known.job };
+        self.records().end(owner, id, &Report { sequence: beat.sequence, job }).await
+    }
+}
+
+fn given_up(deaths: u64) -> Problem {
+    let detail = format!(
+        "the service died {deaths} times while it worked on the job, most likely for want of memory: ask again with shorter \
+         recordings, or give the service more memory"
+    );
+    Problem::new(ProblemType::Abandoned, detail)
 }

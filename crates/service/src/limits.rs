@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crate::{maps::MapLimits, store::Quota};
+
 /// Limits of the service; the defaults suit a laptop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -33,11 +35,19 @@ pub struct Limits {
     pub recording_bytes: u64,
     /// Most bytes over all stored recordings. Default 64 GiB.
     pub stored_recording_bytes: u64,
+    /// Most bytes of maps, robots and recordings that a tenant may keep. Default 32 GiB: half of what recordings may take.
+    pub tenant_bytes: u64,
+    /// Most maps, robots and recordings that a tenant may keep. Default 10 000.
+    pub tenant_objects: usize,
+    /// Most jobs of a tenant that may wait or run, at all services together. Default 16: half of those of a service.
+    pub tenant_jobs: usize,
+    /// Longest time for one job [s]. Default 3600 s.
+    pub job_time: Duration,
     /// Jobs that may wait or run; more are refused. Default 32.
     pub open_jobs: usize,
     /// Jobs that run at the same time, of the computations that may. Default: one less than cores, but one.
     pub parallel_jobs: usize,
-    /// Reports of jobs that ended and are kept for who asks later. Default 1000.
+    /// Reports of each tenant's jobs that ended and are kept for who asks later. Default 1000.
     pub kept_jobs: usize,
     /// How long a service that works on a job may be silent before another takes the job up [s]. Default 15 s.
     pub lease_time: Duration,
@@ -73,6 +83,10 @@ impl Default for Limits {
             queued_plans: 256,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,
+            tenant_bytes: 32 << 30,
+            tenant_objects: 10_000,
+            tenant_jobs: 16,
+            job_time: Duration::from_secs(3600),
             open_jobs: 32,
             parallel_jobs: (cores - 1).max(1),
             kept_jobs: 1000,
@@ -88,6 +102,16 @@ impl Default for Limits {
 }
 
 impl Limits {
+    /// Most that a tenant may keep.
+    pub(crate) fn quota(&self) -> Quota {
+        Quota { bytes: self.tenant_bytes, objects: self.tenant_objects }
+    }
+
+    /// Most that maps may take.
+    pub(crate) fn maps(&self) -> MapLimits {
+        MapLimits { stored_cells: self.stored_cells, quota: self.quota() }
+    }
+
     /// Most cells of a map that can be planned over.
     pub fn map_cells(&self) -> u64 {
         (self.plan_states / planner::HEADINGS) as u64

@@ -6,21 +6,19 @@ use std::{
         Arc, Mutex, PoisonError, Weak,
         atomic::{AtomicU64, Ordering},
     },
-    time::{Duration, Instant},
 };
 
 use quick_cache::{DefaultHashBuilder, OptionsBuilder, Weighter, sync::Cache};
 use terrain::{Terrain, io::cells};
 
 use crate::{
+    Tenant,
     memory::{Memory, Reserved, hold},
     problem::{Problem, ProblemType},
     routes::maps::MapSummary,
-    store::{Pairs, Store, cannot, full, is_id, shown},
+    store::{Noted, Pairs, Quota, Removed, Store, cannot, full, is_id, shown},
 };
 
-/// How long a map in memory is believed to be in the store still: who deletes it at another service waits so long.
-const BELIEVED: Duration = Duration::from_secs(2);
 /// Maps that the cache has room for at first; it grows.
 const MAPS: usize = 64;
 /// Bytes of a cell in memory: its elevation, surface and obstacle.
@@ -48,10 +46,15 @@ pub(crate) struct Stored {
 #[derive(Debug)]
 struct Held {
     terrain: Arc<Terrain>,
-    /// When it was last known to be in the store.
-    seen: Mutex<Instant>,
     /// What those have reserved together who use it: it may leave the cache before they are done.
     in_use: Mutex<Weak<Reserved>>,
+}
+
+/// Most that maps may take: all of them, and those of a tenant with what else it keeps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MapLimits {
+    pub(crate) stored_cells: usize,
+    pub(crate) quota: Quota,
 }
 
 /// Maps weigh what they take in memory.
@@ -83,16 +86,23 @@ impl MapStore {
         MapStore { maps: Pairs::new(store, "maps"), held, reads: AtomicU64::new(0), memory: memory.clone() }
     }
 
-    /// Keeps a map; the same map twice is one. Returns whether it is new.
-    pub(crate) async fn insert(&self, map: Stored, most_cells: usize) -> Result<bool, Problem> {
+    /// Keeps a map for a tenant; the same map twice is one. Returns whether it is new to the tenant.
+    pub(crate) async fn insert(
+        &self,
+        owner: &Tenant,
+        map: Stored,
+        limits: &MapLimits,
+    ) -> Result<bool, Problem> {
         let id = map.summary.id.clone();
-        if self.maps.has(&id).await? {
+        if self.maps.notes.of(owner).has(&id).await? {
             return Ok(false);
         }
         let cells = |summary: &MapSummary| summary.rows * summary.columns;
-        let held: usize = self.maps.list().await?.iter().map(|summary| cells(summary)).sum();
-        if held + cells(&map.summary) > most_cells {
-            return Err(full(format!("{held} of {most_cells} cells are taken: delete a map first")));
+        let all = self.maps.notes.list_all().await?;
+        let held: usize = all.iter().filter(|(other, _)| *other != id).map(|(_, one)| cells(one)).sum();
+        if held + cells(&map.summary) > limits.stored_cells {
+            let most = limits.stored_cells;
+            return Err(full(format!("{held} of {most} cells are taken: delete a map first")));
         }
         let (spool, terrain) = (self.maps.spool()?, Arc::clone(&map.terrain));
         let written = tokio::task::spawn_blocking(move || {
@@ -100,34 +110,25 @@ impl MapStore {
             Ok(spool)
         });
         let spool = written.await.unwrap_or_else(|error| Err(std::io::Error::other(error)));
-        self.maps.keep(&id, spool.map_err(|error| cannot("write to", &error))?, &map.summary).await?;
-        self.held.insert(id, Arc::new(Held::now(map.terrain)));
-        Ok(true)
+        let spool = spool.map_err(|error| cannot("write to", &error))?;
+        let noted = Noted { data: spool, note: &map.summary };
+        let is_new = self.maps.keep(owner, &id, noted, &limits.quota).await?;
+        self.held.insert(id, Arc::new(Held::new(map.terrain)));
+        Ok(is_new)
     }
 
-    /// The map with an id, read from the store once for all who ask at the same time.
-    pub(crate) async fn get(&self, id: &str) -> Result<Arc<Terrain>, Problem> {
-        if !is_id(id) {
+    /// The map with an id, if a tenant sees it, read from the store once for all who ask at the same time.
+    pub(crate) async fn get(&self, tenant: &Tenant, id: &str) -> Result<Arc<Terrain>, Problem> {
+        if !is_id(id) || !self.maps.notes.had_lately(tenant, id).await? {
             return Err(unknown(id));
         }
-        let held = self.held.get_or_insert_async(id, self.read(id)).await?;
-        if held.is_to_be_checked() {
-            match self.maps.has(id).await {
-                Ok(true) => held.check(),
-                Ok(false) => {
-                    self.held.remove(id);
-                    return Err(unknown(id));
-                }
-                // Its content is what its id says, wherever the store is.
-                Err(_) => {}
-            }
-        }
+        let held = self.held.get_or_insert_async(id, self.read(tenant, id)).await?;
         hold(held.in_use(&self.memory)?);
         Ok(Arc::clone(&held.terrain))
     }
 
-    async fn read(&self, id: &str) -> Result<Arc<Held>, Problem> {
-        let summary = self.maps.note(id).await?.ok_or_else(|| unknown(id))?;
+    async fn read(&self, tenant: &Tenant, id: &str) -> Result<Arc<Held>, Problem> {
+        let summary = self.maps.notes.get(tenant, id).await?.ok_or_else(|| unknown(id))?;
         let in_use = Arc::new(self.memory.reserve(
             CELL_BYTES.saturating_mul(summary.rows as u64).saturating_mul(summary.columns as u64),
         )?);
@@ -144,28 +145,34 @@ impl MapStore {
             return Err(Problem::new(ProblemType::Internal, detail));
         }
         self.reads.fetch_add(1, Ordering::Relaxed);
-        let held = Held::now(Arc::new(terrain));
+        let held = Held::new(Arc::new(terrain));
         *held.in_use.lock().unwrap_or_else(PoisonError::into_inner) = Arc::downgrade(&in_use);
         hold(in_use);
         Ok(Arc::new(held))
     }
 
-    /// All maps in brief, in the order of their ids.
-    pub(crate) async fn list(&self) -> Result<Vec<MapSummary>, Problem> {
-        Ok(self.maps.list().await?.iter().map(|summary| MapSummary::clone(summary)).collect())
+    /// All maps that a tenant sees in brief, in the order of their ids.
+    pub(crate) async fn list(&self, tenant: &Tenant) -> Result<Vec<MapSummary>, Problem> {
+        let summaries = self.maps.list(tenant).await?;
+        Ok(summaries.iter().map(|summary| MapSummary::clone(summary)).collect())
     }
 
-    /// Forgets a map.
-    pub(crate) async fn remove(&self, id: &str) -> Result<(), Problem> {
-        let was_there = self.maps.remove(id).await?;
-        self.held.remove(id);
-        if was_there { Ok(()) } else { Err(unknown(id)) }
+    /// Forgets a map for a tenant, or for all if it sees all. Returns whether nobody has it any more.
+    pub(crate) async fn remove(&self, tenant: &Tenant, id: &str) -> Result<bool, Problem> {
+        match self.maps.remove(tenant, id).await? {
+            Removed::Nothing => Err(unknown(id)),
+            Removed::Note => Ok(false),
+            Removed::Data => {
+                self.held.remove(id);
+                Ok(true)
+            }
+        }
     }
 }
 
 impl Held {
-    fn now(terrain: Arc<Terrain>) -> Self {
-        Held { terrain, seen: Mutex::new(Instant::now()), in_use: Mutex::default() }
+    fn new(terrain: Arc<Terrain>) -> Self {
+        Held { terrain, in_use: Mutex::default() }
     }
 
     /// The right to its memory for one more who uses it; it is counted once for all of them.
@@ -177,14 +184,6 @@ impl Held {
         let reserved = Arc::new(memory.reserve(CELL_BYTES * self.terrain.grid.cells() as u64)?);
         *in_use = Arc::downgrade(&reserved);
         Ok(reserved)
-    }
-
-    fn is_to_be_checked(&self) -> bool {
-        self.seen.lock().unwrap_or_else(PoisonError::into_inner).elapsed() > BELIEVED
-    }
-
-    fn check(&self) {
-        *self.seen.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
     }
 }
 
@@ -204,6 +203,9 @@ mod tests {
         Memory::new(1 << 30, &Metrics::new())
     }
 
+    const LIMITS: MapLimits =
+        MapLimits { stored_cells: usize::MAX, quota: Quota { bytes: u64::MAX, objects: usize::MAX } };
+
     fn map(rows: usize) -> Stored {
         let grid = Grid { rows, columns: 3, cell_size_m: 1.0, origin_m: [0.0; 2] };
         let terrain = Terrain::new(grid, &vec![1.0; 3 * rows]).unwrap();
@@ -217,9 +219,10 @@ mod tests {
         let (one, other) =
             (MapStore::new(&store, 1 << 20, &memory()), MapStore::new(&store, 1 << 20, &memory()));
         let stored = map(5);
-        assert!(one.insert(stored.clone(), usize::MAX).await.unwrap());
-        assert!(!other.insert(stored.clone(), usize::MAX).await.unwrap());
-        let asked = (0..20).map(|_| other.get(&stored.summary.id));
+        assert!(one.insert(&Tenant::default(), stored.clone(), &LIMITS).await.unwrap());
+        assert!(!other.insert(&Tenant::default(), stored.clone(), &LIMITS).await.unwrap());
+        let tenant = Tenant::default();
+        let asked = (0..20).map(|_| other.get(&tenant, &stored.summary.id));
         for found in futures_util::future::join_all(asked).await {
             assert_eq!(*found.unwrap(), *stored.terrain);
         }
@@ -232,10 +235,10 @@ mod tests {
         let maps = MapStore::new(&Store::open_here(folder.path()), 3 * 100 * CELL_BYTES as usize, &memory());
         let all: Vec<Stored> = (1..=100).map(map).collect();
         for stored in &all {
-            maps.insert(stored.clone(), usize::MAX).await.unwrap();
+            maps.insert(&Tenant::default(), stored.clone(), &LIMITS).await.unwrap();
         }
         for stored in &all {
-            assert_eq!(*maps.get(&stored.summary.id).await.unwrap(), *stored.terrain);
+            assert_eq!(*maps.get(&Tenant::default(), &stored.summary.id).await.unwrap(), *stored.terrain);
         }
         assert!(maps.held.weight() <= 3 * 100 * CELL_BYTES, "{}", maps.held.weight());
         assert!(maps.reads.into_inner() > 50);
@@ -246,13 +249,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open_here(folder.path());
         let stored = map(4);
-        MapStore::new(&store, 1 << 20, &memory()).insert(stored.clone(), usize::MAX).await.unwrap();
+        MapStore::new(&store, 1 << 20, &memory())
+            .insert(&Tenant::default(), stored.clone(), &LIMITS)
+            .await
+            .unwrap();
         let path = folder.path().join(format!("maps/{}.data", stored.summary.id));
         let mut bytes = std::fs::read(&path).unwrap();
         let last = bytes.len() - 1;
         bytes[last] ^= 1;
         std::fs::write(&path, bytes).unwrap();
-        let problem = MapStore::new(&store, 1 << 20, &memory()).get(&stored.summary.id).await.unwrap_err();
+        let problem = MapStore::new(&store, 1 << 20, &memory())
+            .get(&Tenant::default(), &stored.summary.id)
+            .await
+            .unwrap_err();
         assert!(problem.detail.contains("was changed where it is stored"), "{problem:?}");
     }
 }

@@ -28,6 +28,8 @@ pub(crate) struct Metrics {
     pub(crate) computations: Family<StateLabels, Gauge>,
     /// Jobs at hand by state.
     pub(crate) jobs: Family<StateLabels, Gauge>,
+    /// Threads of jobs that do not end although they were told to.
+    pub(crate) stuck_threads: Gauge,
     /// Physical memory of the process [bytes].
     pub(crate) resident_bytes: Gauge,
     /// What requests under way may take together, as estimated [bytes].
@@ -85,6 +87,7 @@ impl Metrics {
             panics: Counter::default(),
             computations: Family::default(),
             jobs: Family::default(),
+            stuck_threads: Gauge::default(),
             resident_bytes: Gauge::default(),
             reserved_bytes: Gauge::default(),
             kept_bytes: Gauge::default(),
@@ -119,6 +122,7 @@ impl Metrics {
             self.projected_wait_s.clone(),
         );
         registry.register("jobs", "Jobs at hand by state", self.jobs.clone());
+        registry.register("stuck_threads", "Threads of jobs that do not end", self.stuck_threads.clone());
         registry.register(
             "resident_memory_bytes",
             "Physical memory of the process",

@@ -30,6 +30,8 @@ pub enum ProblemType {
     TargetTooLong,
     /// The header fields of the request are too large.
     HeaderTooLarge,
+    /// A robot that comes with the service cannot be removed.
+    BuiltIn,
     /// The body came too slowly.
     TooSlow,
     /// No such path.
@@ -76,6 +78,10 @@ pub enum ProblemType {
     StoreUnavailable,
     /// As many jobs wait or run as may.
     TooManyJobs,
+    /// As many jobs of the tenant wait or run as may.
+    QuotaExceeded,
+    /// The services that worked on the job died, so that it was given up.
+    Abandoned,
     /// As many requests wait or run as can be answered soon, or as memory allows.
     Overloaded,
     /// The service is about to end, or cannot reach its store.
@@ -94,7 +100,7 @@ impl ProblemType {
             T::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             T::NotAcceptable => StatusCode::NOT_ACCEPTABLE,
             T::Unauthorized => StatusCode::UNAUTHORIZED,
-            T::CrossOrigin => StatusCode::FORBIDDEN,
+            T::CrossOrigin | T::BuiltIn => StatusCode::FORBIDDEN,
             T::MisdirectedRequest => StatusCode::MISDIRECTED_REQUEST,
             T::TargetTooLong => StatusCode::URI_TOO_LONG,
             T::HeaderTooLarge => StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
@@ -117,7 +123,8 @@ impl ProblemType {
             T::Timeout => StatusCode::GATEWAY_TIMEOUT,
             T::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             T::StoreFull => StatusCode::INSUFFICIENT_STORAGE,
-            T::StoreUnavailable | T::TooManyJobs | T::Overloaded | T::NotReady => {
+            T::QuotaExceeded => StatusCode::TOO_MANY_REQUESTS,
+            T::StoreUnavailable | T::TooManyJobs | T::Abandoned | T::Overloaded | T::NotReady => {
                 StatusCode::SERVICE_UNAVAILABLE
             }
             T::Internal => StatusCode::INTERNAL_SERVER_ERROR,
@@ -138,6 +145,7 @@ impl ProblemType {
             T::MisdirectedRequest => "Not this host",
             T::TargetTooLong => "The target is too long",
             T::HeaderTooLarge => "The header fields are too large",
+            T::BuiltIn => "The robot is built in",
             T::TooSlow => "The body came too slowly",
             T::NotFound => "No such path",
             T::UnknownMap => "No such map",
@@ -161,6 +169,8 @@ impl ProblemType {
             T::StoreFull => "The store is full",
             T::StoreUnavailable => "The store is out of reach",
             T::TooManyJobs => "Too many jobs",
+            T::QuotaExceeded => "Too many jobs of one tenant",
+            T::Abandoned => "The job was given up",
             T::Overloaded => "Too much to do",
             T::NotReady => "Not ready",
             T::Internal => "Internal error",

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use tokio::io::{AsyncWriteExt, BufWriter};
 
 use crate::{
-    Engine,
+    Engine, Tenant,
     body::broken,
     problem::{Problem, ProblemType},
     store::{Spool, cannot, id_of},
@@ -26,9 +26,14 @@ pub(crate) struct Received {
     pub(crate) id: String,
 }
 
-/// Writes a body into a file for the store, refused once it exceeds the limits.
-pub(crate) async fn receive(engine: &Engine, headers: &HeaderMap, body: Body) -> Result<Received, Problem> {
-    let room = Room::of(engine).await?;
+/// Writes a tenant's body into a file for the store, refused once it exceeds the limits.
+pub(crate) async fn receive(
+    engine: &Engine,
+    tenant: &Tenant,
+    headers: &HeaderMap,
+    body: Body,
+) -> Result<Received, Problem> {
+    let room = Room::of(engine, tenant).await?;
     let declared =
         headers.get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok()).and_then(|v| v.parse().ok());
     room.refuse_beyond(declared.unwrap_or(0))?;
@@ -55,10 +60,12 @@ struct Room {
 }
 
 impl Room {
-    async fn of(engine: &Engine) -> Result<Room, Problem> {
+    async fn of(engine: &Engine, tenant: &Tenant) -> Result<Room, Problem> {
         let held = engine.recordings().bytes().await?;
         let limits = engine.limits();
-        Ok(Room { one: limits.recording_bytes, free: limits.stored_recording_bytes.saturating_sub(held) })
+        let free = limits.stored_recording_bytes.saturating_sub(held);
+        let own = engine.free_bytes(tenant).await?;
+        Ok(Room { one: limits.recording_bytes, free: free.min(own) })
     }
 
     fn refuse_beyond(&self, bytes: u64) -> Result<(), Problem> {

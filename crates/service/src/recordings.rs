@@ -6,8 +6,9 @@ use serde_json::Value;
 use tokio::runtime::Handle;
 
 use crate::{
+    Tenant,
     problem::{Problem, ProblemType},
-    store::{Pairs, Spool, Store, shown},
+    store::{Noted, Pairs, Quota, Removed, Spool, Store, shown},
 };
 
 /// Recordings by content hash.
@@ -40,16 +41,20 @@ impl RecordingStore {
         self.recordings.spool()
     }
 
-    /// Keeps a received file under its note's id. Returns whether it is new.
-    pub(crate) async fn keep(&self, received: Spool, note: &Note) -> Result<bool, Problem> {
-        let new = !self.recordings.has(&note.id).await?;
-        self.recordings.keep(&note.id, received, note).await?;
-        Ok(new)
+    /// Keeps a received file under its note's id for a tenant, within its quota. Returns whether it is new to the tenant.
+    pub(crate) async fn keep(
+        &self,
+        owner: &Tenant,
+        received: Spool,
+        note: &Note,
+        quota: &Quota,
+    ) -> Result<bool, Problem> {
+        self.recordings.keep(owner, &note.id, Noted { data: received, note }, quota).await
     }
 
-    /// What is known of a recording.
-    pub(crate) async fn note(&self, id: &str) -> Result<Note, Problem> {
-        self.recordings.note(id).await?.ok_or_else(|| unknown(id))
+    /// What a tenant knows of a recording.
+    pub(crate) async fn note(&self, tenant: &Tenant, id: &str) -> Result<Note, Problem> {
+        self.recordings.notes.get(tenant, id).await?.ok_or_else(|| unknown(id))
     }
 
     /// Reads a recording, by its own map or another, followed by a watch, into the room that there is. Waits for the store, so
@@ -69,19 +74,22 @@ impl RecordingStore {
             .map_err(|error| Problem::invalid_recording(&error))
     }
 
-    /// All recordings, in the order of their ids.
-    pub(crate) async fn list(&self) -> Result<Vec<Note>, Problem> {
-        Ok(self.recordings.list().await?.iter().map(|note| Note::clone(note)).collect())
+    /// All recordings that a tenant sees, in the order of their ids.
+    pub(crate) async fn list(&self, tenant: &Tenant) -> Result<Vec<Note>, Problem> {
+        Ok(self.recordings.list(tenant).await?.iter().map(|note| Note::clone(note)).collect())
     }
 
-    /// Bytes of all recordings.
+    /// Bytes of all recordings, whoever owns them.
     pub(crate) async fn bytes(&self) -> Result<u64, Problem> {
-        Ok(self.recordings.list().await?.iter().map(|note| note.bytes).sum())
+        Ok(self.recordings.notes.list_all().await?.iter().map(|(_, note)| note.bytes).sum())
     }
 
-    /// Forgets a recording. Who reads it already can finish.
-    pub(crate) async fn remove(&self, id: &str) -> Result<(), Problem> {
-        if self.recordings.remove(id).await? { Ok(()) } else { Err(unknown(id)) }
+    /// Forgets a recording for a tenant, or for all if it sees all. Who reads it already can finish.
+    pub(crate) async fn remove(&self, tenant: &Tenant, id: &str) -> Result<(), Problem> {
+        match self.recordings.remove(tenant, id).await? {
+            Removed::Nothing => Err(unknown(id)),
+            Removed::Note | Removed::Data => Ok(()),
+        }
     }
 }
 

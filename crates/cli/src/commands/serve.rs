@@ -36,7 +36,8 @@ pub(crate) struct Arguments {
     /// TOML file of settings, named as the flags are with _ for -
     #[arg(long, env = "JOULEPATH_CONFIG")]
     config: Option<PathBuf>,
-    /// File of tokens, one to a line: requests then need `Authorization: Bearer TOKEN`
+    /// File of tokens, NAME:TOKEN to a line: requests then need `Authorization: Bearer TOKEN`, and see only what their tenant
+    /// NAME owns; a token without a name belongs to the tenant `default`, one of the name `admin` sees everything
     #[arg(long, env = "JOULEPATH_TOKEN_FILE")]
     token_file: Option<PathBuf>,
     /// Let anybody ask who reaches the address, without a token
@@ -142,7 +143,7 @@ fn tokens(file: Option<&Path>) -> Result<Tokens, BadInput> {
     let of_file = file.map(read).transpose()?.unwrap_or_default();
     let of_environment = Tokens::parse(&std::env::var(TOKENS).unwrap_or_default())
         .map_err(|error| BadInput(format!("{TOKENS}: {error}")))?;
-    Ok(of_file.and(of_environment))
+    of_file.and(of_environment).map_err(|error| BadInput(format!("{TOKENS}: {error}")))
 }
 
 fn log(format: LogFormat) {

@@ -45,7 +45,12 @@ pub(crate) async fn conditional(path: Option<MatchedPath>, request: Request, nex
     };
     let tagged = keep != NEVER;
     response.headers_mut().insert(header::CACHE_CONTROL, keep);
-    if tagged { tag(response, held.as_ref()).await } else { response }
+    if !tagged {
+        return response;
+    }
+    // What one tenant sees is not there for another whose token comes from the same browser.
+    response.headers_mut().append(header::VARY, HeaderValue::from_static("authorization"));
+    tag(response, held.as_ref()).await
 }
 
 /// Tags a short body that has no tag yet, and leaves out one that the client has. A body that is still being made, as events

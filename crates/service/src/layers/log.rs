@@ -14,6 +14,7 @@ pub(super) fn span<B>(request: &Request<B>) -> Span {
         method = %request.method(),
         path = request.uri().path(),
         request_id = id.unwrap_or_default(),
+        tenant = Empty,
         status = Empty,
     )
 }

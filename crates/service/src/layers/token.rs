@@ -1,4 +1,4 @@
-//! `Authorization: Bearer`: who has a token may ask.
+//! `Authorization: Bearer`: who has a token may ask, as the tenant that holds it.
 
 use axum::{
     extract::{Request, State},
@@ -8,22 +8,31 @@ use axum::{
 };
 
 use crate::{
-    Tokens,
+    Tenant, Tokens,
     problem::{Problem, ProblemType},
 };
 
-/// Refuses a request without one of the tokens; without any tokens, everybody may ask.
+/// Refuses a request without one of the tokens; without any tokens, everybody may ask as the tenant `default`.
 pub(crate) async fn needs_token(State(tokens): State<Tokens>, request: Request, next: Next) -> Response {
     if tokens.is_empty() {
-        return next.run(request).await;
+        return run_as(Tenant::default(), request, next).await;
     }
     let field = request.headers().get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
-    let detail = match field.and_then(bearer) {
-        Some(token) if tokens.admit(token) => return next.run(request).await,
+    let token = field.and_then(bearer);
+    if let Some(tenant) = token.and_then(|token| tokens.holder(token)) {
+        return run_as(tenant.clone(), request, next).await;
+    }
+    let detail = match token {
         Some(_) => "the token is not one of the service's: ask who runs it for one",
         None => "this service wants a token: send it as `Authorization: Bearer TOKEN`",
     };
     Problem::new(ProblemType::Unauthorized, detail).into_response()
+}
+
+async fn run_as(tenant: Tenant, mut request: Request, next: Next) -> Response {
+    tracing::Span::current().record("tenant", tenant.name());
+    request.extensions_mut().insert(tenant);
+    next.run(request).await
 }
 
 /// The token of a field's value; the scheme's case does not matter (RFC 9110, section 11.1).

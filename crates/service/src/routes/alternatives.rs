@@ -11,7 +11,7 @@ use super::{
     robots::RobotChoice,
 };
 use crate::{
-    Engine,
+    Engine, Tenant,
     answer::Json,
     body::JsonBody,
     problem::{Problem, ProblemType},
@@ -115,12 +115,15 @@ pub struct AlternativesAnswer {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(mut request): JsonBody<AlternativesRequest>,
 ) -> Result<Json<AlternativesAnswer>, Problem> {
     let mut plan = request.plan()?;
-    with_planner(&engine, &mut plan, move |planner, plan, patience| answer(planner, &request, plan, patience))
-        .await
-        .map(Json)
+    with_planner(&engine, &tenant, &mut plan, move |planner, plan, patience| {
+        answer(planner, &request, plan, patience)
+    })
+    .await
+    .map(Json)
 }
 
 impl AlternativesRequest {

@@ -21,7 +21,7 @@ use super::{
     robots::RobotChoice,
 };
 use crate::{
-    Engine,
+    Engine, Tenant,
     body::JsonBody,
     job::Job,
     job_records::Description,
@@ -66,31 +66,38 @@ pub struct CalibrateRequest {
         (status = 404, description = "No such robot or recording", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "As many jobs of the tenant wait or run as may", body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "Too many jobs, or the store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(request): JsonBody<CalibrateRequest>,
 ) -> Result<Accepted, Problem> {
-    let (description, work) = prepared(&engine, request).await?;
+    let (description, work) = prepared(&engine, &tenant, request).await?;
     Ok(accepted(engine.ask(&description, work).await?))
 }
 
 /// The work of a request that was accepted before.
-pub(super) async fn work(engine: &Engine, request: &Value) -> Result<Box<dyn job_run::Work>, Problem> {
-    prepared(engine, accepted_before(request)?).await.map(|(_, work)| work)
+pub(super) async fn work(
+    engine: &Engine,
+    description: &Description,
+) -> Result<Box<dyn job_run::Work>, Problem> {
+    let request = accepted_before(&description.request)?;
+    prepared(engine, &description.owner, request).await.map(|(_, work)| work)
 }
 
-/// What a request stands for.
+/// What a tenant's request stands for.
 async fn prepared(
     engine: &Engine,
+    tenant: &Tenant,
     mut request: CalibrateRequest,
 ) -> Result<(Description, Box<dyn job_run::Work>), Problem> {
-    request.robot.look_up(engine.robots()).await?;
+    request.robot.look_up(engine.robots(), tenant).await?;
     let kept = to_value(&request)?;
-    let work = Work::prepare(engine, request).await?;
-    let description = Description::new("calibrate", kept, inputs(&work.notes));
+    let work = Work::prepare(engine, tenant, request).await?;
+    let description = Description::new(tenant, "calibrate", kept, inputs(&work.notes));
     Ok((description, Box::new(work)))
 }
 
@@ -105,7 +112,7 @@ struct Work {
 
 impl Work {
     /// Refuses at once what can be known without reading a recording.
-    async fn prepare(engine: &Engine, request: CalibrateRequest) -> Result<Work, Problem> {
+    async fn prepare(engine: &Engine, tenant: &Tenant, request: CalibrateRequest) -> Result<Work, Problem> {
         let CalibrateRequest { robot, recordings, method, reference_surface, map, lift } = request;
         let count = recordings.len();
         if !(1..=MOST_RECORDINGS).contains(&count) {
@@ -121,7 +128,7 @@ impl Work {
         }
         Ok(Work {
             robot,
-            notes: notes(engine, &recordings, "/recordings").await?,
+            notes: notes(engine, tenant, &recordings, "/recordings").await?,
             map: map.as_ref().map(map_from).transpose()?,
             method,
             options: Options { reference_surface },
@@ -139,11 +146,16 @@ impl job_run::Work for Work {
     }
 }
 
-/// What is known of the recordings of a request's field.
-pub(super) async fn notes(engine: &Engine, ids: &[String], field: &str) -> Result<Vec<Note>, Problem> {
+/// What a tenant knows of the recordings of a request's field.
+pub(super) async fn notes(
+    engine: &Engine,
+    tenant: &Tenant,
+    ids: &[String],
+    field: &str,
+) -> Result<Vec<Note>, Problem> {
     let mut notes = Vec::with_capacity(ids.len());
     for (i, id) in ids.iter().enumerate() {
-        let note = engine.recordings().note(id).await;
+        let note = engine.recordings().note(tenant, id).await;
         notes.push(note.map_err(|problem| problem.at(format!("{field}/{i}")))?);
     }
     Ok(notes)

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::plan::{PlanAnswer, PlanRequest, with_planner};
-use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
+use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
 
 /// Three paths between the same ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -39,9 +39,10 @@ pub struct CompareAnswer {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Json<CompareAnswer>, Problem> {
-    let found = with_planner(&engine, &mut request, answer).await?;
+    let found = with_planner(&engine, &tenant, &mut request, answer).await?;
     let expanded = [&found.energy, &found.distance, &found.time].map(|path| path.search.expanded);
     engine.metrics().expansions.inc_by(expanded.iter().sum());
     Ok(Json(found))

@@ -19,7 +19,7 @@ use super::{
     robots::RobotChoice,
 };
 use crate::{
-    Engine,
+    Engine, Tenant,
     body::JsonBody,
     job::Job,
     job_records::Description,
@@ -65,32 +65,39 @@ pub struct DiagnoseRequest {
         (status = 404, description = "No such robot or recording", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
         (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 429, description = "As many jobs of the tenant wait or run as may", body = Problem, content_type = "application/problem+json"),
         (status = 503, description = "Too many jobs, or the store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(request): JsonBody<DiagnoseRequest>,
 ) -> Result<Accepted, Problem> {
-    let (description, work) = prepared(&engine, request).await?;
+    let (description, work) = prepared(&engine, &tenant, request).await?;
     Ok(accepted(engine.ask(&description, work).await?))
 }
 
 /// The work of a request that was accepted before.
-pub(super) async fn work(engine: &Engine, request: &Value) -> Result<Box<dyn job_run::Work>, Problem> {
-    prepared(engine, accepted_before(request)?).await.map(|(_, work)| work)
+pub(super) async fn work(
+    engine: &Engine,
+    description: &Description,
+) -> Result<Box<dyn job_run::Work>, Problem> {
+    let request = accepted_before(&description.request)?;
+    prepared(engine, &description.owner, request).await.map(|(_, work)| work)
 }
 
-/// What a request stands for.
+/// What a tenant's request stands for.
 async fn prepared(
     engine: &Engine,
+    tenant: &Tenant,
     mut request: DiagnoseRequest,
 ) -> Result<(Description, Box<dyn job_run::Work>), Problem> {
-    request.robot.look_up(engine.robots()).await?;
+    request.robot.look_up(engine.robots(), tenant).await?;
     let kept = to_value(&request)?;
-    let work = Work::prepare(engine, request).await?;
+    let work = Work::prepare(engine, tenant, request).await?;
     let inputs = json!({ "recordings": inputs(&work.suspect), "reference": inputs(&work.healthy) });
-    Ok((Description::new("diagnose", kept, inputs), Box::new(work)))
+    Ok((Description::new(tenant, "diagnose", kept, inputs), Box::new(work)))
 }
 
 /// A diagnosis whose request was found right.
@@ -104,7 +111,7 @@ struct Work {
 
 impl Work {
     /// Refuses at once what can be known without reading a recording.
-    async fn prepare(engine: &Engine, request: DiagnoseRequest) -> Result<Work, Problem> {
+    async fn prepare(engine: &Engine, tenant: &Tenant, request: DiagnoseRequest) -> Result<Work, Problem> {
         let DiagnoseRequest { robot, recordings, reference, ruled_out, map } = request;
         for (ids, least, field) in [(&recordings, 1, "/recordings"), (&reference, 0, "/reference")] {
             let count = ids.len();
@@ -116,8 +123,8 @@ impl Work {
         }
         Ok(Work {
             robot: robot.robot()?,
-            suspect: notes(engine, &recordings, "/recordings").await?,
-            healthy: notes(engine, &reference, "/reference").await?,
+            suspect: notes(engine, tenant, &recordings, "/recordings").await?,
+            healthy: notes(engine, tenant, &reference, "/reference").await?,
             ruled_out: mechanisms(&ruled_out)?,
             map: map.as_ref().map(map_from).transpose()?,
         })

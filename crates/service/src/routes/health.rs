@@ -4,10 +4,7 @@ use axum::{Json, extract::State};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use crate::{
-    Engine,
-    problem::{Problem, ProblemType},
-};
+use crate::{Engine, problem::Problem};
 
 /// The service is alive, or ready.
 #[derive(Debug, Serialize, ToSchema)]
@@ -30,18 +27,16 @@ pub(crate) async fn healthz() -> Json<Health> {
     Health::ok()
 }
 
-/// Should the service be asked? Not once it has been told to end, nor while its store is out of reach.
+/// Should the service be asked? Not once it has been told to end, nor while its store is out of reach, nothing can be computed, or
+/// a cancelled job does not end.
 #[utoipa::path(
     get, path = "/readyz", tag = "service",
     responses(
         (status = 200, description = "The service can take requests", body = Health),
-        (status = 503, description = "It is about to end, or its store is out of reach", body = Problem, content_type = "application/problem+json")
+        (status = 503, description = "It is about to end, cannot compute, or cannot reach its store", body = Problem, content_type = "application/problem+json")
     )
 )]
 pub(crate) async fn readyz(State(engine): State<Engine>) -> Result<Json<Health>, Problem> {
-    if engine.is_ending() {
-        return Err(Problem::new(ProblemType::NotReady, "the service is about to end: ask another replica"));
-    }
-    engine.check_store().await?;
+    engine.check_ready().await?;
     Ok(Health::ok())
 }

@@ -17,7 +17,7 @@ use tokio::sync::watch;
 use utoipa::ToSchema;
 
 use crate::{
-    Engine,
+    Engine, Tenant,
     answer::Json,
     body::Id,
     job::{JobState, Progress, Status},
@@ -38,8 +38,8 @@ pub(crate) fn accepted(job: JobAnswer) -> Accepted {
 /// The work that a description stands for.
 pub(crate) async fn work(engine: &Engine, description: &Description) -> Result<Box<dyn Work>, Problem> {
     match description.kind.as_str() {
-        "calibrate" => super::calibrate::work(engine, &description.request).await,
-        "diagnose" => super::diagnose::work(engine, &description.request).await,
+        "calibrate" => super::calibrate::work(engine, description).await,
+        "diagnose" => super::diagnose::work(engine, description).await,
         kind => {
             let detail = format!("this service does no `{kind}`: a newer one asked for it");
             Err(Problem::new(ProblemType::Internal, detail))
@@ -80,6 +80,57 @@ impl JobAnswer {
     }
 }
 
+/// A job in brief.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct JobSummary {
+    /// Hash of what it does and with what, to follow it by.
+    #[schema(example = "5b7c1f0e9a3d4c2b8e6f7a1d0c9b8a7f")]
+    pub id: String,
+    /// What it does.
+    #[schema(example = "calibrate")]
+    pub kind: String,
+    /// Where it stands.
+    pub state: JobState,
+    /// How often it has been taken up.
+    #[schema(example = 1)]
+    pub attempt: u64,
+    /// What it is, or was last, busy with.
+    pub progress: Progress,
+}
+
+impl From<&JobAnswer> for JobSummary {
+    fn from(job: &JobAnswer) -> Self {
+        let JobAnswer { id, kind, state, attempt, progress, .. } = job.clone();
+        JobSummary { id, kind, state, attempt, progress }
+    }
+}
+
+/// Jobs of the tenant that asks.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct JobList {
+    /// Those that wait or run, the latest first, then those that have ended, the latest first.
+    pub jobs: Vec<JobSummary>,
+}
+
+/// One's own jobs in brief, without their results.
+#[utoipa::path(
+    get, path = "/v1/jobs", tag = "jobs",
+    responses(
+        (status = 200, description = "Jobs that wait, run or have ended and are not forgotten", body = JobList),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn list(State(engine): State<Engine>, tenant: Tenant) -> Result<Json<JobList>, Problem> {
+    let mut jobs = engine.records().list(&tenant).await?;
+    for listed in &mut jobs {
+        // The service that works on a job knows more than it has written down.
+        if let Some(job) = engine.jobs().get(&listed.id) {
+            *listed = JobSummary::from(&JobAnswer::of(&job.id, &job.kind, job.status()));
+        }
+    }
+    Ok(Json(JobList { jobs }))
+}
+
 /// One job: its state, progress, and result or problem.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", tag = "jobs",
@@ -90,11 +141,15 @@ impl JobAnswer {
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<JobAnswer>, Problem> {
-    if let Some(job) = engine.jobs().get(&id) {
+pub(crate) async fn read(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<Json<JobAnswer>, Problem> {
+    if let Some(job) = engine.jobs().get(&id).filter(|job| tenant.sees(&job.owner)) {
         return Ok(Json(JobAnswer::of(&job.id, &job.kind, job.status())));
     }
-    Ok(Json(engine.records().look_up(&id).await?.job))
+    Ok(Json(engine.records().look_up(&tenant, &id).await?.1.job))
 }
 
 /// Cancel a job that waits or runs; forget one that has ended.
@@ -108,8 +163,12 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<Response, Problem> {
-    Ok(match engine.call_off(&id).await? {
+pub(crate) async fn remove(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<Response, Problem> {
+    Ok(match engine.call_off(&tenant, &id).await? {
         Some(job) => Json(job).into_response(),
         None => StatusCode::NO_CONTENT.into_response(),
     })
@@ -132,11 +191,12 @@ pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<R
 )]
 pub(crate) async fn events(
     State(engine): State<Engine>,
+    tenant: Tenant,
     Id(id): Id,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let seen = headers.get("last-event-id").and_then(|id| id.to_str().ok()).and_then(|id| id.parse().ok());
-    let follower = Follower::of(&engine, &id, seen).await?;
+    let follower = Follower::of(&engine, &tenant, &id, seen).await?;
     let status = follower.changes.borrow().clone();
     if status.state.is_final() && seen == Some(status.sequence) {
         // A browser's event source comes back after every end; this status tells it to stay away.
@@ -158,16 +218,16 @@ struct Follower {
 }
 
 impl Follower {
-    /// Follows a job, wherever it is worked on.
-    async fn of(engine: &Engine, id: &str, seen: Option<u64>) -> Result<Follower, Problem> {
-        if let Some(job) = engine.jobs().get(id) {
+    /// Follows a job that a tenant sees, wherever it is worked on.
+    async fn of(engine: &Engine, tenant: &Tenant, id: &str, seen: Option<u64>) -> Result<Follower, Problem> {
+        if let Some(job) = engine.jobs().get(id).filter(|job| tenant.sees(&job.owner)) {
             let changes = job.follow();
             return Ok(Follower { id: job.id.clone(), kind: job.kind.clone(), changes, seen });
         }
-        let known = engine.records().look_up(id).await?;
+        let (owner, known) = engine.records().look_up(tenant, id).await?;
         let (id, kind) = (known.job.id.clone(), known.job.kind.clone());
         let (changed, changes) = watch::channel(status(known));
-        tokio::spawn(look_out(engine.clone(), id.clone(), changed));
+        tokio::spawn(look_out(engine.clone(), owner, id.clone(), changed));
         Ok(Follower { id, kind, changes, seen })
     }
 
@@ -204,14 +264,14 @@ impl Follower {
 }
 
 /// Looks a job up again and again, until it has ended, is forgotten, or nobody follows it any more.
-async fn look_out(engine: Engine, id: String, changed: watch::Sender<Status>) {
+async fn look_out(engine: Engine, owner: Tenant, id: String, changed: watch::Sender<Status>) {
     while !changed.borrow().is_last() {
         tokio::select! {
             () = changed.closed() => return,
             () = tokio::time::sleep(LOOK) => {}
         }
-        match engine.records().look_up(&id).await {
-            Ok(known) => drop(changed.send_replace(status(known))),
+        match engine.records().look_up(&owner, &id).await {
+            Ok((_, known)) => drop(changed.send_replace(status(known))),
             Err(problem) if problem.kind == ProblemType::StoreUnavailable => {}
             Err(_) => return,
         }

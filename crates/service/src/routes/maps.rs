@@ -12,7 +12,7 @@ use terrain::{MapFile, Patch, Terrain, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
-    Engine,
+    Engine, Tenant,
     accept::preferred,
     answer::{Json, streamed},
     body::{Content, Id, JsonBody, content_type, from_json, read as read_body},
@@ -92,6 +92,7 @@ impl MapSummary {
 )]
 pub(crate) async fn create(
     State(engine): State<Engine>,
+    tenant: Tenant,
     request: Request,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
     let parse = parser(&content_type(&request))?;
@@ -106,7 +107,7 @@ pub(crate) async fn create(
         })
         .await?;
     let summary = map.summary.clone();
-    let new = engine.maps().insert(map, engine.limits().stored_cells).await?;
+    let new = engine.maps().insert(&tenant, map, &engine.limits().maps()).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
 }
 
@@ -169,8 +170,8 @@ pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Proble
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<MapList>, Problem> {
-    Ok(Json(MapList { maps: engine.maps().list().await? }))
+pub(crate) async fn list(State(engine): State<Engine>, tenant: Tenant) -> Result<Json<MapList>, Problem> {
+    Ok(Json(MapList { maps: engine.maps().list(&tenant).await? }))
 }
 
 /// How many cells to send.
@@ -199,12 +200,13 @@ pub struct CellsQuery {
 )]
 pub(crate) async fn read(
     State(engine): State<Engine>,
+    tenant: Tenant,
     Id(id): Id,
     headers: HeaderMap,
     uri: Uri,
 ) -> Result<Response, Problem> {
     let CellsQuery { max_cells } = cells_query(&uri)?;
-    let map: Arc<Terrain> = engine.maps().get(&id).await?;
+    let map: Arc<Terrain> = engine.maps().get(&tenant, &id).await?;
     let form = preferred(&headers, &["application/json", "application/octet-stream"]);
     let about = |tag: String| [(header::CONTENT_TYPE, form.to_owned()), (header::ETAG, tag)];
     if form == "application/json" {
@@ -246,10 +248,11 @@ fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
 )]
 pub(crate) async fn change(
     State(engine): State<Engine>,
+    tenant: Tenant,
     Id(id): Id,
     JsonBody(patch): JsonBody<Patch>,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
-    let before = engine.maps().get(&id).await?;
+    let before = engine.maps().get(&tenant, &id).await?;
     let (map, changed) = engine
         .compute(move |_| {
             let (terrain, changed) =
@@ -260,8 +263,9 @@ pub(crate) async fn change(
         .await?;
     let summary = map.summary.clone();
     let terrain = Arc::clone(&map.terrain);
-    let new = engine.maps().insert(map, engine.limits().stored_cells).await?;
-    if new {
+    let new = engine.maps().insert(&tenant, map, &engine.limits().maps()).await?;
+    // Another tenant may have the changed map, and planners for it, already.
+    if new && !engine.planners().knows(&summary.id) {
         let (own, changed_id) = (engine.clone(), summary.id.clone());
         engine
             .compute(move |_| {
@@ -284,8 +288,13 @@ pub(crate) async fn change(
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
-    engine.maps().remove(&id).await?;
-    engine.planners().forget(&id);
+pub(crate) async fn remove(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<StatusCode, Problem> {
+    if engine.maps().remove(&tenant, &id).await? {
+        engine.planners().forget(&id);
+    }
     Ok(StatusCode::NO_CONTENT)
 }

@@ -13,7 +13,7 @@ use super::{
     robots::RobotChoice,
 };
 use crate::{
-    Engine, Limits,
+    Engine, Limits, Tenant,
     answer::Json,
     body::JsonBody,
     problem::{Problem, ProblemType},
@@ -94,11 +94,12 @@ pub struct UnreachableAnswer {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(mut request): JsonBody<MatrixRequest>,
 ) -> Result<Json<MatrixAnswer>, Problem> {
     request.refuse_too_many(engine.limits())?;
     let mut plan = request.plan()?;
-    with_planner(&engine, &mut plan, move |planner, _, patience| answer(planner, &request, patience))
+    with_planner(&engine, &tenant, &mut plan, move |planner, _, patience| answer(planner, &request, patience))
         .await
         .map(Json)
 }

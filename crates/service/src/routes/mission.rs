@@ -13,7 +13,7 @@ use super::{
     range::{SpreadAnswer, full, stalled},
     robots::RobotChoice,
 };
-use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
+use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
 
 /// Waypoints to visit on a charge.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
@@ -230,12 +230,15 @@ pub struct MissionSearch {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(mut request): JsonBody<MissionRequest>,
 ) -> Result<Json<MissionAnswer>, Problem> {
     let mut plan = request.plan();
-    with_planner(&engine, &mut plan, move |planner, plan, patience| answer(planner, &request, plan, patience))
-        .await
-        .map(Json)
+    with_planner(&engine, &tenant, &mut plan, move |planner, plan, patience| {
+        answer(planner, &request, plan, patience)
+    })
+    .await
+    .map(Json)
 }
 
 impl MissionRequest {

@@ -18,7 +18,7 @@ use utoipa::ToSchema;
 
 use super::robots::RobotChoice;
 use crate::{
-    Engine,
+    Engine, Tenant,
     accept::preferred,
     answer::Written,
     body::JsonBody,
@@ -158,12 +158,13 @@ fn one() -> f64 {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Written, Problem> {
     let form =
         preferred(&headers, &["application/json", "application/geo+json", "text/csv", "application/gpx+xml"]);
-    let found = with_planner(&engine, &mut request, answer).await?;
+    let found = with_planner(&engine, &tenant, &mut request, answer).await?;
     engine.metrics().expansions.inc_by(found.search.expanded);
     Ok(Written::new(form, move |out| match form {
         "application/geo+json" => geojson::path(&found, out),

@@ -13,7 +13,7 @@ use super::{
     plan::{GoalPose, PlanRequest, StartPose, with_planner},
     robots::RobotChoice,
 };
-use crate::{Engine, answer::Json, body::JsonBody, problem::Problem};
+use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
 
 /// Whether, how likely, and with what charge left a robot gets to a goal and back.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
@@ -235,12 +235,15 @@ pub struct CarriesAnswer {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(mut request): JsonBody<RangeRequest>,
 ) -> Result<Json<RangeAnswer>, Problem> {
     let mut plan = request.plan();
-    with_planner(&engine, &mut plan, move |planner, plan, patience| answer(planner, &request, plan, patience))
-        .await
-        .map(Json)
+    with_planner(&engine, &tenant, &mut plan, move |planner, plan, patience| {
+        answer(planner, &request, plan, patience)
+    })
+    .await
+    .map(Json)
 }
 
 impl RangeRequest {

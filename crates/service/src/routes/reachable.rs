@@ -20,7 +20,7 @@ use super::{
     robots::RobotChoice,
 };
 use crate::{
-    Engine,
+    Engine, Tenant,
     accept::preferred,
     answer::Pieces,
     body::JsonBody,
@@ -144,6 +144,7 @@ pub struct ContourProperties {
 )]
 pub(crate) async fn handler(
     State(engine): State<Engine>,
+    tenant: Tenant,
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<ReachableRequest>,
 ) -> Result<Response, Problem> {
@@ -151,7 +152,7 @@ pub(crate) async fn handler(
     let as_raster = form == "image/tiff";
     let mut plan = request.plan();
     let memory = engine.admission().memory().clone();
-    let pieces = with_planner(&engine, &mut plan, move |planner, _, patience| {
+    let pieces = with_planner(&engine, &tenant, &mut plan, move |planner, _, patience| {
         let found = Found::of(planner, &request, patience)?;
         if as_raster {
             let raster = found.raster()?;

@@ -18,7 +18,7 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
-    Engine,
+    Engine, Tenant,
     answer::Json,
     body::{Id, content_type},
     memory::hold,
@@ -116,6 +116,7 @@ impl From<Note> for RecordingAnswer {
 )]
 pub(crate) async fn create(
     State(engine): State<Engine>,
+    tenant: Tenant,
     request: Request,
 ) -> Result<(StatusCode, Json<RecordingAnswer>), Problem> {
     let format = format_of(&content_type(&request))?;
@@ -123,14 +124,14 @@ pub(crate) async fn create(
     let map = map.map(map_choice).transpose()?;
     map.as_ref().map(map_from).transpose()?;
     let (parts, body) = request.into_parts();
-    let received = receive(&engine, &parts.headers, body).await?;
+    let received = receive(&engine, &tenant, &parts.headers, body).await?;
     let reading = Reading::of(&engine, format, received.bytes);
     hold(Arc::new(engine.admission().reserve(reading.bytes)?));
     let name = name.unwrap_or_else(|| "recording".into());
     let note =
         Note { id: received.id.clone(), format, bytes: received.bytes, name, map, report: Value::Null };
     let (note, received) = engine.work(move |left| checked(received, note, reading.room, left)).await?;
-    let new = engine.recordings().keep(received, &note).await?;
+    let new = engine.recordings().keep(&tenant, received, &note, &engine.limits().quota()).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
 }
 
@@ -220,8 +221,11 @@ fn format_of(kind: &str) -> Result<Format, Problem> {
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingList>, Problem> {
-    let notes = engine.recordings().list().await?;
+pub(crate) async fn list(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+) -> Result<Json<RecordingList>, Problem> {
+    let notes = engine.recordings().list(&tenant).await?;
     Ok(Json(RecordingList { recordings: notes.iter().map(RecordingSummary::from).collect() }))
 }
 
@@ -235,8 +239,12 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RecordingL
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<RecordingAnswer>, Problem> {
-    Ok(Json(engine.recordings().note(&id).await?.into()))
+pub(crate) async fn read(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<Json<RecordingAnswer>, Problem> {
+    Ok(Json(engine.recordings().note(&tenant, &id).await?.into()))
 }
 
 /// Forget a recording. Jobs that read it already finish.
@@ -249,7 +257,11 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn remove(State(engine): State<Engine>, Id(id): Id) -> Result<StatusCode, Problem> {
-    engine.recordings().remove(&id).await?;
+pub(crate) async fn remove(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<StatusCode, Problem> {
+    engine.recordings().remove(&tenant, &id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -9,10 +9,10 @@ use serde::{
 use utoipa::ToSchema;
 
 use crate::{
-    Engine,
+    Engine, Tenant,
     answer::Json,
     body::{Id, JsonBody},
-    problem::Problem,
+    problem::{Problem, ProblemType},
     robots::RobotStore,
 };
 
@@ -27,10 +27,10 @@ pub enum RobotChoice {
 }
 
 impl RobotChoice {
-    /// Puts a stored robot in the place of its id.
-    pub(crate) async fn look_up(&mut self, stored: &RobotStore) -> Result<(), Problem> {
+    /// Puts a stored robot that a tenant sees in the place of its id.
+    pub(crate) async fn look_up(&mut self, stored: &RobotStore, tenant: &Tenant) -> Result<(), Problem> {
         if let RobotChoice::Name(id) = self
-            && let Some(robot) = stored.get(id).await?
+            && let Some(robot) = stored.get(tenant, id).await?
         {
             *self = RobotChoice::File(Box::new(RobotFile::from(robot)));
         }
@@ -109,10 +109,11 @@ pub struct StoredRobot {
 )]
 pub(crate) async fn create(
     State(engine): State<Engine>,
+    tenant: Tenant,
     JsonBody(file): JsonBody<RobotFile>,
 ) -> Result<(StatusCode, Json<StoredRobot>), Problem> {
     let robot = Robot::try_from(file).map_err(|error| Problem::invalid_robot(&error, ""))?;
-    let (id, new) = engine.robots().insert(&robot).await?;
+    let (id, new) = engine.robots().insert(&tenant, &robot, &engine.limits().quota()).await?;
     let status = if new { StatusCode::CREATED } else { StatusCode::OK };
     Ok((status, Json(StoredRobot { id, robot })))
 }
@@ -125,11 +126,16 @@ pub(crate) async fn create(
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RobotList>, Problem> {
+pub(crate) async fn list(State(engine): State<Engine>, tenant: Tenant) -> Result<Json<RobotList>, Problem> {
     let mut robots = builtin::all();
     robots.sort_by(|a, b| a.name.cmp(&b.name));
-    let stored =
-        engine.robots().list().await?.into_iter().map(|(id, robot)| StoredRobot { id, robot }).collect();
+    let stored = engine
+        .robots()
+        .list(&tenant)
+        .await?
+        .into_iter()
+        .map(|(id, robot)| StoredRobot { id, robot })
+        .collect();
     Ok(Json(RobotList { robots, stored }))
 }
 
@@ -143,8 +149,12 @@ pub(crate) async fn list(State(engine): State<Engine>) -> Result<Json<RobotList>
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Json<Robot>, Problem> {
-    if let Some(robot) = engine.robots().get(&id).await? {
+pub(crate) async fn read(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<Json<Robot>, Problem> {
+    if let Some(robot) = engine.robots().get(&tenant, &id).await? {
         return Ok(Json(robot));
     }
     let found = builtin::by_name(&id).map_err(|error| {
@@ -153,4 +163,29 @@ pub(crate) async fn read(State(engine): State<Engine>, Id(id): Id) -> Result<Jso
         problem
     })?;
     Ok(Json(found))
+}
+
+/// Forget a stored robot. Jobs that were started with it finish.
+#[utoipa::path(
+    delete, path = "/v1/robots/{id}", tag = "robots",
+    params(("id" = String, Path, description = "Id of a stored robot")),
+    responses(
+        (status = 204, description = "Forgotten"),
+        (status = 403, description = "The robot is built in, or a page of another origin asks", body = Problem, content_type = "application/problem+json"),
+        (status = 404, description = "No such robot", body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn remove(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<StatusCode, Problem> {
+    if builtin::by_name(&id).is_ok() {
+        let detail =
+            format!("`{id}` is built in and cannot be removed; stored robots are removed by their ids");
+        return Err(Problem::new(ProblemType::BuiltIn, detail));
+    }
+    engine.robots().remove(&tenant, &id).await?;
+    Ok(StatusCode::NO_CONTENT)
 }

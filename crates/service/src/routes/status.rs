@@ -5,7 +5,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::maps::MapSummary;
-use crate::{Engine, Limits, answer::Json, problem::Problem};
+use crate::{Engine, Limits, Tenant, answer::Json, problem::Problem, store::Usage};
 
 /// What the service is, what it allows, and what it has.
 #[derive(Debug, Serialize, ToSchema)]
@@ -14,8 +14,32 @@ pub struct Status {
     pub version: &'static str,
     /// What one request may ask for.
     pub limits: LimitsAnswer,
-    /// Maps at hand, in the order of their ids.
+    /// The tenant that asks, and what it keeps.
+    pub tenant: TenantAnswer,
+    /// Maps that the tenant sees, in the order of their ids.
     pub maps: Vec<MapSummary>,
+}
+
+/// A tenant and what it keeps; its limits are `tenant_bytes`, `tenant_objects` and `tenant_jobs`.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct TenantAnswer {
+    /// Name of the tenant, `default` where tokens have no names.
+    #[schema(example = "default")]
+    pub name: String,
+    /// Bytes of its maps, robots and recordings.
+    pub bytes: u64,
+    /// Number of its maps, robots and recordings.
+    pub objects: usize,
+    /// Number of its jobs that wait or run, at all services over the store.
+    pub jobs: usize,
+}
+
+impl TenantAnswer {
+    async fn of(engine: &Engine, tenant: &Tenant) -> Result<TenantAnswer, Problem> {
+        let Usage { bytes, objects } = engine.usage(tenant).await?;
+        let jobs = engine.records().open_of(tenant).await?;
+        Ok(TenantAnswer { name: tenant.name().to_owned(), bytes, objects, jobs })
+    }
 }
 
 /// What one request may ask for.
@@ -41,8 +65,16 @@ pub struct LimitsAnswer {
     pub parallel_plans: usize,
     /// Requests that may wait to compute at most.
     pub queued_plans: usize,
+    /// Most bytes of maps, robots and recordings that a tenant may keep.
+    pub tenant_bytes: u64,
+    /// Most maps, robots and recordings that a tenant may keep.
+    pub tenant_objects: usize,
+    /// Most jobs of a tenant that may wait or run.
+    pub tenant_jobs: usize,
     /// Jobs that may wait or run.
     pub open_jobs: usize,
+    /// Longest time for one job [s].
+    pub job_time_s: f64,
     /// Longest pause while a body is sent [s].
     pub body_pause_s: f64,
 }
@@ -60,7 +92,11 @@ impl From<&Limits> for LimitsAnswer {
             request_memory_bytes: limits.request_memory_bytes,
             parallel_plans: limits.parallel_plans,
             queued_plans: limits.queued_plans,
+            tenant_bytes: limits.tenant_bytes,
+            tenant_objects: limits.tenant_objects,
+            tenant_jobs: limits.tenant_jobs,
             open_jobs: limits.open_jobs,
+            job_time_s: limits.job_time.as_secs_f64(),
             body_pause_s: limits.body_pause.as_secs_f64(),
         }
     }
@@ -74,10 +110,11 @@ impl From<&Limits> for LimitsAnswer {
         (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
     )
 )]
-pub(crate) async fn handler(State(engine): State<Engine>) -> Result<Json<Status>, Problem> {
+pub(crate) async fn handler(State(engine): State<Engine>, tenant: Tenant) -> Result<Json<Status>, Problem> {
     Ok(Json(Status {
         version: env!("CARGO_PKG_VERSION"),
         limits: engine.limits().into(),
-        maps: engine.maps().list().await?,
+        tenant: TenantAnswer::of(&engine, &tenant).await?,
+        maps: engine.maps().list(&tenant).await?,
     }))
 }

@@ -89,10 +89,13 @@ impl Folder {
 /// Removes what services wrote when they were killed: files that were being received, and those that `object_store` writes
 /// beside an object before it takes their place, called as the object with `#` and a number.
 fn sweep_half_written(root: &Path) -> io::Result<()> {
-    for folder in KINDS.into_iter().chain([INCOMING]) {
-        for entry in fs::read_dir(root.join(folder))? {
+    let mut folders: Vec<PathBuf> = KINDS.into_iter().chain([INCOMING]).map(|name| root.join(name)).collect();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder)? {
             let entry = entry?;
-            if folder == INCOMING || entry.file_name().to_string_lossy().contains('#') {
+            if entry.file_type()?.is_dir() {
+                folders.push(entry.path());
+            } else if folder.ends_with(INCOMING) || entry.file_name().to_string_lossy().contains('#') {
                 fs::remove_file(entry.path())?;
             }
         }
@@ -120,14 +123,19 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let left = root.path().join("maps").join("0f.json#1");
         let received = root.path().join(INCOMING).join(".received-x");
+        let of_tenant = root.path().join("tenants/alice/maps");
+        fs::create_dir_all(&of_tenant).unwrap();
+        let (whole, half) = (of_tenant.join("0f.json"), of_tenant.join("0f.json#1"));
         let (first, alone) = Folder::open(Some(root.path())).unwrap();
         assert!(alone);
         fs::write(&left, "half").unwrap();
         fs::write(&received, "half").unwrap();
+        fs::write(&half, "half").unwrap();
+        fs::write(&whole, "whole").unwrap();
         let (second, alone) = Folder::open(Some(root.path())).unwrap();
         assert!(!alone && left.exists() && received.exists(), "they may belong to the first");
         drop((first, second));
         assert!(Folder::open(Some(root.path())).unwrap().1);
-        assert!(!left.exists() && !received.exists());
+        assert!(!left.exists() && !received.exists() && !half.exists() && whole.exists());
     }
 }

@@ -27,6 +27,9 @@ pub(crate) struct Beat {
     pub(crate) count: u64,
     /// The holder has given it up.
     pub(crate) released: bool,
+    /// How often a service died that worked on the job.
+    #[serde(default)]
+    pub(crate) deaths: u64,
     /// Where the job stands.
     pub(crate) sequence: u64,
     pub(crate) state: JobState,
@@ -37,7 +40,13 @@ impl Beat {
     /// The first one of a job whose followers have been told so much.
     pub(crate) fn first(sequence: u64) -> Self {
         let progress = Progress { step: "waiting for its turn".into(), fraction: None };
-        Beat { count: 0, released: false, sequence, state: JobState::Queued, progress }
+        Beat { count: 0, released: false, deaths: 0, sequence, state: JobState::Queued, progress }
+    }
+
+    /// How often a service died that worked on the job, once this lease has ended. One that waited for its turn did no work
+    /// that its service could have died of.
+    pub(crate) fn deaths_at_end(&self) -> u64 {
+        self.deaths + u64::from(!self.released && self.state == JobState::Running)
     }
 }
 
@@ -107,13 +116,20 @@ impl Lease {
 pub(super) async fn release_all(store: &Store) -> object_store::Result<()> {
     for entry in store.listed(KINDS[3]).await? {
         let Some((job, number)) = entry.location.filename().and_then(parsed) else { continue };
-        let beat = Beat { released: true, ..Beat::first(0) };
-        let write = async { store.put(&name(job, number), bytes(&beat)?).await };
-        if write.await.is_err() {
+        if release(store, &name(job, number)).await.is_err() {
             break;
         }
     }
     Ok(())
+}
+
+/// Ends one lease, counting the death of its holder.
+async fn release(store: &Store, name: &str) -> Result<(), Problem> {
+    let written = store.get(name).await?.unwrap_or_default();
+    // What cannot be understood says nothing of its job.
+    let last: Beat = serde_json::from_slice(&written).unwrap_or_else(|_| Beat::first(0));
+    let released = Beat { released: true, deaths: last.deaths_at_end(), ..last };
+    store.put(name, bytes(&released)?).await
 }
 
 /// What was seen of a lease, and since when it has not changed.
@@ -187,6 +203,22 @@ mod tests {
         Lease::clear(&store, "0f").await.unwrap();
         assert!(!other.beat(&store, &Beat::first(0)).await.unwrap(), "the job has ended");
         assert!(Lease::latest(&store, "0f").await.unwrap().is_none());
+    }
+
+    #[tokio::test]
+    async fn a_death_is_counted_once_and_only_of_a_service_that_worked() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open_here(folder.path());
+        let running = Beat { state: JobState::Running, deaths: 1, sequence: 5, ..Beat::first(0) };
+        Lease::take(&store, "0f", 0, &running).await.unwrap().unwrap();
+        Lease::take(&store, "1e", 0, &Beat::first(3)).await.unwrap().unwrap();
+        for _ in 0..2 {
+            release_all(&store).await.unwrap();
+        }
+        let (_, died) = Lease::latest(&store, "0f").await.unwrap().unwrap();
+        assert_eq!((died.released, died.deaths_at_end(), died.sequence), (true, 2, 5));
+        let (_, waited) = Lease::latest(&store, "1e").await.unwrap().unwrap();
+        assert_eq!((waited.released, waited.deaths_at_end(), waited.sequence), (true, 0, 3));
     }
 
     #[test]

@@ -19,13 +19,14 @@ const PARALLEL_READS: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Notes<T> {
     store: Store,
-    kind: &'static str,
+    /// First part of the names of all of them.
+    under: String,
     listed: Mutex<BTreeMap<String, (String, Arc<T>)>>,
 }
 
 impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
-    pub(crate) fn new(store: &Store, kind: &'static str) -> Self {
-        Notes { store: store.clone(), kind, listed: Mutex::default() }
+    pub(crate) fn new(store: &Store, under: impl Into<String>) -> Self {
+        Notes { store: store.clone(), under: under.into(), listed: Mutex::default() }
     }
 
     /// The note of an id, if there is one.
@@ -80,7 +81,7 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
 
     /// The ids that have notes, with what the store says of these.
     pub(crate) async fn entries(&self) -> Result<Vec<(String, ObjectMeta)>, Problem> {
-        let entries = self.store.list(self.kind).await?;
+        let entries = self.store.list(&self.under).await?;
         let named = entries.into_iter().filter_map(|entry| {
             let id = entry.location.filename()?.strip_suffix(".json").filter(|id| is_id(id))?.to_owned();
             Some((id, entry))
@@ -89,7 +90,12 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
     }
 
     fn name(&self, id: &str) -> String {
-        format!("{}/{id}.json", self.kind)
+        format!("{}/{id}.json", self.under)
+    }
+
+    /// Bytes that a note takes.
+    pub(crate) fn size(&self, note: &T) -> Result<u64, Problem> {
+        Ok(self.bytes(note)?.len() as u64)
     }
 
     fn bytes(&self, note: &T) -> Result<Vec<u8>, Problem> {

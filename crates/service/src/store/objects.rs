@@ -6,10 +6,13 @@ use futures_util::{StreamExt, TryStreamExt};
 use object_store::{
     Error, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutPayload, buffered::BufWriter, path::Path,
 };
-use tokio::io::AsyncWriteExt;
+use tokio::{
+    io::AsyncWriteExt,
+    sync::{Mutex, MutexGuard},
+};
 
-use super::{Spool, StoreError, cannot, folder::Folder, place::Place, sweep};
-use crate::problem::Problem;
+use super::{Spool, StoreError, TENANTS, cannot, folder::Folder, place::Place, sweep};
+use crate::{Tenant, problem::Problem};
 
 /// The name that is written and removed again to see whether the store can be used.
 const PROBE: &str = "probe";
@@ -19,6 +22,8 @@ const PROBE: &str = "probe";
 pub(crate) struct Store {
     objects: Arc<dyn ObjectStore>,
     folder: Option<Arc<Folder>>,
+    /// Held while notes come or go with their data.
+    changing: Arc<Mutex<()>>,
 }
 
 impl Store {
@@ -40,14 +45,15 @@ impl Store {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|source| StoreError::System { source })?;
         let folder = folder.map(Arc::new);
-        let trial = Store { objects: trial, folder: folder.clone() };
+        let changing = Arc::default();
+        let trial = Store { objects: trial, folder: folder.clone(), changing: Arc::clone(&changing) };
         runtime
             .block_on(async {
                 trial.probe().await?;
                 sweep::sweep(&trial, alone).await
             })
             .map_err(unusable)?;
-        Ok(Store { objects, folder })
+        Ok(Store { objects, folder, changing })
     }
 
     /// Whether what is kept is still there after the service has ended.
@@ -115,6 +121,29 @@ impl Store {
         let name = name.to_owned();
         let synced = tokio::task::spawn_blocking(move || folder.sync_removal(&name)).await?;
         synced.map_err(|source| Error::Generic { store: "folder", source: source.into() })
+    }
+
+    /// The right to change which notes there are beside their data, alone at this service.
+    pub(crate) async fn changing(&self) -> MutexGuard<'_, ()> {
+        self.changing.lock().await
+    }
+
+    /// The tenants that may own something here, `default` among them.
+    pub(crate) async fn tenants(&self) -> Result<Vec<Tenant>, Problem> {
+        self.named_tenants().await.map_err(|error| cannot("list", &error))
+    }
+
+    pub(super) async fn named_tenants(&self) -> object_store::Result<Vec<Tenant>> {
+        let found = match self.objects.list_with_delimiter(Some(&Path::from(TENANTS))).await {
+            Ok(found) => found.common_prefixes,
+            Err(Error::NotFound { .. }) => Vec::new(),
+            Err(error) => return Err(error),
+        };
+        let named = found.iter().filter_map(|prefix| Tenant::named(prefix.filename()?).ok());
+        let mut tenants: Vec<Tenant> = named.chain([Tenant::default()]).collect();
+        tenants.sort();
+        tenants.dedup();
+        Ok(tenants)
     }
 
     /// All objects of a kind.
@@ -200,6 +229,6 @@ impl Store {
     /// A folder as the store, for tests where tasks run.
     pub(crate) fn open_here(folder: &std::path::Path) -> Store {
         let Place { objects, folder, .. } = Place::open(folder.to_str()).unwrap();
-        Store { objects, folder: folder.map(Arc::new) }
+        Store { objects, folder: folder.map(Arc::new), changing: Arc::default() }
     }
 }

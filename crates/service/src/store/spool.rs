@@ -21,6 +21,11 @@ impl Spool {
         self.file.try_clone()
     }
 
+    /// Bytes that have been written.
+    pub(crate) fn bytes(&self) -> io::Result<u64> {
+        Ok(self.file.metadata()?.len())
+    }
+
     /// The file from its beginning.
     pub(crate) fn reader(&self) -> io::Result<File> {
         let mut file = self.file.try_clone()?;

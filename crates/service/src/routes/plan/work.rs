@@ -7,7 +7,7 @@ use terrain::Terrain;
 
 use super::PlanRequest;
 use crate::{
-    Engine,
+    Engine, Tenant,
     memory::estimated_bytes,
     problem::{Problem, ProblemType},
     routes::{
@@ -16,14 +16,15 @@ use crate::{
     },
 };
 
-/// Finds the request's map and answers on a thread for computations.
+/// Finds the map and the robot of a tenant's request and answers on a thread for computations.
 pub(crate) async fn with_planner<T: Send + 'static>(
     engine: &Engine,
+    tenant: &Tenant,
     request: &mut PlanRequest,
     answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
-    request.robot.look_up(engine.robots()).await?;
-    let stored = choose_map(engine, request).await?;
+    request.robot.look_up(engine.robots(), tenant).await?;
+    let stored = choose_map(engine, tenant, request).await?;
     let (inline, request) = (request.map.take(), request.clone());
     let own = engine.clone();
     let bytes = estimated_bytes(engine, request.map_id.as_deref(), stored.as_deref(), inline.as_ref());
@@ -64,11 +65,15 @@ pub(crate) async fn with_planner<T: Send + 'static>(
         .await
 }
 
-async fn choose_map(engine: &Engine, request: &PlanRequest) -> Result<Option<Arc<Terrain>>, Problem> {
+async fn choose_map(
+    engine: &Engine,
+    tenant: &Tenant,
+    request: &PlanRequest,
+) -> Result<Option<Arc<Terrain>>, Problem> {
     match (&request.map, &request.map_id) {
         (Some(_), None) => Ok(None),
         (None, Some(id)) => {
-            let found = engine.maps().get(id).await;
+            let found = engine.maps().get(tenant, id).await;
             found.map(Some).map_err(|problem| problem.at("/map_id"))
         }
         (Some(_), Some(_)) => {
