@@ -49,7 +49,8 @@ impl<'p> Reachable<'p> {
         let (lattice, patience) = (planner.lattice(), &query.patience);
         let start = &query.start;
         let start_m = [start.x_m, start.y_m];
-        let starts = planner.states_at(Place::Start, start_m, start.heading_rad, query.snap_radius_m)?;
+        let starts =
+            planner.states_at(Place::Start, start_m, start.heading_rad, query.snap_radius_m, patience)?;
         let home = starts.first().ok_or(Error::NowhereToGo)?.cell;
         let outward = Outward::new(planner, &starts, home, patience)?;
         let homeward = if back { Some(Homeward::new(planner, home, patience)?) } else { None };

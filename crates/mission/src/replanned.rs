@@ -45,7 +45,10 @@ pub(crate) fn replanned(
             return Ok(None);
         }
         let chance = drawn.chance(fixed.length_m(), number as u64);
-        let own = Planner::new(&lattice.terrain, &chance.robot, lattice.settings)?;
+        let own = match Planner::prepare(&lattice.terrain, &chance.robot, lattice.settings, patience) {
+            Err(planner::Error::Timeout { .. }) => return Ok(None),
+            prepared => prepared?,
+        };
         let mut journey = Journey::new(lattice.settings.power_model);
         for query in *queries {
             match own.plan(query, Objective::Energy) {

@@ -19,7 +19,7 @@ impl<'p> Homeward<'p> {
     /// Patience that ends first.
     pub(crate) fn new(planner: &'p Planner, home: Cell, patience: &Patience) -> Result<Self, Error> {
         let center_m = planner.lattice().terrain.grid.center_m(home);
-        let states = planner.states_at(Place::Start, center_m, None, None)?;
+        let states = planner.states_at(Place::Start, center_m, None, None, patience)?;
         // All in one cell, so that no height tells them apart.
         let goals: Vec<(State, f64)> = states.into_iter().map(|state| (state, 0.0)).collect();
         let table = planner.table(Objective::Energy);

@@ -2,15 +2,16 @@
 
 use terrain::{Cell, Terrain};
 
-use crate::layout::TILE;
+use crate::{layout::TILE, spans::Span};
 
 /// Blocked cells of a tile and around it; those beyond the map are blocked too.
 pub(crate) struct Blocked {
     reach: usize,
     /// Words on either side of a row's own.
     beside: usize,
-    /// Bits by row from `reach` rows south of the tile on; a row of a tile is one word.
-    words: Vec<u64>,
+    /// Bits by row from `reach` rows south of the tile on; a row of a tile is one word. The k-th entry has a bit where any
+    /// of 2^k cells from there to the east is blocked, so that two looks tell of a run of any length.
+    runs: Vec<Vec<u64>>,
     /// By row of the tile: whether anything is blocked in the rows within reach.
     near: Vec<bool>,
 }
@@ -18,8 +19,8 @@ pub(crate) struct Blocked {
 const _: () = assert!(TILE == 64, "a row of a tile is a word of 64 bits");
 
 impl Blocked {
-    /// The ground of a tile and `reach` cells around it.
-    pub(crate) fn new(terrain: &Terrain, origin: Cell, reach: usize) -> Self {
+    /// The ground of a tile and `reach` cells around it, for spans of up to `longest` cells.
+    pub(crate) fn new(terrain: &Terrain, origin: Cell, reach: usize, longest: u32) -> Self {
         let beside = reach.div_ceil(TILE);
         let width = 2 * beside + 1;
         let rows = TILE + 2 * reach;
@@ -37,9 +38,10 @@ impl Blocked {
                 }
             }
         }
-        let mut blocked = Blocked { reach, beside, words, near: Vec::new() };
+        let mut blocked = Blocked { reach, beside, runs: vec![words], near: Vec::new() };
         let rows_with_any: Vec<bool> = (0..rows).map(|y| blocked.has_any(y)).collect();
         blocked.near = rows_with_any.windows(2 * reach + 1).map(|rows| rows.contains(&true)).collect();
+        blocked.double(longest);
         blocked
     }
 
@@ -48,18 +50,44 @@ impl Blocked {
         self.near[row]
     }
 
-    /// The cells of a row, bit by bit, from which any of some offsets (columns, rows) leads to a blocked one.
+    /// Adds the runs of 2, 4, 8... cells that spans of up to `longest` cells need.
+    fn double(&mut self, longest: u32) {
+        for power in 0..longest.max(1).ilog2() {
+            let step = 1usize << power;
+            let Some(shorter) = self.runs.last() else { return };
+            // Beyond the last word everything counts as blocked; no span reaches that far.
+            let word = |at: usize| shorter.get(at).copied().unwrap_or(u64::MAX);
+            let ahead = |at: usize| match (step / TILE, step % TILE) {
+                (words, 0) => word(at + words),
+                (words, bits) => word(at + words) >> bits | word(at + words + 1) << (TILE - bits),
+            };
+            let longer = (0..shorter.len()).map(|at| shorter[at] | ahead(at)).collect();
+            self.runs.push(longer);
+        }
+    }
+
+    /// The cells of a row, bit by bit, from which any of some spans holds a blocked one.
     #[inline(always)]
-    pub(crate) fn touched(&self, row: usize, offsets: &[(i32, i32)]) -> u64 {
+    pub(crate) fn touched(&self, row: usize, spans: &[Span]) -> u64 {
         let width = 2 * self.beside + 1;
         let first = (row + self.reach) * width + self.beside;
         let mut touched = 0;
-        for (columns, rows) in offsets {
-            let at = (first as isize + *rows as isize * width as isize) * TILE as isize + *columns as isize;
-            let (word, bit) = (at as usize / TILE, at as usize % TILE);
-            touched |= self.words[word] >> bit;
-            if bit > 0 {
-                touched |= self.words[word + 1] << (TILE - bit);
+        for span in spans {
+            let power = span.cells().ilog2();
+            let words = &self.runs[power as usize];
+            let start = (first as isize + span.row as isize * width as isize) * TILE as isize;
+            let mut look = |column: i32| {
+                let at = start + column as isize;
+                let (word, bit) = (at as usize / TILE, at as usize % TILE);
+                touched |= words[word] >> bit;
+                if bit > 0 {
+                    touched |= words[word + 1] << (TILE - bit);
+                }
+            };
+            look(span.first);
+            let second = span.last + 1 - (1 << power);
+            if second != span.first {
+                look(second);
             }
         }
         touched
@@ -69,7 +97,7 @@ impl Blocked {
     fn has_any(&self, y: usize) -> bool {
         let width = 2 * self.beside + 1;
         let (first, end) = (self.beside * TILE - self.reach, (self.beside + 1) * TILE + self.reach);
-        (first..end).any(|bit| self.words[y * width + bit / TILE] >> (bit % TILE) & 1 == 1)
+        (first..end).any(|bit| self.runs[0][y * width + bit / TILE] >> (bit % TILE) & 1 == 1)
     }
 }
 
@@ -78,24 +106,35 @@ mod tests {
     use terrain::{Grid, synthetic};
 
     use super::*;
-    use crate::footprint::first_blocked;
+    use crate::{clearance::Clearance, spans::first_blocked};
 
     #[test]
     fn rows_at_a_time_equal_cells_one_by_one() {
         let grid = Grid { rows: 140, columns: 131, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
         let flat = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
         let terrain = synthetic::scatter_obstacles(flat, 3, 0.002);
+        let clearance = Clearance::new(&terrain);
         for reach in [0, 3, 70] {
             let far = reach as i32;
-            let offsets = [(0, 0), (far, -far), (-far, far / 2), (far / 3, far)];
+            let span = |row, first, last| Span { row, first, last };
+            let spans = [
+                span(0, 0, 0),
+                span(-far, far / 2, far),
+                span(far / 2, -far, -far / 3),
+                span(far, -far, far),
+            ];
+            let spans = [&spans[..3], &spans[..]];
             for origin in [(0, 0), (64, 64), (128, 128), (64, 0)] {
                 let origin = Cell { row: origin.0, column: origin.1 };
-                let blocked = Blocked::new(&terrain, origin, reach);
-                for row in 0..TILE.min(grid.rows - origin.row) {
-                    let touched = blocked.touched(row, &offsets);
+                let blocked = Blocked::new(&terrain, origin, reach, 2 * reach as u32 + 1);
+                for (row, spans) in (0..)
+                    .flat_map(|row| spans.map(|s| (row, s)))
+                    .take_while(|(row, _)| *row < TILE.min(grid.rows - origin.row))
+                {
+                    let touched = blocked.touched(row, spans);
                     for x in 0..TILE.min(grid.columns - origin.column) {
                         let cell = Cell { row: origin.row + row, column: origin.column + x };
-                        let alone = first_blocked(&terrain, cell, &offsets).is_some();
+                        let alone = first_blocked(&clearance, cell, spans).is_some();
                         assert_eq!(touched >> x & 1 == 1, alone, "{cell:?} at reach {reach}");
                         assert!(blocked.is_near(row) || !alone);
                     }

@@ -1,13 +1,14 @@
 //! What one motion costs on the ground at hand: the edge energy that plan, matrix and reachability share.
 
+use std::sync::Arc;
+
 use model::Manoeuvre;
 use terrain::Cell;
 
 use crate::{
-    footprint::{Footprint, first_blocked, shifted},
     lattice::Lattice,
-    primitive::Piece,
-    step::{Limits, PreparedStep, STEP_CELLS, Step, prepare_steps},
+    spans::{Span, first_blocked, shifted},
+    step::{Limits, PreparedStep, Step},
 };
 
 /// Totals of one motion.
@@ -44,7 +45,7 @@ impl Edge {
 pub(crate) struct Chain {
     /// Its steps, each with one manoeuvre per surface.
     steps: Vec<(PreparedStep, Vec<Manoeuvre>)>,
-    sweep: Vec<(i32, i32)>,
+    sweep: Arc<[Span]>,
     /// Largest king's distance of a swept cell: with more clearance nothing can be touched.
     reach: u8,
     /// Cells that interpolation reads, as the corners of their bounding box.
@@ -53,39 +54,22 @@ pub(crate) struct Chain {
     reverse: bool,
 }
 
-/// Spacing of the poses whose footprints make up a sweep, in cells.
-const SWEEP_CELLS: f64 = 0.25;
-
 impl Chain {
-    pub(crate) fn new(
-        pieces: &[Piece],
-        reverse: bool,
-        footprint: &Footprint,
-        cell_size_m: f64,
-        manoeuvres: &impl Fn(&Piece, bool, f64) -> Vec<Manoeuvre>,
-    ) -> Self {
-        let of_piece = |piece| {
-            let steps = prepare_steps(piece, reverse, cell_size_m, STEP_CELLS);
-            steps.map(move |step| {
-                let ready = manoeuvres(piece, reverse, step.heading_rad());
-                (step, ready)
-            })
-        };
-        let prepared: Vec<_> = pieces.iter().flat_map(of_piece).collect();
-        let sweep = sweep(pieces, footprint, cell_size_m);
-        let reach = sweep.iter().map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0);
+    /// A chain of prepared steps, each with one manoeuvre per surface, that sweeps some cells about where it starts.
+    pub(crate) fn new(steps: Vec<(PreparedStep, Vec<Manoeuvre>)>, reverse: bool, sweep: Arc<[Span]>) -> Self {
+        let reach = sweep.iter().map(Span::reach).max().unwrap_or(0);
         let corners = || {
-            let read = prepared.iter().flat_map(|(s, _)| [s.end.corner, s.end.far_corner(), s.middle]);
+            let read = steps.iter().flat_map(|(s, _)| [s.end.corner, s.end.far_corner(), s.middle]);
             read.chain([(0, 0)])
         };
         let read_from = corners().fold((0, 0), |low, corner| (low.0.min(corner.0), low.1.min(corner.1)));
         let read_to = corners().fold((0, 0), |high, corner| (high.0.max(corner.0), high.1.max(corner.1)));
         let reach = u8::try_from(reach).unwrap_or(u8::MAX);
-        Chain { steps: prepared, sweep, reach, read_from, read_to, reverse }
+        Chain { steps, sweep, reach, read_from, read_to, reverse }
     }
 
-    /// The cells it sweeps, as offsets (columns, rows) from where it starts.
-    pub(crate) fn sweep(&self) -> &[(i32, i32)] {
+    /// The cells it sweeps, as offsets from where it starts.
+    pub(crate) fn sweep(&self) -> &Arc<[Span]> {
         &self.sweep
     }
 
@@ -115,13 +99,18 @@ impl Chain {
         Some(total)
     }
 
+    /// Whether it would touch blocked ground or the world outside from a cell.
+    fn touches(&self, lattice: &Lattice, cell: Cell) -> bool {
+        first_blocked(&lattice.clearance, cell, &self.sweep).is_some()
+    }
+
     /// Visits every step of driving this from a cell; `None`, possibly after some visits, where it is forbidden.
     pub(crate) fn drive(&self, lattice: &Lattice, cell: Cell, mut visit: impl FnMut(&Step)) -> Option<()> {
         let terrain = &lattice.terrain;
         let index = terrain.grid.index(cell);
         shifted(terrain, cell, self.read_from)?;
         shifted(terrain, cell, self.read_to)?;
-        if lattice.clearance.at(index) <= self.reach && first_blocked(terrain, cell, &self.sweep).is_some() {
+        if lattice.clearance.at(index) <= self.reach && self.touches(lattice, cell) {
             return None;
         }
         let mut height_m = terrain.relative_m()[index];
@@ -133,26 +122,4 @@ impl Chain {
         }
         Some(())
     }
-}
-
-/// Every cell that the footprint touches along the pieces, sorted.
-fn sweep(pieces: &[Piece], footprint: &Footprint, cell_size_m: f64) -> Vec<(i32, i32)> {
-    let half_length_m = footprint.length_m / 2.0;
-    // A bitmap about the start cell, wide enough for any pose of the pieces.
-    let far_m = pieces.iter().map(|p| p.start_m[0].hypot(p.start_m[1]) + p.length_m).fold(0.0, f64::max);
-    let reach = ((far_m + footprint.length_m.hypot(footprint.width_m)) / cell_size_m).ceil() as i32 + 2;
-    let side = (2 * reach + 1) as usize;
-    let mut touched = vec![false; side * side];
-    for piece in pieces {
-        // A turning robot's corners move by its half length times the turn.
-        let travelled_m = piece.length_m + piece.turn_rad.abs() * half_length_m;
-        let poses = (travelled_m / (SWEEP_CELLS * cell_size_m)).ceil().max(1.0) as usize;
-        for i in 0..=poses {
-            for (column, row) in footprint.cells_at(piece.pose_at(i as f64 / poses as f64), cell_size_m) {
-                touched[(row + reach) as usize * side + (column + reach) as usize] = true;
-            }
-        }
-    }
-    let place = |i: usize| ((i % side) as i32 - reach, (i / side) as i32 - reach);
-    (0..touched.len()).filter(|i| touched[*i]).map(place).collect()
 }

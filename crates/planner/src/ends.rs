@@ -5,8 +5,10 @@ use crate::{
     heading::Heading,
     lattice::{Lattice, State},
     objective::Objective,
+    patience::Patience,
     query::{Goal, Query},
-    snap::{Asked, Snapped, cells_within, snap},
+    rings::{farthest_ring, ring},
+    snap::{Asked, STANDING_IN_A_CELL, Snapped, snap},
 };
 
 /// Both ends on the lattice.
@@ -21,40 +23,18 @@ pub struct Ends {
 }
 
 impl Ends {
+    /// The places where the robot can stand that are nearest to both ends of a question.
     pub(crate) fn find(lattice: &Lattice, query: &Query) -> Result<Self, Error> {
-        let cell_m = lattice.terrain.grid.cell_size_m;
-        let snap_radius_m = query.snap_radius_m.unwrap_or(cell_m);
-        within("snap_radius_m", snap_radius_m, 0.0, 1000.0)?;
-        let tolerance_m = query.goal.tolerance_m;
-        within("goal.tolerance_m", tolerance_m, 0.0, 10_000.0)?;
-        within("bound", query.bound, 1.0, Query::LOOSEST_BOUND)?;
-        if let Some(snap_radius_m) =
-            query.snap_radius_m.filter(|radius_m| tolerance_m > 0.0 && *radius_m > tolerance_m)
-        {
-            return Err(Error::ConflictingTolerance { tolerance_m, snap_radius_m });
-        }
-        let start = snap(
-            lattice,
-            &Asked {
-                place: Place::Start,
-                x_m: query.start.x_m,
-                y_m: query.start.y_m,
-                heading_rad: query.start.heading_rad,
-                snap_radius_m,
-            },
-        )?;
-        let goal = snap(
-            lattice,
-            &Asked {
-                place: Place::Goal,
-                x_m: query.goal.x_m,
-                y_m: query.goal.y_m,
-                heading_rad: query.goal.heading_rad,
-                snap_radius_m: snap_radius_m.max(query.goal.tolerance_m),
-            },
-        )?;
-        let starts = start.headings.iter().map(|&heading| State { cell: start.cell, heading }).collect();
-        let goals = goal_states(lattice, &goal, &query.goal);
+        check(query)?;
+        let start = snap(lattice, &asked_start(lattice, query), &query.patience)?;
+        let goal = snap(lattice, &asked_goal(lattice, query), &query.patience)?;
+        Self::of(lattice, query, start, goal)
+    }
+
+    /// The ends with chosen places.
+    pub(crate) fn of(lattice: &Lattice, query: &Query, start: Snapped, goal: Snapped) -> Result<Self, Error> {
+        let starts = start.states().collect();
+        let goals = goal_states(lattice, &goal, &query.goal, &query.patience)?;
         Ok(Ends { start, goal, starts, goals })
     }
 
@@ -92,15 +72,55 @@ fn lowest_j(lattice: &Lattice, goals: &[State]) -> f64 {
     goals.iter().map(|s| lattice.potential_j(s.cell)).fold(f64::INFINITY, f64::min)
 }
 
+/// The start as it is to be snapped.
+pub(crate) fn asked_start(lattice: &Lattice, query: &Query) -> Asked {
+    let start = &query.start;
+    Asked {
+        place: Place::Start,
+        x_m: start.x_m,
+        y_m: start.y_m,
+        heading_rad: start.heading_rad,
+        snap_radius_m: snap_radius_m(lattice, query),
+    }
+}
+
+/// The goal as it is to be snapped.
+pub(crate) fn asked_goal(lattice: &Lattice, query: &Query) -> Asked {
+    let goal = &query.goal;
+    Asked {
+        place: Place::Goal,
+        x_m: goal.x_m,
+        y_m: goal.y_m,
+        heading_rad: goal.heading_rad,
+        snap_radius_m: snap_radius_m(lattice, query).max(goal.tolerance_m),
+    }
+}
+
+/// How far an end may be moved: by default one cell [m].
+fn snap_radius_m(lattice: &Lattice, query: &Query) -> f64 {
+    query.snap_radius_m.unwrap_or(lattice.terrain.grid.cell_size_m)
+}
+
 /// The snapped goal and, within the tolerance, every other pose of an accepted heading where the robot can stand.
-fn goal_states(lattice: &Lattice, snapped: &Snapped, goal: &Goal) -> Vec<State> {
+fn goal_states(
+    lattice: &Lattice,
+    snapped: &Snapped,
+    goal: &Goal,
+    patience: &Patience,
+) -> Result<Vec<State>, Error> {
     let wanted = goal.heading_rad.map(Heading::nearest);
-    let mut states: Vec<State> =
-        snapped.headings.iter().map(|&heading| State { cell: snapped.cell, heading }).collect();
-    if goal.tolerance_m > 0.0 {
-        for cell in cells_within(lattice, snapped.cell, 2.0 * goal.tolerance_m) {
-            let [x, y] = lattice.terrain.grid.center_m(cell);
-            if cell == snapped.cell || (x - goal.x_m).hypot(y - goal.y_m) > goal.tolerance_m {
+    let mut states: Vec<State> = snapped.states().collect();
+    if goal.tolerance_m <= 0.0 {
+        return Ok(states);
+    }
+    let mut pacer = patience.pacer();
+    let grid = &lattice.terrain.grid;
+    let rings = (2.0 * goal.tolerance_m / grid.cell_size_m).ceil() as usize + 1;
+    for distance in 1..=rings.min(farthest_ring(grid, snapped.cell)) {
+        for cell in ring(grid, snapped.cell, distance) {
+            pacer.after(STANDING_IN_A_CELL).ok_or(Error::Timeout { expanded: 0 })?;
+            let [x, y] = grid.center_m(cell);
+            if (x - goal.x_m).hypot(y - goal.y_m) > goal.tolerance_m {
                 continue;
             }
             let headings = Heading::all().filter(|h| wanted.is_none_or(|w| w == *h));
@@ -109,7 +129,26 @@ fn goal_states(lattice: &Lattice, snapped: &Snapped, goal: &Goal) -> Vec<State> 
             );
         }
     }
-    states
+    Ok(states)
+}
+
+/// Refuses numbers of a question that cannot be, whatever the ground.
+///
+/// # Errors
+/// The first number out of its range, or a tolerance that snapping defeats.
+pub(crate) fn check(query: &Query) -> Result<(), Error> {
+    if let Some(snap_radius_m) = query.snap_radius_m {
+        within("snap_radius_m", snap_radius_m, 0.0, 1000.0)?;
+    }
+    let tolerance_m = query.goal.tolerance_m;
+    within("goal.tolerance_m", tolerance_m, 0.0, 10_000.0)?;
+    within("bound", query.bound, 1.0, Query::LOOSEST_BOUND)?;
+    match query.snap_radius_m {
+        Some(snap_radius_m) if tolerance_m > 0.0 && snap_radius_m > tolerance_m => {
+            Err(Error::ConflictingTolerance { tolerance_m, snap_radius_m })
+        }
+        _ => Ok(()),
+    }
 }
 
 fn within(field: &'static str, value: f64, min: f64, max: f64) -> Result<(), Error> {

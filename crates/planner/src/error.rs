@@ -4,6 +4,8 @@ use std::fmt;
 
 use terrain::Cell;
 
+use crate::hindrance::Hindrance;
+
 /// Which place of a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -126,9 +128,7 @@ pub enum Error {
         reason: Blocked,
     },
     /// The goal cannot be reached.
-    #[error(
-        "no path from the start to the goal: ground from which the goal can be reached comes no nearer to the start than {gap_m:.1} m, at ({x_m:.2}, {y_m:.2}); look for a wall, unknown cells or slopes beyond the robot's limits there"
-    )]
+    #[error("no path from the start to the goal: {}", no_path(*gap_m, [*x_m, *y_m], hindrance))]
     NoPath {
         /// Distance from the start to the nearest cell that the goal can be reached from [m].
         gap_m: f64,
@@ -136,6 +136,8 @@ pub enum Error {
         x_m: f64,
         /// Its y [m].
         y_m: f64,
+        /// What is in the way.
+        hindrance: Hindrance,
     },
     /// Ground connects start and goal, but no chain of motions does.
     #[error(
@@ -211,6 +213,18 @@ pub enum Error {
         /// Columns of the map.
         columns: usize,
     },
+    /// More surface classes than the steps of all motions can be prepared for.
+    #[error(
+        "the map has {surfaces} surface classes, but on cells of {cell_size_m} m this robot can be prepared for {most} at most: merge classes or resample the map to larger cells"
+    )]
+    TooManySurfaces {
+        /// Classes of the map, the robot's default surface included.
+        surfaces: usize,
+        /// Most classes for these cells.
+        most: usize,
+        /// The map's cell size [m].
+        cell_size_m: f64,
+    },
     /// A grid too coarse or too fine for this robot's lattice.
     #[error(
         "cells of {cell_size_m} m are too fine for a robot of this size: resample the map to {least_m:.3} m or coarser"
@@ -221,4 +235,14 @@ pub enum Error {
         /// Smallest usable cell [m].
         least_m: f64,
     },
+}
+
+/// Where the connected ground ends, unless a limit explains by itself that there is no path.
+fn no_path(gap_m: f64, [x_m, y_m]: [f64; 2], hindrance: &Hindrance) -> String {
+    match hindrance {
+        Hindrance::OneLimit { .. } | Hindrance::SeveralLimits => hindrance.to_string(),
+        Hindrance::Ground | Hindrance::Unexplained => format!(
+            "ground from which the goal can be reached comes no nearer to the start than {gap_m:.1} m, at ({x_m:.2}, {y_m:.2}); {hindrance}"
+        ),
+    }
 }

@@ -156,8 +156,12 @@ impl GoalField {
         if self.complement[at] != 0 || matches!(self.beyond, Beyond::Towards { .. }) {
             return true;
         }
-        !self.near.is_empty()
-            && Heading::all().any(|heading| self.units(State { cell, heading }) != UNREACHED)
+        !self.near.is_empty() && Heading::all().any(|heading| self.leads_from_pose(State { cell, heading }))
+    }
+
+    /// Whether a chain of motions, whose headings need not join up, leads to the goal from a pose.
+    pub(crate) fn leads_from_pose(&self, pose: State) -> bool {
+        self.units(pose) != UNREACHED
     }
 
     /// The same for a packed state.

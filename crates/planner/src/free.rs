@@ -1,6 +1,7 @@
 //! Driving anywhere on the map, by the same evaluation as from cell centre to cell centre.
 
 use model::Manoeuvre;
+use terrain::Cell;
 
 use crate::{
     connection::{Connection, Waypoint, is_nothing},
@@ -10,36 +11,25 @@ use crate::{
     objective::{Objective, Weights},
     primitive::Piece,
     step::{PreparedStep, Sample, Step, prepare_steps},
+    swept::SweptPiece,
 };
 
 /// Longest step off the lattice, in cells: no coarser than the cells, so that no ground is skipped. The lattice's own
 /// are up to a quarter longer.
 const STEP_CELLS: f64 = 1.0;
-/// Spacing of the poses whose footprints are looked at, in cells.
-const SWEEP_CELLS: f64 = 0.125;
+/// Longest part of a piece that is looked at as one, in cells: short enough that parts far from obstacles are skipped.
+const PART_CELLS: f64 = 1.0;
 
 /// The ground of a lattice, its robot and an objective.
 pub(crate) struct FreeGround<'l> {
     pub(crate) lattice: &'l Lattice,
     pub(crate) weights: Weights,
-    /// The robot's outline, wider by what it may move between two poses that are looked at.
     outline: Footprint,
-    /// Half the diagonal of that outline [m].
-    half_diagonal_m: f64,
 }
 
 impl<'l> FreeGround<'l> {
     pub(crate) fn new(lattice: &'l Lattice, objective: Objective) -> Self {
-        let robot = Footprint::of(&lattice.robot);
-        // Half the spacing on every side.
-        let between_m = SWEEP_CELLS * lattice.terrain.grid.cell_size_m;
-        let outline = Footprint { length_m: robot.length_m + between_m, width_m: robot.width_m + between_m };
-        FreeGround {
-            lattice,
-            weights: lattice.weights(objective),
-            half_diagonal_m: outline.length_m.hypot(outline.width_m) / 2.0,
-            outline,
-        }
+        FreeGround { lattice, weights: lattice.weights(objective), outline: Footprint::of(&lattice.robot) }
     }
 
     /// Visits every step of driving pieces; `None`, possibly after some visits, where ground or limits forbid it.
@@ -94,30 +84,31 @@ impl<'l> FreeGround<'l> {
             .is_some_and(|pieces| pieces.iter().all(|piece| self.is_piece_clear(piece)))
     }
 
+    /// Whether the outline stays off all that is blocked, proven by the rectangles that cover the area it sweeps.
     fn is_piece_clear(&self, piece: &Piece) -> bool {
-        let grid = &self.lattice.terrain.grid;
-        let cell_size_m = grid.cell_size_m;
-        let travelled_m = piece.length_m + piece.turn_rad.abs() * self.half_diagonal_m;
-        let poses = (travelled_m / (SWEEP_CELLS * cell_size_m)).ceil().max(1.0) as usize;
-        // A cell's half on either side: where in its cell the robot's middle is, and where in theirs its corners are.
-        let reach_cells = self.half_diagonal_m / cell_size_m + 1.0;
-        let mut i = 0;
-        while i <= poses {
-            let pose = piece.pose_at(i as f64 / poses as f64);
-            let cell = [pose[0], pose[1]].map(|along_m| (along_m / cell_size_m).round() as i32);
-            let Some(index) = self.index((cell[0], cell[1])) else { return false };
-            let room_cells = f64::from(self.lattice.clearance.at(index)) - reach_cells;
+        let clearance = &self.lattice.clearance;
+        let cell_size_m = self.lattice.terrain.grid.cell_size_m;
+        let swept = SweptPiece::with_parts(piece, &self.outline, cell_size_m, PART_CELLS * cell_size_m);
+        let part_cells = swept.part_m() / cell_size_m;
+        // From the middle of a part to the far corner of its cover, and a cell's half on either side: where in its cell the
+        // robot's middle is, and where in theirs its corners are.
+        let half_diagonal_m = self.outline.length_m.hypot(self.outline.width_m) / 2.0;
+        let reach_cells = half_diagonal_m / cell_size_m + part_cells / 2.0 + 1.0;
+        let mut part = 0;
+        while part < swept.parts() {
+            let [column, row] = swept.middle_m(part).map(|along_m| (along_m / cell_size_m).round() as i32);
+            let Some(index) = self.index((column, row)) else { return false };
+            let room_cells = f64::from(clearance.at(index)) - reach_cells;
             if room_cells > 0.0 {
-                i += ((room_cells / SWEEP_CELLS) as usize).max(1);
+                // The next parts lie within the room; all of them where the robot turns on the spot.
+                part = part.saturating_add(((room_cells / part_cells) as usize).max(1));
                 continue;
             }
-            let touches = self.outline.any_cell(pose, cell_size_m, |offset| {
-                self.index(offset).is_none_or(|index| self.lattice.clearance.at(index) == 0)
-            });
-            if touches {
+            let mut spans = swept.cover(part).spans(cell_size_m);
+            if spans.any(|span| span.first_blocked(clearance, Cell { row: 0, column: 0 }).is_some()) {
                 return false;
             }
-            i += 1;
+            part += 1;
         }
         true
     }

@@ -6,14 +6,19 @@ use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY
 use terrain::{Cell, Surfaces, Terrain, slope};
 
 use crate::{
+    clearance::Clearance,
     edge::{Chain, Edge},
     error::{Blocked, Error},
-    footprint::{Clearance, Footprint, first_blocked},
+    footprint::Footprint,
     heading::{HEADINGS, Heading},
     layout::Layout,
     objective::{Objective, Weights},
+    patience::Patience,
+    preparation::Preparation,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
+    spans::{Span, first_blocked, shifted},
     step::Limits,
+    swept::Rectangle,
 };
 
 /// How the robot is to be driven; the defaults are what a plain request gets.
@@ -66,18 +71,32 @@ pub struct Lattice {
     pub motions: [Vec<Motion>; HEADINGS],
     pub(crate) layout: Layout,
     pub(crate) limits: Limits,
-    pub(crate) chains: [Vec<Vec<Chain>>; HEADINGS],
+    pub(crate) chains: Arc<[Vec<Vec<Chain>>; HEADINGS]>,
     /// Friction of every surface class, the robot's default last.
     pub(crate) surfaces: Vec<model::robot::Surface>,
-    stand: [Vec<(i32, i32)>; HEADINGS],
+    stand: [Vec<Span>; HEADINGS],
 }
 
 impl Lattice {
-    /// Prepares motions, manoeuvres, slopes and clearances.
+    /// Returns the lattice of a robot on a terrain, however long its preparation takes.
     ///
     /// # Errors
-    /// A speed out of range, a surface that the robot does not know, or cells too fine for its turning radius.
+    /// As [`Lattice::prepare`], but for the deadline.
     pub fn new(terrain: &Terrain, robot: &Robot, settings: Settings) -> Result<Arc<Self>, Error> {
+        Self::prepare(terrain, robot, settings, &Patience::default())
+    }
+
+    /// Returns the lattice of a robot on a terrain: its motions, their manoeuvres and the cells they sweep.
+    ///
+    /// # Errors
+    /// A speed out of range, a surface that the robot does not know, cells too fine for the robot, too many surfaces, or
+    /// patience that ended.
+    pub fn prepare(
+        terrain: &Terrain,
+        robot: &Robot,
+        settings: Settings,
+        patience: &Patience,
+    ) -> Result<Arc<Self>, Error> {
         check_speed(robot, settings.speed_mps)?;
         let surfaces = surface_classes(terrain, robot)?;
         let cell_size_m = terrain.grid.cell_size_m;
@@ -85,24 +104,11 @@ impl Lattice {
         let layout = Layout::new(&terrain.grid).ok_or(Error::TooManyStates { rows, columns })?;
         check_cells(robot, cell_size_m)?;
         let motions = motions(robot, cell_size_m, settings.reverse);
-        let footprint = Footprint::of(robot);
-        let manoeuvres = |piece: &Piece, reverse: bool, heading_rad: f64| -> Vec<Manoeuvre> {
-            let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
-            surfaces.iter().map(|surface| manoeuvre(robot, &settings, motion, surface)).collect()
-        };
-        let chains = std::array::from_fn(|h| {
-            motions[h]
-                .iter()
-                .map(|m| {
-                    m.variants
-                        .iter()
-                        .map(|v| Chain::new(v, m.reverse, &footprint, cell_size_m, &manoeuvres))
-                        .collect()
-                })
-                .collect()
-        });
-        let stand =
-            std::array::from_fn(|h| footprint.cells_at([0.0, 0.0, Heading::new(h).angle_rad()], cell_size_m));
+        let preparation =
+            Preparation { robot, settings: &settings, surfaces: &surfaces, cell_size_m, patience };
+        let chains = Arc::new(preparation.chains(&motions)?);
+        let outline = Footprint::of(robot);
+        let standing = |h| Rectangle::of(&outline, [0.0, 0.0, Heading::new(h).angle_rad()]);
         Ok(Arc::new(Lattice {
             terrain: terrain.clone(),
             robot: robot.clone(),
@@ -113,7 +119,30 @@ impl Lattice {
             limits: Limits::of(robot),
             chains,
             surfaces: surfaces.into_iter().cloned().collect(),
-            stand,
+            stand: std::array::from_fn(|h| standing(h).spans(cell_size_m).collect()),
+        }))
+    }
+
+    /// Returns the lattice of the same robot and settings on other ground, which shares the motions where it can.
+    ///
+    /// # Errors
+    /// As [`Lattice::prepare`].
+    pub fn over(&self, terrain: &Terrain, patience: &Patience) -> Result<Arc<Self>, Error> {
+        let names = |terrain: &Terrain| terrain.surfaces().map(|s| s.names.clone());
+        if terrain.grid != self.terrain.grid || names(terrain) != names(&self.terrain) {
+            return Self::prepare(terrain, &self.robot, self.settings, patience);
+        }
+        Ok(Arc::new(Lattice {
+            terrain: terrain.clone(),
+            robot: self.robot.clone(),
+            settings: self.settings,
+            clearance: Clearance::new(terrain),
+            motions: self.motions.clone(),
+            layout: self.layout,
+            limits: self.limits,
+            chains: Arc::clone(&self.chains),
+            surfaces: self.surfaces.clone(),
+            stand: self.stand.clone(),
         }))
     }
 
@@ -165,7 +194,8 @@ impl Lattice {
     /// # Errors
     /// The first reason found: obstacle, unknown ground, map edge, pitch, roll.
     pub fn stand(&self, state: State) -> Result<(), Blocked> {
-        if let Some(touched) = first_blocked(&self.terrain, state.cell, &self.stand[state.heading.index()]) {
+        if let Some(touched) = first_blocked(&self.clearance, state.cell, &self.stand[state.heading.index()])
+        {
             return Err(match touched {
                 None => Blocked::Edge,
                 Some(cell) if self.terrain.elevation_m(cell).is_none() => Blocked::Unknown { cell },
@@ -244,7 +274,7 @@ impl Lattice {
     /// The state a motion leads to, if it lies on the map.
     pub fn successor(&self, state: State, motion: usize) -> Option<State> {
         let m = &self.motions[state.heading.index()][motion];
-        let cell = crate::footprint::shifted(&self.terrain, state.cell, (m.columns, m.rows))?;
+        let cell = shifted(&self.terrain, state.cell, (m.columns, m.rows))?;
         Some(State { cell, heading: m.to })
     }
 
@@ -285,7 +315,7 @@ fn check_speed(robot: &Robot, speed_mps: f64) -> Result<(), Error> {
     Err(Error::OutOfRange { field: "speed_mps", value: speed_mps, min, max })
 }
 
-/// Most cells along the robot: with more, the cells that its motions sweep fill memory.
+/// Most cells along the robot: with more, the ground that a motion depends on is many tiles wide.
 const MOST_CELLS_ALONG: f64 = 160.0;
 
 /// Arcs at R' must fit a corner of at most 64 lattice steps, and the robot a bearable number of cells.
@@ -298,7 +328,8 @@ fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
     if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, least_m }) }
 }
 
-fn manoeuvre(
+/// A manoeuvre of a robot as driven, at the motors' temperature.
+pub(crate) fn manoeuvre(
     robot: &Robot,
     settings: &Settings,
     motion: BodyMotion,
@@ -309,7 +340,7 @@ fn manoeuvre(
 }
 
 /// Body speeds on a piece at the speed asked for.
-fn piece_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
+pub(crate) fn piece_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
     body_motion(robot, settings.speed_mps, piece.radius_m(), piece.turn_rad, reverse)
 }
 

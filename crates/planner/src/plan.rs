@@ -4,6 +4,7 @@ use model::Robot;
 use terrain::Terrain;
 
 use crate::{
+    ends::check,
     error::Error,
     objective::Objective,
     planner::Planner,
@@ -16,7 +17,8 @@ use crate::{
 /// Ends off the map or where the robot cannot stand, no path, patience that ended before there was one, or a robot and map
 /// that do not fit.
 pub fn plan(terrain: &Terrain, robot: &Robot, query: &Query, objective: Objective) -> Result<Plan, Error> {
-    Planner::new(terrain, robot, query.settings)?.plan(query, objective)
+    check(query)?;
+    Planner::prepare(terrain, robot, query.settings, &query.patience)?.plan(query, objective)
 }
 
 /// Finds the energy-minimal, shortest and fastest paths.
@@ -24,5 +26,6 @@ pub fn plan(terrain: &Terrain, robot: &Robot, query: &Query, objective: Objectiv
 /// # Errors
 /// As [`plan`].
 pub fn compare(terrain: &Terrain, robot: &Robot, query: &Query) -> Result<Comparison, Error> {
-    Planner::new(terrain, robot, query.settings)?.compare(query)
+    check(query)?;
+    Planner::prepare(terrain, robot, query.settings, &query.patience)?.compare(query)
 }

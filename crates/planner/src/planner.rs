@@ -16,12 +16,14 @@ use crate::{
     exact::ExactField,
     field::GoalField,
     fields::{FieldCache, FieldKey},
+    hindrance::Hindrance,
     labels::Workspace,
     lattice::{Lattice, Settings, State},
     objective::Objective,
     patience::{Patience, work},
     query::{Comparison, Plan, Query, SearchReport, Snap},
     refine::refine,
+    rings::{farthest_ring, ring},
     route::Route,
     table::CostTable,
     uncertainty::energy_interval_j,
@@ -37,12 +39,25 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Prepares motions; costs are worked out where and when they are needed.
+    /// Returns a planner, however long its preparation takes.
     ///
     /// # Errors
-    /// As [`Lattice::new`].
+    /// As [`Planner::prepare`], but for the deadline.
     pub fn new(terrain: &Terrain, robot: &Robot, settings: Settings) -> Result<Self, Error> {
-        Ok(Self::over(Lattice::new(terrain, robot, settings)?))
+        Self::prepare(terrain, robot, settings, &Patience::default())
+    }
+
+    /// Returns a planner with its motions prepared; costs are worked out where and when they are needed.
+    ///
+    /// # Errors
+    /// As [`Lattice::prepare`].
+    pub fn prepare(
+        terrain: &Terrain,
+        robot: &Robot,
+        settings: Settings,
+        patience: &Patience,
+    ) -> Result<Self, Error> {
+        Ok(Self::over(Lattice::prepare(terrain, robot, settings, patience)?))
     }
 
     fn over(lattice: Arc<Lattice>) -> Self {
@@ -57,9 +72,14 @@ impl Planner {
     /// A planner for the same robot on ground that differs in some cells; costs that these do not touch are kept.
     ///
     /// # Errors
-    /// A surface that the robot does not know, or ground of another size.
-    pub fn patched(&self, terrain: &Terrain, changed: &CellRange) -> Result<Self, Error> {
-        let lattice = Lattice::new(terrain, &self.lattice.robot, self.lattice.settings)?;
+    /// As [`Lattice::prepare`].
+    pub fn patched(
+        &self,
+        terrain: &Terrain,
+        changed: &CellRange,
+        patience: &Patience,
+    ) -> Result<Self, Error> {
+        let lattice = self.lattice.over(terrain, patience)?;
         if terrain.grid != self.lattice.terrain.grid {
             return Ok(Self::over(lattice));
         }
@@ -97,8 +117,9 @@ impl Planner {
     /// Ends off the map or where the robot cannot stand, no path, or patience that ended before there was one.
     pub fn plan(&self, query: &Query, objective: Objective) -> Result<Plan, Error> {
         let began = Instant::now();
-        let ends = Ends::find(&self.lattice, query)?;
+        let ends = self.ends(query, objective)?;
         self.plan_between(&ends, query, objective, began)
+            .map_err(|error| self.explained(error, &ends, query, objective))
     }
 
     /// Finds the energy-minimal, shortest and fastest paths, side by side where there are cores.
@@ -107,13 +128,14 @@ impl Planner {
     /// As [`Planner::plan`].
     pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
         let began = Instant::now();
-        let ends = Ends::find(&self.lattice, query)?;
+        let ends = self.ends(query, Objective::Energy)?;
         let one = |objective| self.plan_between(&ends, query, objective, began);
         let (energy, (distance, time)) = rayon::join(
             || one(Objective::Energy),
             || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
         );
-        Ok(Comparison { energy: energy?, distance: distance?, time: time? })
+        let energy = energy.map_err(|error| self.explained(error, &ends, query, Objective::Energy))?;
+        Ok(Comparison { energy, distance: distance?, time: time? })
     }
 
     /// Answers many questions on all cores, in their order.
@@ -127,7 +149,7 @@ impl Planner {
     /// # Errors
     /// As [`Planner::plan`]; the query's start is not looked at.
     pub fn hold_goal(&self, query: &Query, objective: Objective) -> Result<(), Error> {
-        let ends = Ends::find(&self.lattice, query)?;
+        let ends = self.ends(query, objective)?;
         let table = self.table(objective);
         let goals = ends.goals_with_potential(&self.lattice, objective);
         let exact = ExactField::to_goals(table, &goals, f64::INFINITY, &query.patience)
@@ -158,12 +180,20 @@ impl Planner {
         self.answer(ends, query, (route, refined), search)
     }
 
-    /// Both ends of a question on the lattice.
-    ///
-    /// # Errors
-    /// Ends off the map or where the robot cannot stand, or numbers out of range.
-    pub fn ends(&self, query: &Query) -> Result<Ends, Error> {
-        Ends::find(&self.lattice, query)
+    /// The best path between given ends, not refined.
+    pub(crate) fn best_between(
+        &self,
+        ends: &Ends,
+        query: &Query,
+        objective: Objective,
+    ) -> Result<Route, Error> {
+        let found = self.search(ends, query, objective)?;
+        Route::drive(&self.lattice, objective, (found.start, &found.motions), &query.patience)
+    }
+
+    /// Fields of goals that were asked for.
+    pub(crate) fn fields(&self) -> &FieldCache {
+        &self.fields
     }
 
     /// The answer that drives chosen motions, each with the variant to drive it in, from a pose between the ends of a
@@ -259,7 +289,7 @@ pub(crate) fn joins(
     starts.contains(&found.start) && end.is_some_and(|end| is_goal(&end))
 }
 
-/// Where the ground that leads to the goal comes nearest to the start, or that patience ended first.
+/// Where the ground that leads to the goal comes nearest to the start, as an error, or that patience ended first.
 pub(crate) fn nearest_connected(
     lattice: &Lattice,
     field: &GoalField,
@@ -268,26 +298,29 @@ pub(crate) fn nearest_connected(
 ) -> Error {
     let grid = &lattice.terrain.grid;
     let [sx, sy] = grid.center_m(start);
-    let mut nearest: Option<(f64, f64, f64)> = None;
+    let [gx, gy] = grid.center_m(goal);
+    let mut nearest = ((gx - sx).hypot(gy - sy), gx, gy);
     let mut pacer = patience.pacer();
-    for cell in (0..grid.cells()).map(|i| grid.cell(i)) {
-        if pacer.after(work::CELL).is_none() {
-            return Error::Timeout { expanded: 0 };
+    for distance in 0..=farthest_ring(grid, start) {
+        if distance as f64 * grid.cell_size_m > nearest.0 {
+            break;
         }
-        if field.leads_from(cell) {
+        for cell in ring(grid, start, distance) {
+            if pacer.after(work::CELL).is_none() {
+                return Error::Timeout { expanded: 0 };
+            }
             let [x, y] = grid.center_m(cell);
             let gap_m = (x - sx).hypot(y - sy);
-            if nearest.is_none_or(|(least_m, ..)| gap_m < least_m) {
-                nearest = Some((gap_m, x, y));
+            if gap_m < nearest.0 && field.leads_from(cell) {
+                nearest = (gap_m, x, y);
             }
         }
     }
-    let [gx, gy] = grid.center_m(goal);
-    let (gap_m, x_m, y_m) = nearest.unwrap_or(((gx - sx).hypot(gy - sy), gx, gy));
-    if gap_m == 0.0 {
-        return Error::NoRoomToTurn { x_m, y_m };
+    let (gap_m, x_m, y_m) = nearest;
+    match gap_m == 0.0 {
+        true => Error::NoRoomToTurn { x_m, y_m },
+        false => Error::NoPath { gap_m, x_m, y_m, hindrance: Hindrance::Unexplained },
     }
-    Error::NoPath { gap_m, x_m, y_m }
 }
 
 fn goal_snap(route: &Route, ends: &Ends, query: &Query) -> Snap {

@@ -1,11 +1,15 @@
 //! From a place in metres to a lattice pose where the robot can stand.
 
+use std::{cmp::Reverse, collections::BinaryHeap};
+
 use terrain::Cell;
 
 use crate::{
     error::{Blocked, Error, Place},
-    heading::{Heading, MAX_HEADING_RAD, turn_rad},
+    heading::{HEADINGS, Heading, MAX_HEADING_RAD, turn_rad},
     lattice::{Lattice, State},
+    patience::{Pacer, Patience, work},
+    rings::{farthest_ring, ring},
 };
 
 /// A place that a request names.
@@ -27,56 +31,148 @@ pub(crate) struct Snapped {
     pub(crate) distance_m: f64,
     /// From the asked heading to the lattice's [rad].
     pub(crate) turn_rad: f64,
+    /// Whether the cell holds the place.
+    pub(crate) is_home: bool,
+}
+
+impl Snapped {
+    /// The poses that stand for the place.
+    pub(crate) fn states(&self) -> impl Iterator<Item = State> + '_ {
+        self.headings.iter().map(|&heading| State { cell: self.cell, heading })
+    }
+
+    /// The distance by which candidates are ordered: none within the cell that holds the place [m].
+    pub(crate) fn moved_m(&self) -> f64 {
+        if self.is_home { 0.0 } else { self.distance_m }
+    }
 }
 
 /// The cell that holds the place if the robot can stand there, else the nearest within the snap radius.
-pub(crate) fn snap(lattice: &Lattice, asked: &Asked) -> Result<Snapped, Error> {
-    let grid = &lattice.terrain.grid;
-    let Asked { place, x_m, y_m, .. } = *asked;
-    let sensible = -MAX_HEADING_RAD..=MAX_HEADING_RAD;
-    if let Some(heading_rad) = asked.heading_rad.filter(|heading_rad| !sensible.contains(heading_rad)) {
-        return Err(Error::Heading { place, heading_rad });
-    }
-    let home = grid.cell_at(x_m, y_m).ok_or(Error::OutsideMap {
-        place,
-        x_m,
-        y_m,
-        west_south_m: grid.origin_m,
-        east_north_m: grid.far_corner_m(),
-    })?;
-    let wanted = asked.heading_rad.map(Heading::nearest);
-    let standing = |cell: Cell| -> Vec<Heading> {
-        let all = Heading::all().filter(|h| wanted.is_none_or(|w| w == *h));
-        all.filter(|&heading| lattice.stand(State { cell, heading }).is_ok()).collect()
-    };
-    let distance_m = |cell: Cell| {
-        let [cx, cy] = grid.center_m(cell);
-        (cx - x_m).hypot(cy - y_m)
-    };
-    let near = cells_within(lattice, home, asked.snap_radius_m)
-        .into_iter()
-        .filter(|&cell| cell == home || distance_m(cell) <= asked.snap_radius_m)
-        .map(|cell| (if cell == home { 0.0 } else { distance_m(cell) }, cell));
-    let mut candidates: Vec<(f64, Cell)> = near.collect();
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    for (_, cell) in candidates {
-        let headings = standing(cell);
-        if let Some(&first) = headings.first() {
-            let turned = asked.heading_rad.map_or(0.0, |h| turn_rad(h, first.angle_rad()));
-            return Ok(Snapped { cell, headings, distance_m: distance_m(cell), turn_rad: turned });
-        }
+pub(crate) fn snap(lattice: &Lattice, asked: &Asked, patience: &Patience) -> Result<Snapped, Error> {
+    let mut candidates = Candidates::new(lattice, *asked, patience)?;
+    if let Some(nearest) = candidates.next() {
+        return nearest;
     }
     // The home cell was among the candidates, so whatever heading was wanted is blocked there.
-    let heading = wanted.unwrap_or(Heading::new(0));
-    let reason = lattice.stand(State { cell: home, heading }).err().unwrap_or(Blocked::Edge);
-    Err(Error::PlaceBlocked { place, x_m, y_m, snap_radius_m: asked.snap_radius_m, reason })
+    let heading = candidates.wanted.unwrap_or(Heading::new(0));
+    let reason = lattice.stand(State { cell: candidates.home, heading }).err().unwrap_or(Blocked::Edge);
+    let Asked { place, x_m, y_m, snap_radius_m, .. } = *asked;
+    Err(Error::PlaceBlocked { place, x_m, y_m, snap_radius_m, reason })
 }
 
-/// Cells within a distance of a cell, by king's moves, on the map.
-pub(crate) fn cells_within(lattice: &Lattice, home: Cell, radius_m: f64) -> Vec<Cell> {
-    let grid = &lattice.terrain.grid;
-    let reach = (radius_m / grid.cell_size_m).ceil() as usize + 1;
-    let rows = home.row.saturating_sub(reach)..=(home.row + reach).min(grid.rows - 1);
-    let columns = home.column.saturating_sub(reach)..=(home.column + reach).min(grid.columns - 1);
-    rows.flat_map(|row| columns.clone().map(move |column| Cell { row, column })).collect()
+/// Work of holding the outline against a cell under all headings.
+pub(crate) const STANDING_IN_A_CELL: u64 = HEADINGS as u64 * work::STATE;
+
+/// The cells within the snap radius where the robot can stand, the nearest first; the one that holds the place is nearest.
+///
+/// An error is the last item.
+pub(crate) struct Candidates<'l> {
+    lattice: &'l Lattice,
+    asked: Asked,
+    home: Cell,
+    wanted: Option<Heading>,
+    /// The next ring of cells about the home cell.
+    ring: usize,
+    last_ring: usize,
+    /// Cells of the rings so far by distance; that of a number of 0 or more orders like its bits.
+    open: BinaryHeap<Reverse<(u64, Cell)>>,
+    pacer: Pacer<'l>,
+}
+
+impl<'l> Candidates<'l> {
+    pub(crate) fn new(lattice: &'l Lattice, asked: Asked, patience: &'l Patience) -> Result<Self, Error> {
+        let grid = &lattice.terrain.grid;
+        let Asked { place, x_m, y_m, .. } = asked;
+        let sensible = -MAX_HEADING_RAD..=MAX_HEADING_RAD;
+        if let Some(heading_rad) = asked.heading_rad.filter(|heading_rad| !sensible.contains(heading_rad)) {
+            return Err(Error::Heading { place, heading_rad });
+        }
+        let home = grid.cell_at(x_m, y_m).ok_or(Error::OutsideMap {
+            place,
+            x_m,
+            y_m,
+            west_south_m: grid.origin_m,
+            east_north_m: grid.far_corner_m(),
+        })?;
+        let within = (asked.snap_radius_m / grid.cell_size_m).ceil() as usize;
+        Ok(Candidates {
+            lattice,
+            asked,
+            home,
+            wanted: asked.heading_rad.map(Heading::nearest),
+            ring: 0,
+            last_ring: within.saturating_add(1).min(farthest_ring(grid, home)),
+            open: BinaryHeap::new(),
+            pacer: patience.pacer(),
+        })
+    }
+
+    fn distance_m(&self, cell: Cell) -> f64 {
+        let [x_m, y_m] = self.lattice.terrain.grid.center_m(cell);
+        (x_m - self.asked.x_m).hypot(y_m - self.asked.y_m)
+    }
+
+    /// Adds the next ring's cells.
+    fn open_ring(&mut self) -> Result<(), Error> {
+        for cell in ring(&self.lattice.terrain.grid, self.home, self.ring) {
+            self.pacer.after(work::CELL).ok_or(Error::Timeout { expanded: 0 })?;
+            let distance_m = if cell == self.home { 0.0 } else { self.distance_m(cell) };
+            if distance_m <= self.asked.snap_radius_m {
+                self.open.push(Reverse((distance_m.to_bits(), cell)));
+            }
+        }
+        self.ring += 1;
+        Ok(())
+    }
+
+    /// The nearest cell that was not looked at, if any.
+    fn nearest(&mut self) -> Result<Option<Cell>, Error> {
+        loop {
+            // The place lies within half a cell of the home cell's centre, so cells of further rings are no nearer than this.
+            let known_m = (self.ring as f64 - 0.5) * self.lattice.terrain.grid.cell_size_m;
+            let is_known = |bits: u64| self.ring > self.last_ring || f64::from_bits(bits) <= known_m;
+            match self.open.peek() {
+                Some(Reverse((bits, _))) if is_known(*bits) => {
+                    return Ok(self.open.pop().map(|Reverse((_, cell))| cell));
+                }
+                None if self.ring > self.last_ring => return Ok(None),
+                _ => self.open_ring()?,
+            }
+        }
+    }
+
+    fn look_before_standing(&mut self) -> Result<(), Error> {
+        self.pacer.after(STANDING_IN_A_CELL).ok_or(Error::Timeout { expanded: 0 })
+    }
+
+    /// A cell as a candidate, if the robot can stand there under a heading that was asked for.
+    fn standing(&self, cell: Cell) -> Option<Snapped> {
+        let all = Heading::all().filter(|h| self.wanted.is_none_or(|w| w == *h));
+        let headings: Vec<Heading> =
+            all.filter(|&heading| self.lattice.stand(State { cell, heading }).is_ok()).collect();
+        let first = headings.first()?.angle_rad();
+        Some(Snapped {
+            cell,
+            headings,
+            distance_m: self.distance_m(cell),
+            turn_rad: self.asked.heading_rad.map_or(0.0, |h| turn_rad(h, first)),
+            is_home: cell == self.home,
+        })
+    }
+}
+
+impl Iterator for Candidates<'_> {
+    type Item = Result<Snapped, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let cell = match self.nearest().and_then(|cell| self.look_before_standing().map(|()| cell)) {
+                Ok(cell) => cell?,
+                Err(error) => return Some(Err(error)),
+            };
+            if let Some(snapped) = self.standing(cell) {
+                return Some(Ok(snapped));
+            }
+        }
+    }
 }

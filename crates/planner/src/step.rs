@@ -226,7 +226,7 @@ pub(crate) fn prepare_steps(
     reverse: bool,
     cell_size_m: f64,
     longest_cells: f64,
-) -> impl Iterator<Item = PreparedStep> + '_ {
+) -> impl ExactSizeIterator<Item = PreparedStep> + '_ {
     // Rounding must not add a step to whole cells.
     let by_length = (piece.length_m / (longest_cells * cell_size_m) - 1e-9).ceil();
     let count = by_length.max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;

@@ -27,18 +27,19 @@ impl Planner {
     /// heading asked for, or all headings that fit. `snap_radius_m` `None` means one cell.
     ///
     /// # Errors
-    /// A place off the map or where the robot cannot stand.
+    /// A place off the map or where the robot cannot stand, or patience that ended.
     pub fn states_at(
         &self,
         place: Place,
         [x_m, y_m]: [f64; 2],
         heading_rad: Option<f64>,
         snap_radius_m: Option<f64>,
+        patience: &Patience,
     ) -> Result<Vec<State>, Error> {
         let lattice = self.lattice();
         let snap_radius_m = snap_radius_m.unwrap_or(lattice.terrain.grid.cell_size_m);
-        let snapped = snap(lattice, &Asked { place, x_m, y_m, heading_rad, snap_radius_m })?;
-        Ok(snapped.headings.iter().map(|&heading| State { cell: snapped.cell, heading }).collect())
+        let snapped = snap(lattice, &Asked { place, x_m, y_m, heading_rad, snap_radius_m }, patience)?;
+        Ok(snapped.states().collect())
     }
 
     /// Prepares goal poses, any of which will do, for searches from anywhere.

@@ -1,5 +1,7 @@
 //! Costs of all motions from the cells of one tile, a row of cells side by side.
 
+use std::{ops::Range, sync::Arc};
+
 use multiversion::multiversion;
 use terrain::Cell;
 
@@ -12,8 +14,9 @@ use crate::{
     lattice::Lattice,
     layout::TILE,
     objective::Weights,
-    patience::Patience,
+    patience::{Patience, work},
     row_step::{Lanes, Pricing, RowStep},
+    spans::Span,
     tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
     window::Window,
 };
@@ -26,16 +29,26 @@ pub(crate) struct TileKernel {
     halo: usize,
     /// How far from a cell lie those that its motions sweep.
     swept: usize,
+    /// Cells of the longest span that a motion sweeps.
+    longest_span: u32,
+    /// Chains in groups that are evaluated between two looks at the clock.
+    groups: Vec<Group>,
     pricing: Pricing,
     /// Units per joule, metre or second of the objective.
     units: f32,
+}
+
+/// Chains that follow each other, and their steps.
+struct Group {
+    chains: Range<usize>,
+    steps: usize,
 }
 
 /// A variant of a motion.
 struct RowChain {
     heading: usize,
     motion: usize,
-    sweep: Vec<(i32, i32)>,
+    sweep: Arc<[Span]>,
     steps: Vec<RowStep>,
 }
 
@@ -51,10 +64,13 @@ impl TileKernel {
         }
         let reads = chains.iter().flat_map(|c| &c.steps).flat_map(RowStep::reads);
         let halo = reads.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
-        let sweeps = chains.iter().flat_map(|c| &c.sweep);
-        let swept = sweeps.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
+        let spans = || chains.iter().flat_map(|c| c.sweep.iter());
+        let swept = spans().map(Span::reach).max().unwrap_or(0) as usize;
+        let longest_span = spans().map(Span::cells).max().unwrap_or(1);
         let limits = &lattice.limits;
         TileKernel {
+            groups: groups(&chains),
+            longest_span,
             chains,
             stride: lattice.motions_per_state(),
             halo,
@@ -90,14 +106,15 @@ impl TileKernel {
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
         let mut tile = TileBuilder::new(self.stride, displacements);
         let window = Window::new(lattice, origin, self.halo);
-        let blocked = Blocked::new(&lattice.terrain, origin, self.swept);
+        let blocked = Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span);
         let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
         let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
+        let mut pacer = patience.pacer();
         for row in 0..rows {
-            if row.is_multiple_of(ROWS_BETWEEN_LOOKS) && patience.is_over() {
-                return None;
+            for group in &self.groups {
+                pacer.after((group.steps * window.present.len()) as u64 * STEP_OF_A_ROW)?;
+                evaluate_row(self, &window, row, (group.chains.clone(), &mut offered[group.chains.clone()]));
             }
-            evaluate_row(self, &window, row, &mut offered);
             self.forbid_blocked(&blocked, row, columns, &mut offered);
             take_cheapest(self, &offered, &mut slots);
             tile.store_row(row, &slots);
@@ -119,14 +136,36 @@ impl TileKernel {
     }
 }
 
-/// Rows between two looks at the clock: 4 of them take a third of a millisecond.
-const ROWS_BETWEEN_LOOKS: usize = 4;
+/// Work of one step from a row of cells on one surface: 80 ns.
+const STEP_OF_A_ROW: u64 = 16 * work::CELL;
+/// Most steps of a group of chains, which are evaluated between two chances to look at the clock.
+const STEPS_OF_A_GROUP: usize = 4096;
 
-/// All chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
+/// Chains in groups of no more steps than lie between two looks, as far as single chains allow.
+fn groups(chains: &[RowChain]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for (at, chain) in chains.iter().enumerate() {
+        match groups.last_mut() {
+            Some(group) if group.steps + chain.steps.len() <= STEPS_OF_A_GROUP => {
+                group.chains.end = at + 1;
+                group.steps += chain.steps.len();
+            }
+            _ => groups.push(Group { chains: at..at + 1, steps: chain.steps.len() }),
+        }
+    }
+    groups
+}
+
+/// A group of chains over one row of cells. Compiled for wider registers too, and chosen by what the machine has; no operation
 /// is contracted but where the source says so, so the result is the same on every machine.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma", "aarch64+neon"))]
-fn evaluate_row(kernel: &TileKernel, window: &Window, row: usize, offered: &mut [RowCodes]) {
-    for (chain, codes) in kernel.chains.iter().zip(offered) {
+fn evaluate_row(
+    kernel: &TileKernel,
+    window: &Window,
+    row: usize,
+    (chains, offered): (Range<usize>, &mut [RowCodes]),
+) {
+    for (chain, codes) in kernel.chains[chains].iter().zip(offered) {
         let mut costs = Lanes::ZERO;
         chain.evaluate(kernel, window, row, &mut costs);
         for (code, cost) in codes.iter_mut().zip(costs.iter()) {
@@ -146,7 +185,7 @@ fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCode
 
 impl RowChain {
     fn new(heading: usize, motion: usize, chain: &Chain) -> Self {
-        RowChain { heading, motion, sweep: chain.sweep().to_vec(), steps: chain.row_steps().collect() }
+        RowChain { heading, motion, sweep: Arc::clone(chain.sweep()), steps: chain.row_steps().collect() }
     }
 
     #[inline(always)]

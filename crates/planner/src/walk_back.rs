@@ -3,12 +3,12 @@
 use crate::{
     cost::{FORBIDDEN, decode},
     field::UNREACHED,
-    footprint::shifted,
     heading::Heading,
     labels::Labels,
     lattice::{Lattice, State},
     layout::Layout,
     patience::{Patience, work},
+    spans::shifted,
     table::CostTable,
     tile_builder::{QUAD, code_place},
 };

@@ -95,7 +95,7 @@ fn a_patched_map_plans_as_if_it_had_been_made_so() {
             surface: None,
         };
         let (changed, cells) = terrain.patched(&patch).unwrap();
-        let after = before.patched(&changed, &cells).unwrap();
+        let after = before.patched(&changed, &cells, &Patience::default()).unwrap();
         let kept = after.table(Objective::Energy).tiles_held();
         assert!(kept + 4 >= held && (held < 5 || kept > 0), "{kept} of {held} tiles were kept");
         reached += agree(&energies(&after, &queries), &fresh(&changed, &robot, &queries));

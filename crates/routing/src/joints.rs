@@ -38,7 +38,7 @@ pub struct Joint {
 /// # Errors
 /// A place off the map or where the robot cannot stand, by list (`waypoints`) and position, or patience that ended first.
 pub fn joints(planner: &Planner, waypoints: &[Waypoint], question: &Question) -> Result<Joints, Error> {
-    let places = states_of(planner, "waypoints", waypoints, question.snap_radius_m)?;
+    let places = states_of(planner, "waypoints", waypoints, question.snap_radius_m, &question.patience)?;
     let states: Vec<(usize, State)> = places
         .iter()
         .enumerate()

@@ -64,8 +64,8 @@ pub fn matrix(
     targets: &[Waypoint],
     question: &Question,
 ) -> Result<Matrix, Error> {
-    let starts = states_of(planner, "sources", sources, question.snap_radius_m)?;
-    let goals = states_of(planner, "targets", targets, question.snap_radius_m)?;
+    let starts = states_of(planner, "sources", sources, question.snap_radius_m, &question.patience)?;
+    let goals = states_of(planner, "targets", targets, question.snap_radius_m, &question.patience)?;
     let columns: Vec<Vec<Result<Totals, planner::Error>>> =
         goals.par_iter().map(|goals| column(planner, &starts, goals, question)).collect::<Result<_, _>>()?;
     Ok(Matrix::of(sources.len(), &columns))

@@ -54,7 +54,7 @@ pub fn reach(
     if most_j.is_nan() || most_j <= 0.0 {
         return Err(Error::NotPositive { field: "energies_j".to_owned(), value: most_j });
     }
-    let states = place.states(planner, Place::Start, snap_radius_m)?;
+    let states = place.states(planner, Place::Start, snap_radius_m, patience)?;
     let seeds: Vec<(State, f64)> = states.into_iter().map(|state| (state, 0.0)).collect();
     let lattice = planner.lattice();
     let home_j = seeds.first().map_or(0.0, |(state, _)| lattice.potential_j(state.cell));

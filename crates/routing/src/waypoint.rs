@@ -1,6 +1,6 @@
 //! Places of which there are many in a question.
 
-use planner::{Place, Planner, State};
+use planner::{Patience, Place, Planner, State};
 
 use crate::error::Error;
 
@@ -22,8 +22,9 @@ impl Waypoint {
         planner: &Planner,
         place: Place,
         snap_radius_m: Option<f64>,
+        patience: &Patience,
     ) -> Result<Vec<State>, Error> {
-        Ok(planner.states_at(place, [self.x_m, self.y_m], self.heading_rad, snap_radius_m)?)
+        Ok(planner.states_at(place, [self.x_m, self.y_m], self.heading_rad, snap_radius_m, patience)?)
     }
 }
 
@@ -33,9 +34,10 @@ pub(crate) fn states_of(
     list: &'static str,
     waypoints: &[Waypoint],
     snap_radius_m: Option<f64>,
+    patience: &Patience,
 ) -> Result<Vec<Vec<State>>, Error> {
     let one = |(index, waypoint): (usize, &Waypoint)| {
-        waypoint.states(planner, Place::Listed { list, index }, snap_radius_m)
+        waypoint.states(planner, Place::Listed { list, index }, snap_radius_m, patience)
     };
     waypoints.iter().enumerate().map(one).collect()
 }

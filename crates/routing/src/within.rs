@@ -48,7 +48,7 @@ pub(crate) fn best_within(
     limits: &Limits,
 ) -> Result<Plan, Error> {
     let began = Instant::now();
-    let ends = planner.ends(query)?;
+    let ends = planner.ends(query, objective)?;
     let bounded = Bounded::new(planner, (query, &ends), objective, limits);
     let best = bounded.least_of(bounded.objective)?;
     let least = best.takes[bounded.objective] * (1.0 - TABLE_ROUNDING);

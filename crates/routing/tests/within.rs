@@ -87,7 +87,7 @@ fn case(random: &mut rand_pcg::Pcg64Mcg, number: usize) -> (Planner, Query, Vec<
         let mut query = ground::some_query(random, &terrain, &robot);
         query.snap_radius_m = Some(0.0);
         let planner = Planner::new(&terrain, &robot, query.settings).unwrap();
-        let Ok(ends) = planner.ends(&query) else { continue };
+        let Ok(ends) = planner.ends(&query, Objective::Energy) else { continue };
         if planner.plan(&query, Objective::Energy).is_ok() {
             return (planner, query, ends.starts, ends.goals);
         }

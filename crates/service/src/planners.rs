@@ -1,9 +1,12 @@
 //! Planners of the robots and maps that were asked about lately, with all that they have worked out.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::{
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::{Duration, Instant},
+};
 
 use model::{Robot, robot::RobotFile};
-use planner::{Planner, Settings};
+use planner::{Patience, Planner, Settings};
 use terrain::{CellRange, Terrain};
 
 /// A stored map, a robot and how it is driven.
@@ -13,6 +16,9 @@ struct Key {
     robot: RobotFile,
     settings: Settings,
 }
+
+/// Longest preparation of the planners of a patched map: the time that an answer may take to notice its deadline.
+const PATCH_TIME: Duration = Duration::from_millis(50);
 
 /// Planners by what they are for, the latest at the end.
 #[derive(Default)]
@@ -28,6 +34,7 @@ impl Planners {
         terrain: &Terrain,
         robot: &Robot,
         settings: Settings,
+        patience: &Patience,
     ) -> Result<(Arc<Planner>, bool), planner::Error> {
         let key = Key { map_id: map_id.to_owned(), robot: RobotFile::from(robot.clone()), settings };
         let mut kept = self.lock();
@@ -38,7 +45,7 @@ impl Planners {
             return Ok((planner, true));
         }
         drop(kept);
-        let planner = Arc::new(Planner::new(terrain, robot, settings)?);
+        let planner = Arc::new(Planner::prepare(terrain, robot, settings, patience)?);
         self.lock().push((key, Arc::clone(&planner)));
         Ok((planner, false))
     }
@@ -53,13 +60,15 @@ impl Planners {
         self.lock().iter().map(|(_, planner)| planner.bytes()).sum()
     }
 
-    /// Makes planners for a map that differs from another in some cells only, out of those of the other.
+    /// Makes planners for a map that differs from another in some cells only, out of those of the other, within
+    /// [`PATCH_TIME`]; the rest are made when they are asked for.
     pub(crate) fn patch(&self, from_id: &str, to_id: &str, terrain: &Terrain, changed: &CellRange) {
+        let patience = Patience::until(Instant::now() + PATCH_TIME);
         let from: Vec<_> = self.lock().iter().filter(|(key, _)| key.map_id == from_id).cloned().collect();
         for (key, planner) in from {
             let key = Key { map_id: to_id.to_owned(), ..key };
             // A surface that the robot lacks is told when it is asked for a path.
-            let Ok(planner) = planner.patched(terrain, changed) else { continue };
+            let Ok(planner) = planner.patched(terrain, changed, &patience) else { continue };
             self.lock().push((key, Arc::new(planner)));
         }
     }

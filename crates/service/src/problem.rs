@@ -244,6 +244,7 @@ impl Problem {
             E::Heading { place: end, .. } => (ProblemType::InvalidRequest, Some(place(end) + "/heading_rad")),
             E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
             E::TooManyStates { .. } => (ProblemType::TooLarge, Some("/map".into())),
+            E::TooManySurfaces { .. } => (ProblemType::TooLarge, Some("/map/surface".into())),
             _ => (ProblemType::Internal, None),
         };
         let problem = Problem::new(kind, error.to_string());

@@ -61,8 +61,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         timeout_s: plan.timeout_s,
     };
     let plan = request.plan().map_err(Refused)?;
-    let planner = plan.planner(&terrain).map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
     if arguments.question.driving.json {
         output::json(&found)?;

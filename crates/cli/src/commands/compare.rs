@@ -17,9 +17,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (terrain, request) = arguments.question.read(ObjectiveName::Energy)?;
-    let planner = request.planner(&terrain).map_err(Refused)?;
-    let found =
-        request.patience(&patience()).and_then(|p| answer(&planner, &request, &p)).map_err(Refused)?;
+    let patience = request.patience(&patience()).map_err(Refused)?;
+    let planner = request.planner(&terrain, &patience).map_err(Refused)?;
+    let found = answer(&planner, &request, &patience).map_err(Refused)?;
     if arguments.question.driving.json {
         output::json(&found)?;
     } else {

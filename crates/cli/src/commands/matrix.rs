@@ -43,8 +43,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         timeout_s: driving.timeout_s,
     };
     let plan = request.plan().map_err(Refused)?;
-    let planner = plan.planner(&terrain).map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
     if driving.json {
         output::json(&found)?;

@@ -95,9 +95,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         timeout_s: arguments.timeout_s,
     };
     let plan = request.plan();
-    let planner = plan.planner(&terrain).map_err(Refused)?;
-    let found =
-        plan.patience(&patience()).and_then(|p| answer(&planner, &request, &plan, &p)).map_err(Refused)?;
+    let patience = plan.patience(&patience()).map_err(Refused)?;
+    let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
+    let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
     if arguments.json {
         output::json(&found)?;
     } else {

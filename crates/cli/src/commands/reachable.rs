@@ -69,8 +69,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         timeout_s: driving.timeout_s,
     };
     let plan = request.plan();
-    let planner = plan.planner(&terrain).map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let began = Instant::now();
     let found = Found::of(&planner, &request, &patience).map_err(Refused)?;
     let contours = found.contours(&patience).map_err(Refused)?;

@@ -265,7 +265,8 @@ fn states(
     let one = |(index, node): (usize, &Node)| {
         let place = Place::Listed { list: "places", index };
         let Waypoint { x_m, y_m, heading_rad } = node.site.place;
-        let found = planner.states_at(place, [x_m, y_m], heading_rad, question.snap_radius_m);
+        let found =
+            planner.states_at(place, [x_m, y_m], heading_rad, question.snap_radius_m, &question.patience);
         found.map_err(|error| named(nodes, routing::Error::Planner(error)))
     };
     nodes.iter().enumerate().map(one).collect()

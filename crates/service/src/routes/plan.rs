@@ -293,13 +293,14 @@ impl PlanRequest {
     }
 
     /// Tells a path that only the slope limit forbids from one that there is not, with the slope that would do.
-    fn too_steep(&self, planner: &Planner, problem: Problem) -> Problem {
+    fn too_steep(&self, planner: &Planner, problem: Problem, patience: &Patience) -> Problem {
         let Some(max_slope_rad) = self.max_slope_rad.filter(|_| problem.kind == ProblemType::NoPath) else {
             return problem;
         };
         let free = PlanRequest { max_slope_rad: None, refine: false, ..self.clone() };
-        let Ok(free_planner) = free.planner(&planner.lattice().terrain) else { return problem };
-        let query = free.query(&free_planner, &Patience::until(Instant::now() + STEEP_TIME));
+        let patience = patience.no_later_than(Some(Instant::now() + STEEP_TIME));
+        let Ok(free_planner) = free.planner(&planner.lattice().terrain, &patience) else { return problem };
+        let query = free.query(&free_planner, &patience);
         let Ok(path) = free_planner.plan(&query, Objective::Energy) else { return problem };
         let tilts_rad = path.route.poses.iter().flat_map(|pose| [pose.pitch_rad.abs(), pose.roll_rad.abs()]);
         let steepest_rad = tilts_rad.fold(0.0, f64::max);
@@ -312,16 +313,22 @@ impl PlanRequest {
     /// A planner over a terrain for the request's robot.
     ///
     /// # Errors
-    /// An unusable robot, or one that does not suit the ground.
-    pub fn planner(&self, terrain: &Terrain) -> Result<Planner, Problem> {
+    /// An unusable robot, one that does not suit the ground, or patience that ended.
+    pub fn planner(&self, terrain: &Terrain, patience: &Patience) -> Result<Planner, Problem> {
         let robot = self.limited_robot()?;
-        Planner::new(terrain, &robot, self.settings(&robot)).map_err(|e| Problem::no_plan(&e))
+        let planner = Planner::prepare(terrain, &robot, self.settings(&robot), patience);
+        planner.map_err(|e| Problem::no_plan(&e))
     }
 
     /// The service's planner over a stored map.
-    fn planner_of(&self, engine: &Engine, map_id: &str, terrain: &Terrain) -> Result<Arc<Planner>, Problem> {
+    fn planner_of(
+        &self,
+        engine: &Engine,
+        (map_id, terrain): (&str, &Terrain),
+        patience: &Patience,
+    ) -> Result<Arc<Planner>, Problem> {
         let robot = self.limited_robot()?;
-        let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot));
+        let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot), patience);
         let (planner, at_hand) = planner.map_err(|e| Problem::no_plan(&e))?;
         let outcome = if at_hand { "hit" } else { "miss" };
         engine.metrics().planners.get_or_create(&CacheLabels { outcome }).inc();

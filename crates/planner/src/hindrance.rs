@@ -1,0 +1,184 @@
+//! What keeps the robot from a goal: the ground, or one of its own limits.
+
+use std::{f64::consts::FRAC_PI_2, fmt};
+
+use model::{Acceleration, Manoeuvre, Robot, Sides};
+
+use crate::{
+    ends::Ends,
+    error::Error,
+    lattice::Lattice,
+    objective::Objective,
+    planner::{Planner, surface_names},
+    query::Query,
+    route::Route,
+};
+
+/// A limit of the robot that can forbid a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Largest force of either side [N].
+    SideForce,
+    /// Largest pitch [rad].
+    Pitch,
+    /// Largest roll [rad].
+    Roll,
+}
+
+/// Why no path leads to a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hindrance {
+    /// It was not looked into, or patience ended first.
+    Unexplained,
+    /// Obstacles, unknown ground or want of room: without the robot's limits there is no path either.
+    Ground,
+    /// One limit: without it there is a path.
+    OneLimit {
+        /// Which.
+        limit: Limit,
+        /// Its value, in its own unit.
+        allowed: f64,
+        /// The largest value on the best path without it, in the same unit.
+        needed: f64,
+    },
+    /// Several limits at once: there is a path without all of them, and none without any single one.
+    SeveralLimits,
+}
+
+impl fmt::Display for Hindrance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Hindrance::Unexplained => f.write_str(
+                "look for a wall, unknown cells, or slopes and side forces beyond the robot's limits there",
+            ),
+            Hindrance::Ground => f.write_str(
+                "look for a wall or unknown cells there: without the robot's limits there is no path either",
+            ),
+            Hindrance::OneLimit { limit: Limit::SideForce, allowed, needed } => write!(
+                f,
+                "the robot's limits.max_side_force_n is {allowed:.1} N, and the best path without that limit needs {needed:.1} N: raise it"
+            ),
+            Hindrance::OneLimit { limit, allowed, needed } => write!(
+                f,
+                "the robot's limits.{limit} is {allowed:.3} rad, and the best path without that limit comes to {needed:.3} rad: raise it"
+            ),
+            Hindrance::SeveralLimits => f.write_str(
+                "the robot's limits of pitch, roll and side force leave no path together, and without all of them there is one",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Limit::SideForce => "max_side_force_n",
+            Limit::Pitch => "max_pitch_rad",
+            Limit::Roll => "max_roll_rad",
+        })
+    }
+}
+
+impl Limit {
+    const ALL: [Limit; 3] = [Limit::SideForce, Limit::Pitch, Limit::Roll];
+
+    /// The robot's value; `None` where it has no such limit.
+    fn of(self, robot: &Robot) -> Option<f64> {
+        match self {
+            Limit::SideForce => robot.limits.max_side_force_n,
+            Limit::Pitch => Some(robot.limits.max_pitch_rad),
+            Limit::Roll => Some(robot.limits.max_roll_rad),
+        }
+    }
+
+    fn lift(self, robot: &mut Robot) {
+        match self {
+            Limit::SideForce => robot.limits.max_side_force_n = None,
+            Limit::Pitch => robot.limits.max_pitch_rad = STEEPEST_RAD,
+            Limit::Roll => robot.limits.max_roll_rad = STEEPEST_RAD,
+        }
+    }
+
+    /// The largest value along a route.
+    fn largest(self, lattice: &Lattice, route: &Route) -> f64 {
+        let of_poses = |angle_rad: fn(&crate::route::Pose) -> f64| {
+            route.poses.iter().map(|pose| angle_rad(pose).abs()).fold(0.0, f64::max)
+        };
+        match self {
+            Limit::SideForce => largest_side_force_n(lattice, route),
+            Limit::Pitch => of_poses(|pose| pose.pitch_rad),
+            Limit::Roll => of_poses(|pose| pose.roll_rad),
+        }
+    }
+}
+
+/// A slope that no ground of finite elevations reaches, and whose tangent is a number.
+const STEEPEST_RAD: f64 = FRAC_PI_2 - 1e-6;
+
+/// The largest force of either side along a route [N].
+fn largest_side_force_n(lattice: &Lattice, route: &Route) -> f64 {
+    let (robot, settings) = (&lattice.robot, &lattice.settings);
+    let names = surface_names(lattice);
+    let force_n = route.steps.iter().filter_map(|step| {
+        let surface = robot.surfaces.get(names.get(step.surface)?)?;
+        let temperature_c = Sides::both(settings.motor_temperature_c);
+        let manoeuvre = Manoeuvre::new(settings.power_model, robot, surface, step.motion, temperature_c);
+        let force_n = manoeuvre.power_on_grade(step.grade, Acceleration::NONE).force_n;
+        Some(force_n.left.abs().max(force_n.right.abs()))
+    });
+    force_n.fold(0.0, f64::max)
+}
+
+impl Planner {
+    /// An error with what keeps the robot from the goal, where it says that there is no path.
+    ///
+    /// The question is asked anew without the robot's limits: without all of them, then without each.
+    pub(crate) fn explained(&self, error: Error, ends: &Ends, query: &Query, objective: Objective) -> Error {
+        let (gap_m, [x_m, y_m]) = match error {
+            Error::NoPath { gap_m, x_m, y_m, .. } => (gap_m, [x_m, y_m]),
+            Error::NoRoomToTurn { x_m, y_m } => (0.0, [x_m, y_m]),
+            other => return other,
+        };
+        match self.hindrance(ends, query, objective) {
+            Hindrance::Ground | Hindrance::Unexplained if gap_m == 0.0 => error,
+            hindrance => Error::NoPath { gap_m, x_m, y_m, hindrance },
+        }
+    }
+
+    fn hindrance(&self, ends: &Ends, query: &Query, objective: Objective) -> Hindrance {
+        let robot = &self.lattice().robot;
+        match self.without(&Limit::ALL, ends, query, objective) {
+            Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => return Hindrance::Ground,
+            Err(_) => return Hindrance::Unexplained,
+            Ok(_) => {}
+        }
+        for limit in Limit::ALL {
+            let Some(allowed) = limit.of(robot) else { continue };
+            match self.without(&[limit], ends, query, objective) {
+                Ok((planner, route)) => {
+                    let needed = limit.largest(planner.lattice(), &route);
+                    return Hindrance::OneLimit { limit, allowed, needed };
+                }
+                Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => {}
+                Err(_) => return Hindrance::Unexplained,
+            }
+        }
+        Hindrance::SeveralLimits
+    }
+
+    /// The best path of a robot without some limits.
+    fn without(
+        &self,
+        limits: &[Limit],
+        ends: &Ends,
+        query: &Query,
+        objective: Objective,
+    ) -> Result<(Planner, Route), Error> {
+        let lattice = self.lattice();
+        let mut robot = lattice.robot.clone();
+        limits.iter().for_each(|limit| limit.lift(&mut robot));
+        let planner = Planner::prepare(&lattice.terrain, &robot, lattice.settings, &query.patience)?;
+        let route = planner.best_between(ends, query, objective)?;
+        Ok((planner, route))
+    }
+}
