@@ -96,7 +96,7 @@ impl SpanUnion {
             for (first, last) in runs {
                 match spans.last_mut() {
                     Some(span) if span.row == row && first <= span.last + 1 => {
-                        span.last = span.last.max(last)
+                        span.last = span.last.max(last);
                     }
                     _ => spans.push(Span { row, first, last }),
                 }

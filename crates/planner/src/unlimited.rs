@@ -8,9 +8,9 @@ use terrain::Cell;
 
 use crate::{
     edge::{Chain, Edge},
-    footprint::{first_blocked, shifted},
     lattice::{Lattice, State},
     objective::Weights,
+    spans::{first_blocked, shifted},
     step::{Limits, Step},
 };
 
@@ -48,7 +48,7 @@ pub(crate) fn drive_unlimited(
     mut visit: impl FnMut(&Step),
 ) -> Option<()> {
     let terrain = &lattice.terrain;
-    if first_blocked(terrain, cell, chain.sweep()).is_some() {
+    if first_blocked(&lattice.clearance, cell, chain.sweep()).is_some() {
         return None;
     }
     let index = terrain.grid.index(cell);

@@ -193,7 +193,7 @@ pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> 
     }
     let found = routing::plan_within(planner, &query, objective, &limits)
         .map_err(|e| Problem::no_routing(&e))
-        .map_err(|problem| request.too_steep(planner, problem))?;
+        .map_err(|problem| request.too_steep(planner, problem, patience))?;
     Ok(PlanAnswer::from(&found))
 }
 
