@@ -40,6 +40,9 @@ pub struct Query {
     /// How it is driven.
     pub settings: Settings,
     /// How far a start or goal may be moved to ground where the robot can stand; `None` means one cell [m].
+    ///
+    /// The nearest place that is connected to the other end is preferred to nearer ones that are not. Without a radius an end
+    /// where the robot can stand stays where it is.
     pub snap_radius_m: Option<f64>,
     /// The path may cost so many times the least, 1 to [`Query::LOOSEST_BOUND`]; 1 asks for the least itself.
     pub bound: f64,
