@@ -67,7 +67,7 @@ fn an_answer_is_within_the_bound_asked_for_and_within_the_bound_it_states() {
                     assert!(cost <= proven * least + room, "{cost} is not within {proven} of {least}");
                 }
                 None => {
-                    assert!(found.search.optimal || best.route.total.energy_j < 1.0, "{cost} over {least}")
+                    assert!(found.search.optimal || best.route.total.energy_j < 1.0, "{cost} over {least}");
                 }
             }
             looser += usize::from(!found.search.is_optimal());
@@ -128,7 +128,7 @@ fn no_bound_is_claimed_below_the_ratio_to_the_least_in_double_precision() {
         let query = Query { bound: [1.0, 1.005, 1.02, 1.2][compared % 4], ..query };
         let planner = Planner::new(&terrain, &robot, query.settings).unwrap();
         let Ok(found) = planner.plan(&query, objective) else { continue };
-        let least = least_amount(planner.lattice(), &planner.ends(&query).unwrap(), objective);
+        let least = least_amount(planner.lattice(), &planner.ends(&query, objective).unwrap(), objective);
         if least.is_infinite() {
             // A motion at the very limit of the robot is allowed by the table alone.
             continue;

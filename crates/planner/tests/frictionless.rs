@@ -130,7 +130,7 @@ fn paths_of_extreme_robots_join_their_ends_and_cost_the_least_of_the_table() {
         let query = Query { snap_radius_m: None, refine: case % 4 == 0, ..query };
         let Ok(planner) = Planner::new(&terrain, &robot, query.settings) else { continue };
         let objective = OBJECTIVES[case % 3];
-        let ends = planner.ends(&query);
+        let ends = planner.ends(&query, objective);
         match planner.plan(&query, objective) {
             Ok(plan) => {
                 reached += 1;
