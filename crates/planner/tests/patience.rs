@@ -168,7 +168,8 @@ fn ground_without_a_way_is_looked_over_between_looks() {
         assert!(matches!(error, Error::NoPath { .. }), "{error}");
     });
     assert_looks("matrix entry", 100 * 600, |patience| {
-        let states = |x_m, y_m| planner.states_at(Place::Start, [x_m, y_m], None, None).unwrap();
+        let states =
+            |x_m, y_m| planner.states_at(Place::Start, [x_m, y_m], None, None, &Patience::default()).unwrap();
         let target = planner.target(&states(550.5, 20.5), Objective::Energy, patience).unwrap();
         assert!(planner.path_to(&target, &states(20.5, 20.5), patience).is_err());
     });
