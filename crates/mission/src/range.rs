@@ -277,7 +277,7 @@ fn turned(
     homeward: &Homeward<'_>,
 ) -> Result<Option<Goal>, Error> {
     let lattice = planner.lattice();
-    let ends = planner.ends(query)?;
+    let ends = planner.ends(query, Objective::Energy)?;
     let least_j = ends.goals.iter().filter_map(|goal| homeward.energy_j(*goal)).min_by(f64::total_cmp);
     let Goal { x_m, y_m, .. } = query.goal;
     let least_j = least_j.ok_or(Error::NoWayBack { x_m, y_m })?;
