@@ -3,6 +3,7 @@
 #![allow(clippy::panic)]
 
 pub mod churn;
+pub mod extremes;
 pub mod folder_store;
 pub mod kills;
 pub mod s3;
@@ -251,6 +252,11 @@ impl Server {
         let _ = self.child.wait();
     }
 
+    /// Memory that the server holds now [bytes], where the system tells (Linux).
+    pub fn resident_memory_bytes(&self) -> Option<u64> {
+        status_bytes(&self.child.id().to_string(), "VmRSS:")
+    }
+
     /// The most memory that the server has held [bytes], where the system tells (Linux).
     pub fn peak_memory_bytes(&self) -> Option<u64> {
         peak_memory_bytes(&self.child.id().to_string())
@@ -259,8 +265,12 @@ impl Server {
 
 /// The most memory that a process, by its number or `self`, has held [bytes], where the system tells (Linux).
 pub fn peak_memory_bytes(process: &str) -> Option<u64> {
+    status_bytes(process, "VmHWM:")
+}
+
+fn status_bytes(process: &str, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let line = status.lines().find(|line| line.starts_with(name))?;
     let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kibibytes * 1024)
 }
