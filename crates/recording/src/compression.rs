@@ -37,10 +37,9 @@ pub(crate) fn decompress(
             Err(_) => false,
         },
         b"lz4" => match lz4::Decoder::new(packed) {
-            Ok(mut decoder) => {
-                let whole = read_whole(&mut decoder, claimed_bytes, plain, looks)?;
-                let (rest, end) = decoder.finish();
-                whole && end.is_ok() && rest.is_empty()
+            Ok(decoder) => {
+                read_whole(decoder, claimed_bytes, plain, looks)?
+                    && lz4_frame_bytes(packed) == Some(packed.len())
             }
             Err(_) => false,
         },
@@ -50,6 +49,25 @@ pub(crate) fn decompress(
             return Ok(Err(format!("its chunks are compressed with `{name}`")));
         }
     }))
+}
+
+/// Length of an LZ4 frame by its own account [bytes]: the decoder reads a little further. LZ4 Frame Format 1.6.
+fn lz4_frame_bytes(packed: &[u8]) -> Option<usize> {
+    const HEAD_BYTES: usize = 7;
+    let flags = *packed.get(4)?;
+    let field = |bit: u8, bytes: usize| if flags & bit == 0 { 0 } else { bytes };
+    // Size of the content and id of a dictionary.
+    let mut at = HEAD_BYTES + field(0x08, 8) + field(0x01, 4);
+    loop {
+        let size = packed.get(at..at + 4)?.try_into().map(u32::from_le_bytes).ok()?;
+        at += 4;
+        if size == 0 {
+            // Checksum of the content.
+            return Some(at + field(0x04, 4));
+        }
+        // The highest bit marks a block that is not packed; a checksum may follow it.
+        at += usize::try_from(size & 0x7fff_ffff).ok()? + field(0x10, 4);
+    }
 }
 
 /// Reads the bytes that a chunk claims. False: there are fewer, or something is left over.
