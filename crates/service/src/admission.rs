@@ -74,6 +74,16 @@ impl Admission {
         self.acquire(true).await
     }
 
+    /// A turn as [`Admission::soon`] gives it, or a refusal at a deadline that passes while the request waits.
+    pub(crate) async fn before(self: &Arc<Self>, deadline: Option<Instant>) -> Result<Turn, Problem> {
+        let Some(deadline) = deadline else { return self.soon().await };
+        tokio::time::timeout_at(deadline.into(), self.soon()).await.unwrap_or_else(|_| {
+            let detail = "the request's time was over before its turn to compute came: give it more time, or try again when the \
+                          service has less to do";
+            Err(Problem::new(ProblemType::Timeout, detail))
+        })
+    }
+
     /// A turn for work that nobody waits for.
     pub(crate) async fn some_time(self: &Arc<Self>) -> Result<Turn, Problem> {
         self.acquire(false).await
@@ -232,5 +242,17 @@ mod tests {
         let _job = admission.some_time().await.unwrap();
         assert!(!admission.is_stalled(late), "a job may take longer than a plan");
         drop(second);
+    }
+
+    #[tokio::test]
+    async fn a_deadline_that_passes_while_a_request_waits_ends_its_wait_and_takes_no_turn() {
+        let admission = admission(narrow());
+        let turn = admission.soon().await.unwrap();
+        let refused = admission.before(Some(Instant::now())).await.err().unwrap();
+        assert_eq!(refused.kind, ProblemType::Timeout);
+        assert_eq!(admission.waiting.load(Ordering::Relaxed), 0, "a refused request does not wait");
+        drop(turn);
+        let later = Instant::now() + Duration::from_secs(3600);
+        assert!(admission.before(Some(later)).await.is_ok(), "the refused request holds no turn");
     }
 }

@@ -182,21 +182,23 @@ impl Engine {
         &self,
         work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        self.compute_within(0, work).await
+        self.compute_within(0, None, work).await
     }
 
-    /// The same within memory that the computation has to itself.
+    /// The same within memory that the computation has to itself, and up to the request's own deadline, which counts while it
+    /// waits for its turn.
     pub(crate) async fn compute_within<T: Send + 'static>(
         &self,
         bytes: u64,
+        own_deadline: Option<Instant>,
         work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        let turn = self.0.admission.soon().await?;
+        let turn = self.0.admission.before(own_deadline).await?;
         let reserved = self.admission().reserve(bytes)?;
         let deadline = Instant::now() + self.limits().plan_time;
         self.work_in(turn, move |left| {
             let _reserved = reserved;
-            work(&Patience::until_or(deadline, Arc::clone(left)))
+            work(&Patience::until_or(deadline, Arc::clone(left)).no_later_than(own_deadline))
         })
         .await
     }

@@ -345,13 +345,21 @@ impl PlanRequest {
         }
     }
 
+    /// When the request's own time is over; `None` where it gives itself none.
+    ///
+    /// # Errors
+    /// A time that is not above 0.
+    pub(crate) fn deadline(&self) -> Result<Option<Instant>, Problem> {
+        let allowed = self.timeout_s.map(|timeout_s| allowed_time("timeout_s", timeout_s)).transpose()?;
+        Ok(allowed.flatten().and_then(|allowed| Instant::now().checked_add(allowed)))
+    }
+
     /// What patience there is, shortened to the request's own.
     ///
     /// # Errors
     /// A time that is not above 0.
     pub fn patience(&self, patience: &Patience) -> Result<Patience, Problem> {
-        let own = self.timeout_s.map(|timeout_s| allowed_time("timeout_s", timeout_s)).transpose()?;
-        Ok(patience.no_later_than(own.flatten().and_then(|allowed| Instant::now().checked_add(allowed))))
+        Ok(patience.no_later_than(self.deadline()?))
     }
 
     /// The question as the planner takes it.

@@ -23,14 +23,15 @@ pub(crate) async fn with_planner<T: Send + 'static>(
     request: &mut PlanRequest,
     answer: impl FnOnce(&Planner, &PlanRequest, &Patience) -> Result<T, Problem> + Send + 'static,
 ) -> Result<T, Problem> {
+    // The time that a request gives itself begins when it has been read.
+    let deadline = request.deadline()?;
     request.robot.look_up(engine.robots(), tenant).await?;
     let stored = choose_map(engine, tenant, request).await?;
     let (inline, request) = (request.map.take(), request.clone());
     let own = engine.clone();
     let bytes = estimated_bytes(engine, request.map_id.as_deref(), stored.as_deref(), inline.as_ref());
     engine
-        .compute_within(bytes, move |patience| {
-            let patience = request.patience(patience)?;
+        .compute_within(bytes, deadline, move |patience| {
             let most_cells = own.limits().map_cells();
             let large = |terrain: &Terrain| {
                 refuse_too_large(terrain, most_cells).map_err(|problem| problem.at("/map"))
@@ -39,14 +40,14 @@ pub(crate) async fn with_planner<T: Send + 'static>(
                 (Some(stored), _) => {
                     let map_id = request.map_id.as_deref().unwrap_or_default();
                     large(&stored)
-                        .and_then(|()| request.planner_of(&own, (map_id, &stored), &patience))
-                        .and_then(|planner| answer(&planner, &request, &patience))
+                        .and_then(|()| request.planner_of(&own, (map_id, &stored), patience))
+                        .and_then(|planner| answer(&planner, &request, patience))
                 }
                 (None, Some(file)) => {
                     let terrain = terrain_from(file, "/map")?;
                     large(&terrain)
-                        .and_then(|()| request.planner(&terrain, &patience))
-                        .and_then(|planner| answer(&planner, &request, &patience))
+                        .and_then(|()| request.planner(&terrain, patience))
+                        .and_then(|planner| answer(&planner, &request, patience))
                 }
                 (None, None) => return Err(no_map()),
             };
