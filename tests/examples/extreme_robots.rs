@@ -19,7 +19,10 @@ use joulepath_tests::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::json;
-use terrain::{MapFile, io::read_path, synthetic::mirrored};
+use terrain::{
+    io::{json::JsonText, read_path},
+    synthetic::mirrored,
+};
 
 /// Most memory of requests, planners and maps that the service is given [bytes].
 const LIMITS: [(&str, u64); 3] = [
@@ -76,7 +79,7 @@ impl Trial {
         let ground = read_path(&file("maps/minnesota.tif")).unwrap();
         let stored = [60, 300, 900].map(|side| {
             let terrain = mirrored(&ground, side, side).unwrap();
-            let body = serde_json::to_vec(&MapFile::from(&terrain)).unwrap();
+            let body = JsonText::of(&terrain).flatten().collect::<Vec<u8>>();
             let answer = server.post("/v1/maps", "application/json", &body);
             assert!(answer.status < 300, "{}", answer.text);
             Ground {

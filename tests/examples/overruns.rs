@@ -10,7 +10,11 @@ use std::time::{Duration, Instant};
 
 use joulepath_tests::{Server, drive_csv, file};
 use serde_json::{Value, json};
-use terrain::{Grid, MapFile, Terrain, io::read_path, synthetic::mirrored};
+use terrain::{
+    Grid, Terrain,
+    io::{json::JsonText, read_path},
+    synthetic::mirrored,
+};
 
 /// Deadlines of every question [s].
 const DEADLINES_S: [f64; 9] = [0.01, 0.03, 0.06, 0.1, 0.1, 0.2, 0.4, 0.8, 1.6];
@@ -72,7 +76,7 @@ struct Stored {
 
 impl Stored {
     fn new(server: &Server, terrain: &Terrain) -> Self {
-        let body = serde_json::to_vec(&MapFile::from(terrain)).unwrap();
+        let body = JsonText::of(terrain).flatten().collect::<Vec<u8>>();
         let answer = server.post("/v1/maps", "application/json", &body);
         assert!(answer.status < 300, "{}", answer.text);
         Stored { id: answer.json()["id"].clone(), grid: terrain.grid }

@@ -147,7 +147,7 @@ fn what_a_tenant_keeps_is_not_there_for_others_though_they_know_its_id() {
         ("/v1/status", "maps", &ids.map),
     ] {
         for sees in [alice, admin] {
-            assert_eq!(sees.ids(path, list), [id.clone()], "{path}");
+            assert_eq!(sees.ids(path, list), std::slice::from_ref(&id), "{path}");
         }
         for other in [bob, old] {
             assert_eq!(other.ids(path, list), Vec::<String>::new(), "{path}");
@@ -266,7 +266,7 @@ fn the_same_job_of_two_tenants_is_two_jobs_and_neither_cancels_that_of_the_other
     bob.get(&path).problem(404, "unknown-job");
     bob.delete(&path).problem(404, "unknown-job");
     bob.get(&format!("{path}/events")).problem(404, "unknown-job");
-    assert_eq!(bob.ids("/v1/jobs", "jobs"), [of_bob.clone()]);
+    assert_eq!(bob.ids("/v1/jobs", "jobs"), std::slice::from_ref(&of_bob));
     let mut all = admin.ids("/v1/jobs", "jobs");
     all.sort();
     let mut both = [of_alice.clone(), of_bob.clone()];
@@ -425,7 +425,7 @@ fn what_was_stored_before_there_were_tenants_belongs_to_the_default_one() {
             other.get(&path).problem(404, kind);
         }
     }
-    assert_eq!(old.ids("/v1/jobs", "jobs"), [ids.job.clone()]);
+    assert_eq!(old.ids("/v1/jobs", "jobs"), std::slice::from_ref(&ids.job));
     // A map that both have stays when one of them drops it, whoever was first.
     created(&alice.post("/v1/maps", &map(0.0)));
     let path = format!("/v1/maps/{}", ids.map);

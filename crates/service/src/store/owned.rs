@@ -163,8 +163,8 @@ mod tests {
         let ids = async |tenant: &Tenant| -> Vec<String> {
             notes.list(tenant).await.unwrap().into_iter().map(|(id, _)| id).collect()
         };
-        assert_eq!(ids(&alice).await, [shared.clone()]);
-        assert_eq!(ids(&bob).await, [own.clone()]);
+        assert_eq!(ids(&alice).await, std::slice::from_ref(&shared));
+        assert_eq!(ids(&bob).await, std::slice::from_ref(&own));
         assert_eq!(ids(&admin).await, [shared.clone(), own.clone()]);
         assert_eq!(notes.holders(&shared).await.unwrap(), [alice.clone(), Tenant::default()]);
         notes.remove(&alice, &shared).await.unwrap();

@@ -66,7 +66,7 @@ fn pieces<D: AsyncRead + Send + Unpin + 'static>(
         let mut piece = Vec::with_capacity(PIECE_BYTES);
         // A decoder would otherwise hold its thread for as long as there is something to decode.
         tokio::task::yield_now().await;
-        let count = decoder.read_buf(&mut piece).await.map_err(|error| invalid(coding, error))?;
+        let count = decoder.read_buf(&mut piece).await.map_err(|error| invalid(coding, &error))?;
         if count > 0 {
             return Ok(Some((Bytes::from(piece), decoder)));
         }
@@ -78,7 +78,7 @@ fn pieces<D: AsyncRead + Send + Unpin + 'static>(
     })
 }
 
-fn invalid(coding: Coding, error: io::Error) -> io::Error {
+fn invalid(coding: Coding, error: &io::Error) -> io::Error {
     let name = coding.name();
     match error.kind() {
         io::ErrorKind::UnexpectedEof => io::Error::other(format!("its {name} data ends too early")),
