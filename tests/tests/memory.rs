@@ -135,7 +135,7 @@ fn clients_that_never_read_their_maps_keep_to_the_limit() {
         .collect();
     let count =
         "joulepath_http_request_duration_seconds_count{method=\"GET\",path=\"/v1/maps/{id}\",status=\"200\"}";
-    wait_until("answer for each", || server.metric(&count) == READERS as f64);
+    wait_until("answer for each", || server.metric(count) == READERS as f64);
     assert_eq!(server.get("/healthz").status, 200);
     check_peak(&server, "readers");
     drop(readers);

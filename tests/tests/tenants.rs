@@ -147,7 +147,7 @@ fn what_a_tenant_keeps_is_not_there_for_others_though_they_know_its_id() {
         ("/v1/status", "maps", &ids.map),
     ] {
         for sees in [alice, admin] {
-            assert_eq!(sees.ids(path, list), std::slice::from_ref(&id), "{path}");
+            assert_eq!(sees.ids(path, list), std::slice::from_ref(id), "{path}");
         }
         for other in [bob, old] {
             assert_eq!(other.ids(path, list), Vec::<String>::new(), "{path}");
