@@ -97,7 +97,7 @@ fn wrong_requests_are_refused_at_once_with_the_pointer_to_the_field() {
         ("recordings", json!([]), 400, "invalid-request", "/recordings"),
         ("recordings", json!(7), 400, "invalid-request", "/recordings"),
         ("robot", json!("jackal"), 404, "unknown-robot", "/robot"),
-        ("robot", json!({ "name": "x" }), 400, "invalid-request", "/robot"),
+        ("robot", json!({ "name": "x" }), 400, "invalid-request", "/robot/mass_kg"),
         ("method", json!("guess"), 400, "invalid-request", "/method"),
         ("map", json!("rover"), 400, "invalid-request", "/map"),
         ("map", unit, 400, "invalid-request", "/map/sources/0/unit"),

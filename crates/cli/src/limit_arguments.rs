@@ -3,7 +3,7 @@
 use std::{str::FromStr, time::Duration};
 
 use clap::Args;
-use service::Limits;
+use service::{Limits, Tokens};
 
 /// Each is also a variable of the environment and a setting of the file.
 #[derive(Args)]
@@ -51,15 +51,17 @@ pub(crate) struct LimitArguments {
     /// Most bytes over all stored recordings
     #[arg(long, env = "JOULEPATH_STORED_RECORDING_BYTES", default_value_t = Limits::default().stored_recording_bytes)]
     stored_recording_bytes: u64,
-    /// Most bytes of maps, robots and recordings that a tenant may keep
-    #[arg(long, env = "JOULEPATH_TENANT_BYTES", default_value_t = Limits::default().tenant_bytes)]
-    tenant_bytes: u64,
+    /// Most bytes of maps, robots and recordings that a tenant may keep [default: as many as recordings may take, half of them
+    /// where tokens tell tenants apart]
+    #[arg(long, env = "JOULEPATH_TENANT_BYTES")]
+    tenant_bytes: Option<u64>,
     /// Most maps, robots and recordings that a tenant may keep
     #[arg(long, env = "JOULEPATH_TENANT_OBJECTS", default_value_t = Limits::default().tenant_objects)]
     tenant_objects: usize,
-    /// Most jobs of a tenant that may wait or run, at all services over the store together
-    #[arg(long, env = "JOULEPATH_TENANT_JOBS", default_value_t = Limits::default().tenant_jobs)]
-    tenant_jobs: usize,
+    /// Most jobs of a tenant that may wait or run, at all services over the store together [default: those of a service, half of
+    /// them where tokens tell tenants apart]
+    #[arg(long, env = "JOULEPATH_TENANT_JOBS")]
+    tenant_jobs: Option<usize>,
     /// Longest time for one job [s]
     #[arg(long, env = "JOULEPATH_JOB_TIME_S", default_value = "3600", value_parser = seconds)]
     job_time_s: Duration,
@@ -126,7 +128,10 @@ fn lease(text: &str) -> Result<Duration, String> {
 }
 
 impl LimitArguments {
-    pub(crate) fn limits(&self) -> Limits {
+    /// The limits of a service whose tenants its tokens tell apart; without tokens there is one tenant, who may have everything.
+    pub(crate) fn limits(&self, tokens: &Tokens) -> Limits {
+        // Half: no tenant alone keeps all others out.
+        let share = if tokens.is_empty() { 1 } else { 2 };
         Limits {
             body_bytes: self.body_bytes,
             plan_time: self.plan_time_s,
@@ -142,9 +147,9 @@ impl LimitArguments {
             queued_plans: self.queued_plans,
             recording_bytes: self.recording_bytes,
             stored_recording_bytes: self.stored_recording_bytes,
-            tenant_bytes: self.tenant_bytes,
+            tenant_bytes: self.tenant_bytes.unwrap_or(self.stored_recording_bytes / share as u64),
             tenant_objects: self.tenant_objects,
-            tenant_jobs: self.tenant_jobs,
+            tenant_jobs: self.tenant_jobs.unwrap_or(self.open_jobs.div_ceil(share)),
             job_time: self.job_time_s,
             open_jobs: self.open_jobs,
             parallel_jobs: self.parallel_jobs,
@@ -170,7 +175,14 @@ mod tests {
     fn defaults_of_flags_are_those_of_the_service() {
         let command = LimitArguments::augment_args(Command::new("serve"));
         let matches = command.try_get_matches_from(["serve"]).unwrap();
-        assert_eq!(LimitArguments::from_arg_matches(&matches).unwrap().limits(), Limits::default());
+        let limits = |tokens: &str| {
+            let tokens = Tokens::parse(tokens).unwrap();
+            LimitArguments::from_arg_matches(&matches).unwrap().limits(&tokens)
+        };
+        let all = Limits::default();
+        assert_eq!(limits(""), all);
+        let halved = Limits { tenant_bytes: all.tenant_bytes / 2, tenant_jobs: all.tenant_jobs / 2, ..all };
+        assert_eq!(limits("alice:0123456789abcdef"), halved);
     }
 
     #[test]

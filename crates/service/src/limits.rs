@@ -35,11 +35,11 @@ pub struct Limits {
     pub recording_bytes: u64,
     /// Most bytes over all stored recordings. Default 64 GiB.
     pub stored_recording_bytes: u64,
-    /// Most bytes of maps, robots and recordings that a tenant may keep. Default 32 GiB: half of what recordings may take.
+    /// Most bytes of maps, robots and recordings that a tenant may keep. Default: as many as recordings may take.
     pub tenant_bytes: u64,
     /// Most maps, robots and recordings that a tenant may keep. Default 10 000.
     pub tenant_objects: usize,
-    /// Most jobs of a tenant that may wait or run, at all services together. Default 16: half of those of a service.
+    /// Most jobs of a tenant that may wait or run, at all services together. Default: those of a service.
     pub tenant_jobs: usize,
     /// Longest time for one job [s]. Default 3600 s.
     pub job_time: Duration,
@@ -83,9 +83,9 @@ impl Default for Limits {
             queued_plans: 256,
             recording_bytes: 12 << 30,
             stored_recording_bytes: 64 << 30,
-            tenant_bytes: 32 << 30,
+            tenant_bytes: 64 << 30,
             tenant_objects: 10_000,
-            tenant_jobs: 16,
+            tenant_jobs: 32,
             job_time: Duration::from_secs(3600),
             open_jobs: 32,
             parallel_jobs: (cores - 1).max(1),

@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     log(arguments.log_format);
     let listener = TcpListener::bind(&addresses[..])
         .map_err(|error| BadInput(format!("cannot listen on --bind {}: {error}", arguments.bind)))?;
-    let limits = arguments.limits.limits();
+    let limits = arguments.limits.limits(&access.tokens);
     let engine =
         Engine::new(limits, arguments.store.as_deref()).map_err(|error| BadInput(error.to_string()))?;
     // The service is there for who asks it, whether or not somebody reads its output.
