@@ -309,8 +309,14 @@ fn every_command_refuses_times_in_another_unit_before_it_computes_anything() {
             let output = joulepath(folder.path(), command);
             let said = text(&output.stderr);
             assert_eq!(output.status.code(), Some(2), "{command:?}: {said}");
-            assert!(said.contains("bad.csv: line ") && said.contains("run `drive-0`: "), "{command:?}: {said}");
-            assert!(said.contains("s apart: `t_s` must be in seconds") && said.contains(unit), "{command:?}: {said}");
+            assert!(
+                said.contains("bad.csv: line ") && said.contains("run `drive-0`: "),
+                "{command:?}: {said}"
+            );
+            assert!(
+                said.contains("s apart: `t_s` must be in seconds") && said.contains(unit),
+                "{command:?}: {said}"
+            );
         }
     }
     assert!(!folder.path().join("robot.json").exists() && !folder.path().join("report").exists());

@@ -63,7 +63,7 @@ pub(crate) struct LimitArguments {
     #[arg(long, env = "JOULEPATH_TENANT_JOBS")]
     tenant_jobs: Option<usize>,
     /// Longest time for one job [s]
-    #[arg(long, env = "JOULEPATH_JOB_TIME_S", default_value = "3600", value_parser = seconds)]
+    #[arg(long, env = "JOULEPATH_JOB_TIME_S", default_value = "3600", value_parser = some_seconds)]
     job_time_s: Duration,
     /// Jobs that may wait or run
     #[arg(long, env = "JOULEPATH_OPEN_JOBS", default_value_t = Limits::default().open_jobs)]

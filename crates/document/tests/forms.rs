@@ -98,6 +98,15 @@ fn a_name_is_no_object() {
 }
 
 #[test]
+fn a_large_document_is_not_read_again_and_again_for_its_missing_fields() {
+    let filler = "x".repeat(8 << 20);
+    let error = read(&format!(r#"{{"start": {{}}, "map_id": "{filler}"}}"#)).unwrap_err();
+    assert_eq!(error.mistakes().len(), 1, "{error}");
+    let error = from_value::<Request>(&json!({ "start": {}, "map_id": filler })).unwrap_err();
+    assert_eq!(error.mistakes().len(), 1, "{error}");
+}
+
+#[test]
 fn all_missing_fields_are_reported_at_once() {
     let error = read("{}").unwrap_err();
     assert_eq!(error.to_string(), "missing fields `start`, `ground`");

@@ -19,22 +19,45 @@ use crate::{
 /// A JSON body.
 pub(crate) struct JsonBody<T>(pub(crate) T);
 
+/// A JSON body that holds no map: what is done with it beside reading takes no thread of its own.
+pub(crate) struct ShortJsonBody<T>(pub(crate) T);
+
+/// Most bytes of a [`ShortJsonBody`]: a robot, a map of columns and a lifting test take some tens of kilobytes.
+const SHORT_BODY_BYTES: usize = 1 << 20;
+
 impl<T: DeserializeOwned + Send + 'static> FromRequest<Engine> for JsonBody<T> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, engine: &Engine) -> Result<Self, Problem> {
-        let kind = content_type(&request);
-        if kind != "application/json" && !kind.ends_with("+json") {
-            let found = if kind.is_empty() { "no content type".to_owned() } else { format!("`{kind}`") };
-            return Err(Problem::new(
-                ProblemType::UnsupportedMediaType,
-                format!("this path takes application/json, but the request has {found}"),
-            ));
-        }
-        let content = read(request, engine).await?;
-        let length = content.bytes.len();
-        engine.read(length, move || content.parsed(from_json)).await.map(JsonBody)
+        parsed(request, engine, engine.limits().body_bytes).await.map(JsonBody)
     }
+}
+
+impl<T: DeserializeOwned + Send + 'static> FromRequest<Engine> for ShortJsonBody<T> {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, engine: &Engine) -> Result<Self, Problem> {
+        parsed(request, engine, SHORT_BODY_BYTES.min(engine.limits().body_bytes)).await.map(ShortJsonBody)
+    }
+}
+
+/// What a JSON body of so many bytes at most says.
+async fn parsed<T: DeserializeOwned + Send + 'static>(
+    request: Request,
+    engine: &Engine,
+    most_bytes: usize,
+) -> Result<T, Problem> {
+    let kind = content_type(&request);
+    if kind != "application/json" && !kind.ends_with("+json") {
+        let found = if kind.is_empty() { "no content type".to_owned() } else { format!("`{kind}`") };
+        return Err(Problem::new(
+            ProblemType::UnsupportedMediaType,
+            format!("this path takes application/json, but the request has {found}"),
+        ));
+    }
+    let content = read_at_most(request, engine, most_bytes).await?;
+    let length = content.bytes.len();
+    engine.read(length, move || content.parsed(from_json)).await
 }
 
 /// What a body holds, and the memory that it takes.
@@ -64,11 +87,17 @@ pub(crate) fn content_type(request: &Request) -> String {
 
 /// The body, refused once it exceeds the limit, or the memory that there is. What has come is reserved as it comes.
 pub(crate) async fn read(request: Request, engine: &Engine) -> Result<Content, Problem> {
-    let limit = engine.limits().body_bytes;
+    read_at_most(request, engine, engine.limits().body_bytes).await
+}
+
+/// The same with a limit of its own.
+async fn read_at_most(request: Request, engine: &Engine, limit: usize) -> Result<Content, Problem> {
     let too_large = || {
         Problem::new(
             ProblemType::TooLarge,
-            format!("the body exceeds {limit} bytes: send a smaller map, or a GeoTIFF instead of text"),
+            format!(
+                "the body exceeds {limit} bytes: send a smaller document, or a map as a GeoTIFF instead of text"
+            ),
         )
     };
     let declared = request.headers().get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok());

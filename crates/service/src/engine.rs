@@ -46,8 +46,10 @@ struct Shared {
     store: Store,
     jobs: Jobs,
     admission: Arc<Admission>,
-    /// Documents are read and answers written here, so that no question waits behind long ones.
+    /// Documents are read here, so that no question waits behind long ones.
     readers: Arc<Semaphore>,
+    /// Answers are written here, so that none waits behind documents that are read.
+    writers: Arc<Semaphore>,
     metrics: Metrics,
     /// Whether the service has been asked to end.
     ending: AtomicBool,
@@ -86,6 +88,7 @@ impl Engine {
             jobs: Jobs::default(),
             admission: Arc::new(admission),
             readers: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
+            writers: Arc::new(Semaphore::new(limits.parallel_plans.max(1))),
             metrics,
             ending: AtomicBool::new(false),
             job_turns: Arc::new(Semaphore::new(limits.parallel_jobs.max(1))),
@@ -214,7 +217,7 @@ impl Engine {
         if bytes <= SHORT_BYTES {
             return read();
         }
-        self.beside(read).await
+        self.beside(&self.0.readers, read).await
     }
 
     /// Writes an answer on a thread of its own, beside those that read documents.
@@ -222,15 +225,16 @@ impl Engine {
         &self,
         write: impl FnOnce() -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        self.beside(write).await
+        self.beside(&self.0.writers, write).await
     }
 
     /// Does what takes time only by its size, so many at a time, beside those who compute.
     async fn beside<T: Send + 'static>(
         &self,
+        turns: &Arc<Semaphore>,
         work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        let turn = Arc::clone(&self.0.readers).acquire_owned().await.map_err(|_| stopping())?;
+        let turn = Arc::clone(turns).acquire_owned().await.map_err(|_| stopping())?;
         self.on_disk(move || {
             let _turn = turn;
             work()

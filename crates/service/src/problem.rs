@@ -44,6 +44,23 @@ pub struct FieldError {
     pub detail: String,
 }
 
+/// Longest detail of a problem in bytes: 32 missing fields and their places fit in. Names in a request may be as long as the
+/// request, and a problem quotes them.
+const MOST_DETAIL: usize = 4096;
+/// Longest JSON pointer of a problem in bytes.
+const MOST_POINTER: usize = 1024;
+
+/// The text as it is, or so much of its beginning that no more bytes are left, with an ellipsis.
+fn shortened(mut text: String, most_bytes: usize) -> String {
+    const ELLIPSIS: &str = "…";
+    if text.len() > most_bytes {
+        text.truncate(text.floor_char_boundary(most_bytes - ELLIPSIS.len()));
+        text.push_str(ELLIPSIS);
+        text.shrink_to_fit();
+    }
+    text
+}
+
 impl Problem {
     /// A problem of a kind.
     pub fn new(kind: ProblemType, detail: impl Into<String>) -> Self {
@@ -51,7 +68,7 @@ impl Problem {
             kind,
             title: kind.title().to_owned(),
             status: kind.status().as_u16(),
-            detail: with_exponents(detail.into()),
+            detail: with_exponents(shortened(detail.into(), MOST_DETAIL)),
             errors: Vec::new(),
             retry_after_s: (kind.status() == StatusCode::SERVICE_UNAVAILABLE).then_some(1),
         }
@@ -67,7 +84,8 @@ impl Problem {
     /// Names the field at fault by its JSON pointer.
     #[must_use]
     pub fn at(mut self, pointer: impl Into<String>) -> Self {
-        self.errors.push(FieldError { pointer: pointer.into(), detail: self.detail.clone() });
+        let pointer = shortened(pointer.into(), MOST_POINTER);
+        self.errors.push(FieldError { pointer, detail: self.detail.clone() });
         self
     }
 
@@ -87,8 +105,8 @@ impl Problem {
         let mut problem = Problem::new(ProblemType::InvalidRequest, error.to_string());
         let in_fields = error.mistakes().iter().filter(|mistake| !mistake.pointer.is_empty());
         problem.errors.extend(in_fields.map(|mistake| FieldError {
-            pointer: format!("{under}{}", mistake.pointer),
-            detail: mistake.message.clone(),
+            pointer: shortened(format!("{under}{}", mistake.pointer), MOST_POINTER),
+            detail: shortened(mistake.message.clone(), MOST_DETAIL),
         }));
         problem
     }
@@ -283,7 +301,30 @@ impl IntoResponse for Problem {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
+
+    #[test]
+    fn names_in_a_request_however_long_leave_a_problem_short() {
+        let long = "é".repeat(1 << 20);
+        let problem = Problem::new(ProblemType::InvalidRequest, format!("unknown field `{long}`"))
+            .at(format!("/{long}"));
+        let unreadable =
+            document::from_json::<BTreeMap<String, f64>>(format!("{{\"{long}\": []}}").as_bytes());
+        let unreadable = Problem::invalid_document(&unreadable.unwrap_err(), "/map");
+        for problem in [problem, unreadable] {
+            assert!(
+                problem.detail.len() <= MOST_DETAIL && problem.detail.ends_with('…'),
+                "{}",
+                problem.detail.len()
+            );
+            let text = serde_json::to_string(&problem).unwrap();
+            assert!(text.len() < 3 * MOST_DETAIL, "{}", text.len());
+        }
+        assert_eq!(shortened("short".into(), 5), "short");
+        assert_eq!(shortened("shorter".into(), 6), "sho…");
+    }
 
     #[test]
     fn paths_become_json_pointers() {

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     Engine, Tenant,
-    body::JsonBody,
+    body::ShortJsonBody,
     job::Job,
     job_records::Description,
     job_run,
@@ -73,7 +73,7 @@ pub struct CalibrateRequest {
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     tenant: Tenant,
-    JsonBody(request): JsonBody<CalibrateRequest>,
+    ShortJsonBody(request): ShortJsonBody<CalibrateRequest>,
 ) -> Result<Accepted, Problem> {
     let (description, work) = prepared(&engine, &tenant, request).await?;
     Ok(accepted(engine.ask(&description, work).await?))

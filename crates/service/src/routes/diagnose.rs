@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     Engine, Tenant,
-    body::JsonBody,
+    body::ShortJsonBody,
     job::Job,
     job_records::Description,
     job_run,
@@ -72,7 +72,7 @@ pub struct DiagnoseRequest {
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     tenant: Tenant,
-    JsonBody(request): JsonBody<DiagnoseRequest>,
+    ShortJsonBody(request): ShortJsonBody<DiagnoseRequest>,
 ) -> Result<Accepted, Problem> {
     let (description, work) = prepared(&engine, &tenant, request).await?;
     Ok(accepted(engine.ask(&description, work).await?))

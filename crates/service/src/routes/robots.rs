@@ -11,7 +11,7 @@ use utoipa::ToSchema;
 use crate::{
     Engine, Tenant,
     answer::Json,
-    body::{Id, JsonBody},
+    body::{Id, ShortJsonBody},
     problem::{Problem, ProblemType},
     robots::RobotStore,
 };
@@ -110,7 +110,7 @@ pub struct StoredRobot {
 pub(crate) async fn create(
     State(engine): State<Engine>,
     tenant: Tenant,
-    JsonBody(file): JsonBody<RobotFile>,
+    ShortJsonBody(file): ShortJsonBody<RobotFile>,
 ) -> Result<(StatusCode, Json<StoredRobot>), Problem> {
     let robot = Robot::try_from(file).map_err(|error| Problem::invalid_robot(&error, ""))?;
     let (id, new) = engine.robots().insert(&tenant, &robot, &engine.limits().quota()).await?;
