@@ -1,11 +1,14 @@
 //! Answers as a short readable text.
 
-use service::routes::{compare::CompareAnswer, plan::PlanAnswer};
+use service::routes::{
+    compare::CompareAnswer,
+    plan::{ObjectiveName, PlanAnswer},
+};
 
 const HEAD: [&str; 7] = ["", "energy", "95 % interval", "distance", "time", "climb", "recovered"];
 
-/// One path, a line a figure.
-pub(crate) fn plan(answer: &PlanAnswer) -> String {
+/// The path with least of an objective, a line a figure.
+pub(crate) fn plan(answer: &PlanAnswer, objective: ObjectiveName) -> String {
     let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
     let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
@@ -13,7 +16,7 @@ pub(crate) fn plan(answer: &PlanAnswer) -> String {
         answer.descent_m,
         answer.search.expanded,
         answer.search.duration_ms,
-        quality(answer),
+        quality(answer, objective),
     )
 }
 
@@ -29,13 +32,20 @@ fn refined(answer: &PlanAnswer) -> Option<String> {
 }
 
 /// What is proven of a path.
-fn quality(answer: &PlanAnswer) -> String {
+fn quality(answer: &PlanAnswer, objective: ObjectiveName) -> String {
     let search = &answer.search;
     let late = if search.timed_out { ", time ran out" } else { "" };
     match search.bound {
         _ if search.optimal => "proven best of the lattice".to_owned(),
         Some(bound) => format!("proven within {:.1} % of the best{late}", 100.0 * (bound - 1.0)),
-        None => format!("at most {} above the best{late}", energy(search.excess_at_most)),
+        None => {
+            let excess = match objective {
+                ObjectiveName::Energy => energy(search.excess_at_most),
+                ObjectiveName::Distance => format!("{:.1} m", search.excess_at_most),
+                ObjectiveName::Time => format!("{:.1} s", search.excess_at_most),
+            };
+            format!("at most {excess} above the best{late}")
+        }
     }
 }
 

@@ -80,12 +80,28 @@ impl Chain {
 
     /// Totals on level ground of the robot's default surface, whatever its limits.
     pub(crate) fn on_level_ground(&self) -> Edge {
+        self.on_level_surface(self.surfaces().saturating_sub(1))
+    }
+
+    /// The least of a cost over all surfaces, on level ground and whatever the limits.
+    pub(crate) fn least_on_level_ground(&self, cost: impl Fn(&Edge) -> f64) -> f64 {
+        (0..self.surfaces())
+            .map(|surface| cost(&self.on_level_surface(surface)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Number of surfaces that it is prepared for.
+    fn surfaces(&self) -> usize {
+        self.steps.first().map_or(0, |(_, manoeuvres)| manoeuvres.len())
+    }
+
+    fn on_level_surface(&self, surface: usize) -> Edge {
         let mut total = Edge::default();
         for (step, manoeuvres, reverse) in self.steps_with_manoeuvres() {
-            let surface = manoeuvres.len() - 1;
-            if let Some(done) =
-                step.drive(&manoeuvres[surface], 0.0, (0.0, 0.0), reverse, &Limits::NONE, surface)
-            {
+            let driven = manoeuvres.get(surface).and_then(|manoeuvre| {
+                step.drive(manoeuvre, 0.0, (0.0, 0.0), reverse, &Limits::NONE, surface)
+            });
+            if let Some(done) = driven {
                 total.add(&done);
             }
         }

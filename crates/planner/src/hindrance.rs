@@ -5,6 +5,7 @@ use std::{f64::consts::FRAC_PI_2, fmt};
 use model::{Acceleration, Manoeuvre, Robot, Sides};
 
 use crate::{
+    cost::SINGLE_PRECISION,
     ends::Ends,
     error::Error,
     lattice::Lattice,
@@ -45,6 +46,11 @@ pub enum Hindrance {
     SeveralLimits,
 }
 
+/// A limit of so many steps to its unit that holds a value, and what single precision in tables may add to it.
+fn rounded_up(value: f64, steps_per_unit: f64) -> f64 {
+    (value * (1.0 + SINGLE_PRECISION) * steps_per_unit).ceil() / steps_per_unit
+}
+
 impl fmt::Display for Hindrance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -56,11 +62,13 @@ impl fmt::Display for Hindrance {
             ),
             Hindrance::OneLimit { limit: Limit::SideForce, allowed, needed } => write!(
                 f,
-                "the robot's limits.max_side_force_n is {allowed:.1} N, and the best path without that limit needs {needed:.1} N: raise it"
+                "the robot's limits.max_side_force_n is {allowed:.1} N, and the best path without that limit needs {:.1} N: raise it",
+                rounded_up(*needed, 10.0)
             ),
             Hindrance::OneLimit { limit, allowed, needed } => write!(
                 f,
-                "the robot's limits.{limit} is {allowed:.3} rad, and the best path without that limit comes to {needed:.3} rad: raise it"
+                "the robot's limits.{limit} is {allowed:.3} rad, and the best path without that limit comes to {:.3} rad: raise it",
+                rounded_up(*needed, 1000.0)
             ),
             Hindrance::SeveralLimits => f.write_str(
                 "the robot's limits of pitch, roll and side force leave no path together, and without all of them there is one",

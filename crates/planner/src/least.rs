@@ -3,7 +3,11 @@
 use model::{Manoeuvre, PowerModel};
 
 use crate::{
-    cost::SINGLE_PRECISION, edge::Chain, lattice::Lattice, objective::Weights, primitive::Motion,
+    cost::SINGLE_PRECISION,
+    edge::Chain,
+    lattice::Lattice,
+    objective::{Objective, Weights},
+    primitive::Motion,
     step::PreparedStep,
 };
 
@@ -33,19 +37,22 @@ pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
     (least * (1.0 - SINGLE_PRECISION)).max(0.0)
 }
 
-/// Least cost of any motion, turns on the spot included, in the objective's unit.
+/// Least cost of any motion that takes something of the objective, in the objective's unit: turns on the spot have no length.
 ///
 /// Side slopes count up to 84°, where a tenth of the normal force is left. The forms of power without a floor on friction
-/// are taken to keep a sixteenth of what each motion costs on level ground.
-pub(crate) fn least_cost_of_motion(lattice: &Lattice, weights: &Weights) -> f64 {
+/// are taken to keep a sixteenth of what each motion costs on level ground of its smoothest surface.
+pub(crate) fn least_cost_of_motion(lattice: &Lattice, objective: Objective, weights: &Weights) -> f64 {
     const LEAST_NORMAL: f64 = 0.1;
     const SHARE_OF_LEVEL: f64 = 1.0 / 16.0;
     let normal = lattice.robot.limits.max_roll_rad.cos().max(LEAST_NORMAL);
     let of = |chain: &Chain| match friction_floor(lattice) {
         Some(floor) => least_cost(lattice, weights, chain, floor * normal),
-        None => SHARE_OF_LEVEL * weights.of(&chain.on_level_ground()),
+        None => SHARE_OF_LEVEL * chain.least_on_level_ground(|edge| weights.of(edge)),
     };
-    chains(lattice).map(|(chain, _)| of(chain)).fold(f64::INFINITY, f64::min)
+    let takes_some =
+        |motion: &Motion| objective != Objective::Distance || (motion.columns, motion.rows) != (0, 0);
+    let chains = chains(lattice).filter(|(_, motion)| takes_some(motion));
+    chains.map(|(chain, _)| of(chain)).fold(f64::INFINITY, f64::min)
 }
 
 /// All variants of all motions.

@@ -175,9 +175,12 @@ impl Planner {
         let duration = began.elapsed();
         let path = (found.start, &found.motions[..]);
         let route = Route::drive(&self.lattice, objective, path, &query.patience)?;
-        let refined = query.refine.then(|| refine(&self.lattice, objective, &route, &query.patience).route);
         let search = SearchReport::proven(&found, objective, &route.total, duration);
-        self.answer(ends, query, (route, refined), search)
+        let mut plan = self.answer(ends, query, route, search)?;
+        // Last: it takes all the time that is left, and an answer that is there must not be lost to it.
+        plan.refined =
+            query.refine.then(|| refine(&self.lattice, objective, &plan.route, &query.patience).route);
+        Ok(plan)
     }
 
     /// The best path between given ends, not refined.
@@ -210,17 +213,11 @@ impl Planner {
     ) -> Result<Plan, Error> {
         let ways = ways.iter().map(|&(motion, variant)| (motion, Some(variant)));
         let route = Route::drive_by(&self.lattice, start, ways, |_, _| None, &query.patience)?;
-        self.answer(ends, query, (route, None), search)
+        self.answer(ends, query, route, search)
     }
 
-    /// A path as the answer to a question.
-    fn answer(
-        &self,
-        ends: &Ends,
-        query: &Query,
-        (route, refined): (Route, Option<Route>),
-        search: SearchReport,
-    ) -> Result<Plan, Error> {
+    /// A path as the answer to a question, not refined.
+    fn answer(&self, ends: &Ends, query: &Query, route: Route, search: SearchReport) -> Result<Plan, Error> {
         let lattice = &self.lattice;
         let energy_interval_j =
             energy_interval_j(&route, lattice, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
@@ -229,7 +226,7 @@ impl Planner {
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
             goal_snap: goal_snap(&route, ends, query),
             route,
-            refined,
+            refined: None,
             search,
         })
     }

@@ -30,7 +30,8 @@ use crate::{
 ///
 /// Length and time have a share of energy among their costs, to choose between equals. Of a path with length ℓ it is at most
 /// `τ ℓ + τ₀`: the largest share of any motion that leads on, and eight turns on the spot, the most that the shortest of
-/// paths needs in one place, for each cell and once more. A robot without friction has time among its costs of energy, which
+/// paths needs in one place, for each cell and once more. Turns on the spot have no length, so that all that they cost, with
+/// the unit that it is rounded up by, counts there. A robot without friction has time among its costs of energy, which
 /// proves nothing of energy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proof {
@@ -48,10 +49,10 @@ impl Proof {
         if objective == Objective::Energy && weights.per_s > 0.0 {
             return Proof::NONE;
         }
-        let least_units = least_cost_of_motion(lattice, weights) * units;
+        let least_units = least_cost_of_motion(lattice, objective, weights) * units;
         let allowed = 1.0 + cancellation(lattice, weights) * units;
         let share = (1.0 - LARGEST_ROUNDING) * (1.0 - SINGLE_PRECISION) - allowed / least_units;
-        let tie = Tie::new(lattice, objective, weights);
+        let tie = Tie::new(lattice, objective, weights, allowed / units);
         Proof { per_unit: share.max(0.0) / units / (1.0 + tie.share), off: tie.once / (1.0 + tie.share) }
     }
 
@@ -73,7 +74,7 @@ fn cancellation(lattice: &Lattice, weights: &Weights) -> f64 {
     ROUNDINGS * f64::from(f32::EPSILON / 2.0) * weights.per_j * lattice.lift_j_per_m() * grade * longest_m
 }
 
-/// What the energy among costs of length or time comes to at most.
+/// Costs of a path besides those of its length or time, at most: the energy among them, and turns on the spot.
 struct Tie {
     /// Share of the amount.
     share: f64,
@@ -85,8 +86,9 @@ impl Tie {
     /// Most turns on the spot that the shortest of paths has in one place: half a circle.
     const TURNS_IN_PLACE: f64 = 8.0;
 
-    fn new(lattice: &Lattice, objective: Objective, weights: &Weights) -> Self {
-        if objective == Objective::Energy || weights.per_j == 0.0 {
+    /// `rounding` is the most that a motion is rounded up by, in the objective's unit.
+    fn new(lattice: &Lattice, objective: Objective, weights: &Weights, rounding: f64) -> Self {
+        if objective == Objective::Energy {
             return Tie { share: 0.0, once: 0.0 };
         }
         let (mut share, mut turn) = (0.0f64, 0.0f64);
@@ -105,7 +107,7 @@ impl Tie {
                         if amount > 0.0 {
                             share = share.max(energy / amount);
                         } else {
-                            turn = turn.max(energy);
+                            turn = turn.max(energy * (1.0 + SINGLE_PRECISION) + rounding);
                         }
                     }
                 }

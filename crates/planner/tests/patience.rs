@@ -176,6 +176,26 @@ fn ground_without_a_way_is_looked_over_between_looks() {
 }
 
 #[test]
+fn a_path_that_was_found_is_not_lost_to_its_refinement() {
+    let (mut answered, mut unanswered) = (0, 0);
+    for terrain in [hills(250), winding(250)] {
+        for looks in (0..14).map(|power| 1 << power) {
+            let ask = |refine| {
+                let patience = Patience::for_looks(looks);
+                planner(&terrain).plan(&Query { refine, ..across(&terrain, &patience) }, Objective::Energy)
+            };
+            if ask(false).is_ok() {
+                answered += 1;
+                assert!(ask(true).is_ok(), "{looks} looks are enough without refinement");
+            } else {
+                unanswered += 1;
+            }
+        }
+    }
+    assert!(answered > 3 && unanswered > 3, "{answered} answered, {unanswered} not");
+}
+
+#[test]
 fn whenever_patience_ends_there_is_little_work_left() {
     let (mut answered, mut late) = (0, 0);
     for terrain in [hills(250), winding(250)] {

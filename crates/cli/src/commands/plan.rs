@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.question.driving.json {
         output::json(&found)?;
     } else {
-        output::line(table::plan(&found))?;
+        output::line(table::plan(&found, objective))?;
     }
     Ok(())
 }
