@@ -161,6 +161,13 @@ impl Job {
         });
     }
 
+    /// Says what the job waits for, in the state that it is in.
+    pub(crate) fn wait_for(&self, what: &str) {
+        self.change(|status| {
+            status.progress = Progress { step: format!("waiting for {what}"), fraction: None };
+        });
+    }
+
     /// Calls the job off. False: it had already ended.
     pub(crate) fn call_off(&self) -> bool {
         self.called_off.store(true, Ordering::Relaxed);

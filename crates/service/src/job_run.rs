@@ -125,33 +125,52 @@ impl Engine {
                 // A store that is out of reach now may be back before the lease ends.
                 Ok(true) | Err(_) => {}
                 Ok(false) => {
-                    tracing::info!(job = job.id, "another service has ended the job or works on it");
-                    *held = None;
-                    job.hand_back();
+                    give_up(&mut held, &job);
                     return;
                 }
             }
         }
     }
 
-    /// Writes down that work on a job begins, before it does: a service that dies of it is then known to have.
+    /// Writes down that work on a job begins, before it does: a service that dies of it is then known to have. Waits for a store
+    /// that is out of reach for as long as the job is wanted.
     pub(crate) async fn begin(&self, job: &Job) -> Result<(), Problem> {
-        let held = job.lease.lock().await;
+        let mut wait = FIRST_WAIT;
+        loop {
+            match self.write_beginning(job).await {
+                Err(problem) if problem.kind == ProblemType::StoreUnavailable => {}
+                written => return written,
+            }
+            job.wait_for("the store");
+            tokio::select! {
+                () = sleep(wait) => {}
+                () = job.unwanted() => return Err(called_off()),
+            }
+            wait = (2 * wait).min(LONGEST_WAIT);
+        }
+    }
+
+    async fn write_beginning(&self, job: &Job) -> Result<(), Problem> {
+        let mut held = job.lease.lock().await;
         let Some(lease) = held.as_ref().filter(|_| !job.is_called_off()) else { return Err(called_off()) };
         let beat = Beat { state: JobState::Running, ..job.beat() };
         if !lease.beat(&self.records().store, &beat).await? {
+            give_up(&mut held, job);
             return Err(called_off());
         }
         job.tell("starting", None);
         Ok(())
     }
 
-    /// Writes down what came of a job, then tells it.
+    /// Writes down what came of a job, then tells it. Without the lease, that is for its new holder to do.
     async fn conclude(&self, job: &Arc<Job>, outcome: Result<Arc<Value>, Problem>) {
         let mut wait = FIRST_WAIT;
         while !job.status().is_last() {
             let mut held = job.lease.lock().await;
             let mut status = job.status();
+            if held.is_none() || status.is_last() {
+                return;
+            }
             status.end(outcome.clone());
             status.sequence += 1;
             if self.records().end(&job.owner, &job.id, &report(job, status)).await.is_ok() {
@@ -209,6 +228,13 @@ impl Engine {
             let _ = lease.beat(&self.records().store, &job.beat()).await;
         }
     }
+}
+
+/// Leaves a job to the service that took it up since, or has ended it.
+fn give_up(held: &mut Option<Lease>, job: &Job) {
+    tracing::info!(job = job.id, "another service has ended the job or works on it");
+    *held = None;
+    job.hand_back();
 }
 
 fn report(job: &Job, status: Status) -> Report {

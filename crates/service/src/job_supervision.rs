@@ -93,7 +93,13 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::{Limits, Tenant, job::JobState, job_records::Description, routes::jobs::JobAnswer};
+    use crate::{
+        Limits, Tenant,
+        job::JobState,
+        job_records::Description,
+        routes::jobs::JobAnswer,
+        store::{Beat, Lease},
+    };
 
     /// Work that ends when its sender is dropped, and looks at nothing else.
     struct Deaf(Receiver<()>);
@@ -115,8 +121,17 @@ mod tests {
     }
 
     async fn engine(job_time: Duration) -> Engine {
-        let limits = Limits { job_time, parallel_jobs: 1, parallel_plans: 1, ..Limits::default() };
-        tokio::task::spawn_blocking(move || Engine::new(limits, None)).await.unwrap().unwrap()
+        engine_over(job_time, None).await
+    }
+
+    /// An engine that does one thing at a time, and writes a lease so seldom that a test has ended before the second time.
+    async fn engine_over(job_time: Duration, store: Option<&str>) -> Engine {
+        let lease_time = Duration::from_secs(3600);
+        let limits =
+            Limits { job_time, lease_time, parallel_jobs: 1, parallel_plans: 1, ..Limits::default() };
+        let store = store.map(str::to_owned);
+        let opened = tokio::task::spawn_blocking(move || Engine::new(limits, store.as_deref()));
+        opened.await.unwrap().unwrap()
     }
 
     async fn ask(engine: &Engine, number: u64, work: impl Work) -> JobAnswer {
@@ -185,5 +200,57 @@ mod tests {
         drop(held);
         assert_eq!(ended(&engine, &deaf.id).await.result, Some(json!("late")));
         assert_eq!(engine.stuck_threads().count(), 0);
+    }
+
+    /// An engine whose only turn is taken until the sender is dropped, with a job that waits behind it and has written its lease.
+    async fn with_a_waiting_job(engine: &Engine) -> (std::sync::mpsc::Sender<()>, String) {
+        let (held, receiver) = channel();
+        let deaf = ask(engine, 1, Deaf(receiver)).await;
+        is_running(engine, &deaf.id).await;
+        let waiting = ask(engine, 2, Quick).await;
+        let store = &engine.records().store;
+        while Lease::latest(store, &waiting.id).await.unwrap().unwrap().1.count == 0 {
+            tokio::task::yield_now().await;
+        }
+        (held, waiting.id)
+    }
+
+    #[tokio::test]
+    async fn a_job_that_another_service_took_while_it_waited_is_left_to_that_service() {
+        let engine = engine(Duration::from_secs(3600)).await;
+        let (held, waiting) = with_a_waiting_job(&engine).await;
+        let store = &engine.records().store;
+        Lease::take(store, &waiting, 1, &Beat::first(7)).await.unwrap().unwrap();
+        drop(held);
+        while !engine.jobs().all().is_empty() {
+            tokio::task::yield_now().await;
+        }
+        assert!(!engine.records().has_report(&Tenant::default(), &waiting).await.unwrap());
+        assert_eq!(Lease::latest(store, &waiting).await.unwrap(), Some((2, Beat::first(7))));
+        let told = engine.records().look_up(&Tenant::default(), &waiting).await.unwrap().1.job;
+        assert_eq!((told.state, told.attempt), (JobState::Queued, 2));
+    }
+
+    #[cfg(unix)]
+    #[tokio::test]
+    async fn a_job_whose_turn_comes_while_the_store_is_out_of_reach_begins_when_it_is_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let engine = engine_over(Duration::from_secs(3600), folder.path().to_str()).await;
+        let (held, waiting) = with_a_waiting_job(&engine).await;
+        let job = engine.jobs().get(&waiting).unwrap();
+        let (place, aside) = (folder.path().join("jobs"), folder.path().join("aside"));
+        std::fs::rename(&place, &aside).unwrap();
+        // A link to itself cannot be listed.
+        std::os::unix::fs::symlink(&place, &place).unwrap();
+        drop(held);
+        let mut changes = job.follow();
+        changes
+            .wait_for(|status| status.is_last() || status.progress.step == "waiting for the store")
+            .await
+            .unwrap();
+        assert_eq!(job.status().state, JobState::Queued);
+        std::fs::remove_file(&place).unwrap();
+        std::fs::rename(&aside, &place).unwrap();
+        assert_eq!(ended(&engine, &waiting).await.result, Some(json!("quick")));
     }
 }
