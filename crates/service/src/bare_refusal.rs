@@ -1,5 +1,6 @@
 //! Requests that cannot be parsed: the HTTP library refuses them by itself, without content, before any layer sees them. Its
-//! bare answers become problem documents on their way out.
+//! bare answers become problem documents on their way out. While an answer of a layer is on its way, nothing is replaced: its content
+//! may look like anything.
 
 use std::{
     io::{self, IoSlice},
@@ -10,24 +11,26 @@ use std::{
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use uuid::Uuid;
 
-use crate::problem::{Problem, ProblemType};
+use crate::{
+    exchange::Exchange,
+    problem::{Problem, ProblemType},
+};
 
-/// Longest bare answer [bytes]: status line, `connection`, `content-length` and `date`.
-const LONGEST_BARE: usize = 200;
 /// What an answer begins with.
 const VERSION: &[u8] = b"HTTP/1.1 ";
 
 /// A stream in whose output bare refusals are replaced.
 pub(crate) struct WithProblems<S> {
     stream: S,
+    exchange: Exchange,
     /// What stands for a bare refusal, and how much of it has been sent.
     problem: Vec<u8>,
     sent: usize,
 }
 
 impl<S: AsyncWrite + Unpin> WithProblems<S> {
-    pub(crate) fn new(stream: S) -> Self {
-        WithProblems { stream, problem: Vec::new(), sent: 0 }
+    pub(crate) fn new(stream: S, exchange: Exchange) -> Self {
+        WithProblems { stream, exchange, problem: Vec::new(), sent: 0 }
     }
 
     fn poll_problem(&mut self, context: &mut Context<'_>) -> Poll<io::Result<()>> {
@@ -42,17 +45,13 @@ impl<S: AsyncWrite + Unpin> WithProblems<S> {
     }
 }
 
-/// Where a bare refusal begins in what is to be sent, which it ends, and the problem that it stands for.
-fn bare_refusal(output: &[u8]) -> Option<(usize, Problem)> {
-    if !output.ends_with(b"\r\n\r\n") {
+/// The problem that a bare refusal stands for.
+fn bare_refusal(output: &[u8]) -> Option<Problem> {
+    if !output.starts_with(VERSION) || !output.ends_with(b"\r\n\r\n") {
         return None;
     }
-    let earliest = output.len().saturating_sub(LONGEST_BARE);
-    let begin = earliest + output[earliest..].windows(VERSION.len()).rposition(|part| part == VERSION)?;
-    let head = std::str::from_utf8(&output[begin..]).ok()?.to_ascii_lowercase();
-    // Every answer of a layer carries the id of its request.
-    let is_bare = head.contains("\r\ncontent-length: 0\r\n") && !head.contains("\r\nx-request-id:");
-    let status = head.split(' ').nth(1).filter(|_| is_bare)?;
+    let head = std::str::from_utf8(output).ok()?;
+    let status = head.split(' ').nth(1)?;
     let (kind, detail) = match status {
         "400" => (
             ProblemType::InvalidRequest,
@@ -67,7 +66,7 @@ fn bare_refusal(output: &[u8]) -> Option<(usize, Problem)> {
         ),
         _ => return None,
     };
-    Some((begin, Problem::new(kind, detail)))
+    Some(Problem::new(kind, detail))
 }
 
 fn as_answer(problem: &Problem) -> Vec<u8> {
@@ -89,17 +88,13 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for WithProblems<S> {
         output: &[u8],
     ) -> Poll<io::Result<usize>> {
         ready!(self.poll_problem(context))?;
-        match bare_refusal(output) {
-            Some((0, problem)) => {
-                self.problem = as_answer(&problem);
-                self.sent = 0;
-                // It is sent here, or by the next call; the bare one counts as sent.
-                let _ = self.poll_problem(context)?;
-                Poll::Ready(Ok(output.len()))
-            }
-            Some((begin, _)) => Pin::new(&mut self.stream).poll_write(context, &output[..begin]),
-            None => Pin::new(&mut self.stream).poll_write(context, output),
-        }
+        let refusal = if self.exchange.is_over() { bare_refusal(output) } else { None };
+        let Some(problem) = refusal else { return Pin::new(&mut self.stream).poll_write(context, output) };
+        self.problem = as_answer(&problem);
+        self.sent = 0;
+        // It is sent here, or by the next call; the bare one counts as sent.
+        let _ = self.poll_problem(context)?;
+        Poll::Ready(Ok(output.len()))
     }
 
     fn poll_write_vectored(
@@ -108,14 +103,11 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for WithProblems<S> {
         outputs: &[IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         ready!(self.poll_problem(context))?;
-        let mut outputs = outputs.iter().filter(|output| !output.is_empty()).peekable();
-        let Some(first) = outputs.peek() else { return Poll::Ready(Ok(0)) };
-        let first: &[u8] = first;
-        let outputs: Vec<IoSlice<'_>> = outputs.copied().collect();
-        match outputs.last() {
-            // One by one, until the bare refusal is the only one.
-            Some(last) if bare_refusal(last).is_some() => self.poll_write(context, first),
-            _ => Pin::new(&mut self.stream).poll_write_vectored(context, &outputs),
+        let mut filled = outputs.iter().filter(|output| !output.is_empty());
+        match (filled.next(), filled.next()) {
+            // A bare refusal is written in one piece.
+            (Some(only), None) => self.poll_write(context, only),
+            _ => Pin::new(&mut self.stream).poll_write_vectored(context, outputs),
         }
     }
 
@@ -125,7 +117,9 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for WithProblems<S> {
 
     fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         ready!(self.poll_problem(context))?;
-        Pin::new(&mut self.stream).poll_flush(context)
+        ready!(Pin::new(&mut self.stream).poll_flush(context))?;
+        self.exchange.flushed();
+        Poll::Ready(Ok(()))
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
@@ -153,10 +147,10 @@ mod tests {
     const BARE: &[u8] = b"HTTP/1.1 400 Bad Request\r\nconnection: close\r\ncontent-length: 0\r\ndate: Fri, 27 Nov 2026 20:00:00 GMT\r\n\r\n";
 
     /// What comes out when something is written in one piece and the stream is shut down, through a pipe of so many bytes.
-    async fn sent(output: &'static [u8], pipe: usize) -> String {
+    async fn sent(exchange: &Exchange, output: &'static [u8], pipe: usize) -> String {
         let (near, mut far) = tokio::io::duplex(pipe);
+        let mut stream = WithProblems::new(near, exchange.clone());
         let writing = tokio::spawn(async move {
-            let mut stream = WithProblems::new(near);
             stream.write_all(output).await.unwrap();
             stream.shutdown().await.unwrap();
         });
@@ -169,7 +163,7 @@ mod tests {
     #[tokio::test]
     async fn a_bare_refusal_becomes_a_problem_document_even_through_a_narrow_pipe() {
         for pipe in [1, 10, 10_000] {
-            let text = sent(BARE, pipe).await;
+            let text = sent(&Exchange::default(), BARE, pipe).await;
             let (head, body) = text.split_once("\r\n\r\n").unwrap();
             assert!(
                 head.starts_with("HTTP/1.1 400 Bad Request\r\n") && head.contains("x-request-id: "),
@@ -182,23 +176,22 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_goes_before_a_bare_refusal_is_sent_as_it_is() {
-        let before = b"HTTP/1.1 200 OK\r\nx-request-id: a\r\ncontent-length: 2\r\n\r\nok";
-        let both: &'static [u8] = [&before[..], BARE].concat().leak();
-        let text = sent(both, 10_000).await;
-        assert!(text.starts_with(std::str::from_utf8(before).unwrap()), "{text}");
-        assert!(text.contains("application/problem+json"), "{text}");
+    async fn nothing_is_replaced_from_the_request_of_an_answer_until_all_of_it_is_sent() {
+        let exchange = Exchange::default();
+        let under_way = exchange.begin();
+        assert_eq!(sent(&exchange, BARE, 100).await.as_bytes(), BARE);
+        drop(under_way);
+        assert_eq!(sent(&exchange, BARE, 100).await.as_bytes(), BARE, "its last piece may wait to be sent");
+        WithProblems::new(tokio::io::sink(), exchange.clone()).flush().await.unwrap();
+        assert!(sent(&exchange, BARE, 100).await.contains("application/problem+json"));
     }
 
     #[tokio::test]
-    async fn answers_of_layers_are_sent_as_they_are() {
-        for answer in [
-            &b"HTTP/1.1 400 Bad Request\r\nx-request-id: a\r\ncontent-length: 0\r\n\r\n"[..],
-            b"HTTP/1.1 304 Not Modified\r\ncontent-length: 0\r\n\r\n",
-            b"HTTP/1.1 200 OK\r\ncontent-length: 5\r\n\r\na\r\n\r\n",
-            b"",
-        ] {
-            assert_eq!(sent(answer, 100).await.as_bytes(), answer);
+    async fn what_is_no_refusal_is_sent_as_it_is() {
+        for other in
+            [&b"HTTP/1.1 304 Not Modified\r\ncontent-length: 0\r\n\r\n"[..], b"HTTP/1.1 400 Bad\r\n", b""]
+        {
+            assert_eq!(sent(&Exchange::default(), other, 100).await.as_bytes(), other);
         }
     }
 }

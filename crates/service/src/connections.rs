@@ -1,9 +1,14 @@
 //! Connections: so many at most, none of which may stall.
 
-use std::{io, pin::Pin, sync::Arc, time::Duration};
+use std::{convert::Infallible, io, pin::Pin, sync::Arc, time::Duration};
 
 use axum::Router;
-use hyper::server::conn::http1;
+use hyper::{
+    Request,
+    body::Incoming,
+    server::conn::http1,
+    service::{Service, service_fn},
+};
 use hyper_util::{
     rt::{TokioIo, TokioTimer},
     server::graceful::GracefulShutdown,
@@ -18,6 +23,7 @@ use tokio_io_timeout::TimeoutStream;
 use crate::{
     Engine,
     bare_refusal::WithProblems,
+    exchange::Exchange,
     metrics::{Metrics, ShedLabels},
 };
 
@@ -58,8 +64,13 @@ pub(crate) async fn accept(
             refuse(&stream);
             continue;
         };
-        let Ok(io) = prepared(stream, limits.body_pause) else { continue };
+        let exchange = Exchange::default();
+        let Ok(io) = prepared(stream, limits.body_pause, &exchange) else { continue };
         let service = TowerToHyperService::new(routes.clone());
+        let service = service_fn(move |request: Request<Incoming>| {
+            let (under_way, answer) = (exchange.begin(), service.call(request));
+            async move { Ok::<_, Infallible>(answer.await?.map(|body| under_way.with(body))) }
+        });
         let connection = open.watch(builder.serve_connection(TokioIo::new(io), service));
         let place = Place::take(place, engine.metrics());
         tokio::spawn(async move {
@@ -76,11 +87,12 @@ pub(crate) async fn accept(
 fn prepared(
     stream: TcpStream,
     pause: Duration,
+    exchange: &Exchange,
 ) -> io::Result<WithProblems<Pin<Box<TimeoutStream<TcpStream>>>>> {
     stream.set_nodelay(true)?;
     let mut io = TimeoutStream::new(stream);
     io.set_write_timeout(Some(pause));
-    Ok(WithProblems::new(Box::pin(io)))
+    Ok(WithProblems::new(Box::pin(io), exchange.clone()))
 }
 
 /// Tells a client without waiting for it.
@@ -109,7 +121,47 @@ impl Drop for Place {
 
 #[cfg(test)]
 mod tests {
+    use axum::{body::Body, routing::get};
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+
     use super::*;
+    use crate::Limits;
+
+    /// What a client gets that sends something and then no more.
+    async fn answers(routes: Router, sent: &str) -> String {
+        let engine = tokio::task::spawn_blocking(|| Engine::new(Limits::default(), None));
+        let engine = engine.await.unwrap().unwrap();
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let serving = tokio::spawn(async move {
+            accept(listener, routes, &engine, std::future::pending()).await;
+        });
+        let mut client = TcpStream::connect(address).await.unwrap();
+        client.write_all(sent.as_bytes()).await.unwrap();
+        let mut text = String::new();
+        client.read_to_string(&mut text).await.unwrap();
+        serving.abort();
+        text
+    }
+
+    #[tokio::test]
+    async fn a_body_that_looks_like_a_refusal_is_sent_as_it_is_and_what_is_no_http_is_refused_after_it() {
+        const LIKE_A_REFUSAL: &str = "HTTP/1.1 400 x\r\ncontent-length: 0\r\n\r\n";
+        let in_pieces = || async {
+            let pieces = ["a", LIKE_A_REFUSAL, LIKE_A_REFUSAL].map(Ok::<_, Infallible>);
+            Body::from_stream(futures_util::stream::iter(pieces))
+        };
+        let routes =
+            Router::new().route("/whole", get(|| async { LIKE_A_REFUSAL })).route("/pieces", get(in_pieces));
+        let ask = |path| format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n");
+        let sent = format!("{}{}no HTTP\r\n\r\n", ask("/whole"), ask("/pieces"));
+        let text = answers(routes, &sent).await;
+        assert_eq!(text.matches(LIKE_A_REFUSAL).count(), 3, "{text}");
+        assert_eq!(text.matches("HTTP/1.1 200 OK").count(), 2, "{text}");
+        let (_, problem) = text.rsplit_once("\r\n\r\n").unwrap();
+        assert!(problem.contains("\"type\":\"invalid-request\""), "{text}");
+        assert_eq!(text.matches("application/problem+json").count(), 1, "{text}");
+    }
 
     #[test]
     fn the_refusal_is_as_long_as_it_says_and_a_problem_document() {

@@ -14,6 +14,7 @@ mod cells;
 mod connections;
 mod describe;
 mod engine;
+mod exchange;
 mod geojson;
 mod hosts;
 mod job;
