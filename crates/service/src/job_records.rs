@@ -160,6 +160,11 @@ impl JobRecords {
         Ok(heads.into_iter().map(|(id, head)| (id, head.owner.clone())).collect())
     }
 
+    /// The ids of jobs that have not ended, those among them whose description cannot be understood here.
+    pub(crate) async fn described(&self) -> Result<BTreeSet<String>, Problem> {
+        Ok(self.descriptions.entries().await?.into_iter().map(|(id, _)| id).collect())
+    }
+
     /// Number of a tenant's jobs that have not ended.
     pub(crate) async fn open_of(&self, owner: &Tenant) -> Result<usize, Problem> {
         Ok(self.open().await?.values().filter(|other| *other == owner).count())

@@ -34,8 +34,19 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
         if !is_id(id) {
             return Ok(None);
         }
-        let Some(bytes) = self.store.get(&self.name(id)).await? else { return Ok(None) };
-        serde_json::from_slice(&bytes).map(Some).map_err(|error| cannot("understand", &error))
+        let Some(note) = self.read(id).await? else { return Ok(None) };
+        note.map(Some).map_err(|error| cannot("understand", &error))
+    }
+
+    /// What stands in the note of an id, whether it can be understood or not.
+    async fn read(&self, id: &str) -> Result<Option<serde_json::Result<T>>, Problem> {
+        let name = self.name(id);
+        let Some(bytes) = self.store.get(&name).await? else { return Ok(None) };
+        let note = serde_json::from_slice(&bytes);
+        if let Err(error) = &note {
+            tracing::error!(object = name, %error, "cannot understand an object of the store: delete it, or put it right");
+        }
+        Ok(Some(note))
     }
 
     /// Whether an id has a note.
@@ -58,7 +69,7 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
         if is_id(id) { self.store.remove(&self.name(id)).await } else { Ok(()) }
     }
 
-    /// All notes, in the order of their ids.
+    /// All notes, in the order of their ids. One that cannot be understood is left out, so that the others do not go with it.
     pub(crate) async fn list(&self) -> Result<Vec<(String, Arc<T>)>, Problem> {
         let entries = self.entries().await?;
         let known = self.listed.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -69,7 +80,8 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
                 return Ok(Some((id, (version, Arc::clone(note)))));
             }
             // One that was removed since it was listed is not there.
-            Ok::<_, Problem>(self.get(&id).await?.map(|note| (id, (version, Arc::new(note)))))
+            let note = self.read(&id).await?.and_then(Result::ok);
+            Ok::<_, Problem>(note.map(|note| (id, (version, Arc::new(note)))))
         });
         let reads: Vec<_> = reads.collect();
         let read: Vec<_> = stream::iter(reads).buffer_unordered(PARALLEL_READS).try_collect().await?;
@@ -106,4 +118,21 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Notes<T> {
 /// What changes whenever an object does.
 fn version(entry: &ObjectMeta) -> String {
     entry.e_tag.clone().unwrap_or_else(|| format!("{}-{}", entry.last_modified, entry.size))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_note_that_cannot_be_understood_is_left_out_of_a_list_and_told_to_who_asks_for_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open_here(folder.path());
+        let notes = Notes::<u8>::new(&store, "jobs");
+        let [sound, broken] = ["0f", "1e"].map(|digits| digits.repeat(16));
+        notes.put(&sound, &7).await.unwrap();
+        store.put(&notes.name(&broken), b"no number".to_vec()).await.unwrap();
+        assert_eq!(notes.list().await.unwrap(), [(sound, Arc::new(7))]);
+        assert!(notes.get(&broken).await.unwrap_err().detail.contains("understand"));
+    }
 }
