@@ -15,7 +15,7 @@ pub struct Limits {
     pub plan_states: usize,
     /// Most entries of a matrix: sources times targets. Default 2500: 50 × 50.
     pub matrix_entries: usize,
-    /// Most cells over all stored maps. Default 200 million.
+    /// Most cells over all stored maps, of which a tenant among others may take half. Default 200 million.
     pub stored_cells: usize,
     /// Most bytes of stored maps that are kept in memory. Default 1 GiB.
     pub kept_map_bytes: usize,

@@ -23,6 +23,8 @@ use crate::{
 const MAPS: usize = 64;
 /// Bytes of a cell in memory: its elevation, surface and obstacle.
 const CELL_BYTES: u64 = 6;
+/// A tenant among others may take one part of so many of the cells: no tenant alone keeps all others out.
+const TENANT_SHARE: usize = 2;
 /// Bytes that are collected before they are written, or read at a time.
 const BUFFER_BYTES: usize = 1 << 20;
 
@@ -97,13 +99,7 @@ impl MapStore {
         if self.maps.notes.of(owner).has(&id).await? {
             return Ok(false);
         }
-        let cells = |summary: &MapSummary| summary.rows * summary.columns;
-        let all = self.maps.notes.list_all().await?;
-        let held: usize = all.iter().filter(|(other, _)| *other != id).map(|(_, one)| cells(one)).sum();
-        if held + cells(&map.summary) > limits.stored_cells {
-            let most = limits.stored_cells;
-            return Err(full(format!("{held} of {most} cells are taken: delete a map first")));
-        }
+        self.refuse_cells_beyond(limits.stored_cells, owner, &map.summary).await?;
         let (spool, terrain) = (self.maps.spool()?, Arc::clone(&map.terrain));
         let written = tokio::task::spawn_blocking(move || {
             cells::write(&terrain, BufWriter::with_capacity(BUFFER_BYTES, spool.writer()?))?;
@@ -115,6 +111,47 @@ impl MapStore {
         let is_new = self.maps.keep(owner, &id, noted, &limits.quota).await?;
         self.held.insert(id, Arc::new(Held::new(map.terrain)));
         Ok(is_new)
+    }
+
+    /// Refuses one more map of a tenant beyond so many cells of all tenants, or beyond its share of them.
+    async fn refuse_cells_beyond(
+        &self,
+        most: usize,
+        owner: &Tenant,
+        map: &MapSummary,
+    ) -> Result<(), Problem> {
+        let cells = |summary: &MapSummary| summary.rows * summary.columns;
+        let sum = |maps: Vec<(String, Arc<MapSummary>)>| -> usize {
+            maps.iter().filter(|(other, _)| *other != map.id).map(|(_, one)| cells(one)).sum()
+        };
+        let more = cells(map);
+        let all = sum(self.maps.notes.list_all().await?);
+        let own = sum(self.maps.notes.of(owner).list().await?);
+        let share = if self.shares(owner).await? { most / TENANT_SHARE } else { most };
+        let detail = if own + more > share {
+            let name = owner.name();
+            format!(
+                "with it the tenant `{name}` would keep {} of {share} cells of maps: delete some first",
+                own + more
+            )
+        } else if all + more <= most {
+            return Ok(());
+        } else if owner.is_admin() {
+            format!("{all} of {most} cells are taken, and it has {more}: delete a map first")
+        } else {
+            // What others keep is not this tenant's to know.
+            format!(
+                "there is no room for its {more} cells: send a map of larger cells, or ask who runs the service for room \
+                 (--stored-cells)"
+            )
+        };
+        Err(full(detail))
+    }
+
+    /// Whether a tenant shares the store with others, so that it may not take all of it. An administrator may.
+    async fn shares(&self, owner: &Tenant) -> Result<bool, Problem> {
+        // Only tokens give names, and who has those may give more.
+        Ok(!owner.is_admin() && (!owner.is_default() || self.maps.notes.has_several_owners().await?))
     }
 
     /// The map with an id, if a tenant sees it, read from the store once for all who ask at the same time.
@@ -242,6 +279,44 @@ mod tests {
         }
         assert!(maps.held.weight() <= 3 * 100 * CELL_BYTES, "{}", maps.held.weight());
         assert!(maps.reads.into_inner() > 50);
+    }
+
+    #[tokio::test]
+    async fn no_tenant_takes_all_the_room_and_none_learns_what_others_keep() {
+        let folder = tempfile::tempdir().unwrap();
+        let maps = MapStore::new(&Store::open_here(folder.path()), 1 << 20, &memory());
+        let limits = MapLimits { stored_cells: 60, ..LIMITS };
+        let [alice, bob, carol, admin] =
+            ["alice", "bob", "carol", "admin"].map(|name| Tenant::named(name).unwrap());
+        let insert = async |owner: &Tenant, rows| maps.insert(owner, map(rows), &limits).await;
+        let refused = async |owner: &Tenant, rows| {
+            let problem = insert(owner, rows).await.unwrap_err();
+            assert_eq!(problem.kind, ProblemType::StoreFull);
+            problem.detail
+        };
+        let said = refused(&alice, 11).await;
+        assert!(said.contains("`alice` would keep 33 of 30 cells") && said.contains("delete"), "{said}");
+        assert!(insert(&alice, 10).await.unwrap(), "half is its share");
+        assert!(insert(&bob, 10).await.unwrap(), "the same map of another counts once for all");
+        assert!(insert(&bob, 9).await.is_err());
+        assert!(insert(&carol, 9).await.unwrap());
+        let said = refused(&Tenant::default(), 2).await;
+        assert!(said.contains("no room for its 6 cells") && said.contains("--stored-cells"), "{said}");
+        assert!(!said.contains("57") && !said.contains("60") && !said.contains("delete"), "{said}");
+        let said = refused(&admin, 2).await;
+        assert!(said.contains("57 of 60"), "{said}");
+        assert!(insert(&admin, 1).await.unwrap());
+    }
+
+    #[tokio::test]
+    async fn who_is_alone_may_take_all_the_room() {
+        let folder = tempfile::tempdir().unwrap();
+        let maps = MapStore::new(&Store::open_here(folder.path()), 1 << 20, &memory());
+        let limits = MapLimits { stored_cells: 60, ..LIMITS };
+        let alone = Tenant::default();
+        assert!(maps.insert(&alone, map(20), &limits).await.unwrap());
+        let said = maps.insert(&alone, map(1), &limits).await.unwrap_err().detail;
+        assert!(said.contains("would keep 63 of 60 cells of maps: delete"), "{said}");
     }
 
     #[tokio::test]

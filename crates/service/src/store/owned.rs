@@ -105,6 +105,11 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Owned<T> {
         Ok(notes.into_iter().collect())
     }
 
+    /// Whether the store has tenants beside `default`.
+    pub(crate) async fn has_several_owners(&self) -> Result<bool, Problem> {
+        Ok(self.store.tenants().await?.len() > 1)
+    }
+
     /// The tenants that own an id.
     pub(crate) async fn holders(&self, id: &str) -> Result<Vec<Tenant>, Problem> {
         let mut holders = Vec::new();
