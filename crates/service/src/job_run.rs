@@ -89,10 +89,12 @@ impl Engine {
             return Ok(None);
         }
         let job = Arc::new(Job::new(id, kind, lease, beat).owned_by(owner));
-        if let Err(problem) = self.jobs().add(&job, self.limits().open_jobs) {
-            // Another request was faster to the last place. Whoever watches the store takes the job up later.
+        let added = self.jobs().add(&job, self.limits().open_jobs);
+        if !matches!(added, Ok(true)) {
+            // Another request was faster to the last place, or work on the job has not yet found that its lease ended. Whoever
+            // watches the store takes the job up later.
             self.hand_back(&job).await;
-            return Err(problem);
+            return added.map(|_| None);
         }
         let (engine, started) = (self.clone(), Arc::clone(&job));
         tokio::spawn(async move {
