@@ -1,15 +1,24 @@
 //! Names by which the service may be asked, against pages of a name that leads to this machine (DNS rebinding).
 
-use std::net::IpAddr;
+use std::{fmt, net::IpAddr};
 
 /// Names of the service beside those of the loopback interface.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hosts {
-    /// Names that a setting gives, without port.
-    named: Vec<String>,
+    /// Names and addresses that a setting gives.
+    named: Vec<Host>,
     /// Whether any IP address will do, as where other machines reach the service: nobody can make a browser take an address
     /// for another.
     any_address: bool,
+}
+
+/// A host without its port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Host {
+    /// An address, however it is written.
+    Address(IpAddr),
+    /// A name in lower case, without the dot of the root.
+    Name(String),
 }
 
 /// A name that no `Host` field can hold.
@@ -28,36 +37,50 @@ impl Hosts {
     /// A name with a scheme, port or path, or with characters that names do not have.
     pub fn named(names: &[String], any_address: bool) -> Result<Self, InvalidHost> {
         let checked = |name: &String| {
-            let plain = normal(name);
-            let is_name =
-                !plain.is_empty() && (plain.parse::<IpAddr>().is_ok() || plain.bytes().all(is_of_a_name));
-            if is_name { Ok(plain) } else { Err(InvalidHost { name: name.clone() }) }
+            let host = Host::from(name.as_str());
+            let is_host = match &host {
+                Host::Address(_) => true,
+                Host::Name(name) => !name.is_empty() && name.bytes().all(is_of_a_name),
+            };
+            if is_host { Ok(host) } else { Err(InvalidHost { name: name.clone() }) }
         };
         Ok(Hosts { named: names.iter().map(checked).collect::<Result<_, _>>()?, any_address })
     }
 
     /// Whether a `Host` field, or the authority of a URI, names the service.
     pub(crate) fn admit(&self, host: &str) -> bool {
-        let Some(name) = without_port(host) else { return false };
-        let name = normal(name);
-        if let Ok(address) = name.parse::<IpAddr>() {
-            let is_loopback = address.to_canonical().is_loopback();
-            return is_loopback || self.any_address || self.named.contains(&name);
-        }
-        // RFC 6761, section 6.3: `localhost` and all names below it are loopback.
-        name == "localhost" || name.ends_with(".localhost") || self.named.contains(&name)
+        let Some(host) = without_port(host).map(Host::from) else { return false };
+        self.named.contains(&host)
+            || match host {
+                Host::Address(address) => self.any_address || address.is_loopback(),
+                // RFC 6761, section 6.3: `localhost` and all names below it are loopback.
+                Host::Name(name) => name == "localhost" || name.ends_with(".localhost"),
+            }
     }
 
     /// Whether a setting names the host of an origin.
     pub(crate) fn is_named(&self, host: &str) -> bool {
-        without_port(host).is_some_and(|name| self.named.contains(&normal(name)))
+        without_port(host).is_some_and(|host| self.named.contains(&host.into()))
     }
 }
 
-/// A name in lower case, without the brackets of an IPv6 address and the dot of the root.
-fn normal(name: &str) -> String {
-    let name = name.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')).unwrap_or(name);
-    name.strip_suffix('.').unwrap_or(name).to_ascii_lowercase()
+/// What is admitted, in words.
+impl fmt::Display for Hosts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.any_address { "localhost and any IP address" } else { "localhost" })?;
+        if self.named.is_empty() { Ok(()) } else { f.write_str(" and what --host names") }
+    }
+}
+
+impl From<&str> for Host {
+    fn from(text: &str) -> Self {
+        let plain = text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')).unwrap_or(text);
+        let plain = plain.strip_suffix('.').unwrap_or(plain);
+        match plain.parse::<IpAddr>() {
+            Ok(address) => Host::Address(address.to_canonical()),
+            Err(_) => Host::Name(plain.to_ascii_lowercase()),
+        }
+    }
 }
 
 fn is_of_a_name(byte: u8) -> bool {
@@ -132,8 +155,21 @@ mod tests {
             assert!(named.admit(host), "{host}");
         }
         assert!(!named.admit("example.org") && !named.admit("10.0.0.2"));
+        let long = Hosts::named(&["[fd00:0::1]".into(), "::ffff:10.0.0.1".into()], false).unwrap();
+        for host in ["[fd00::1]:80", "[FD00:0:0::0001]", "10.0.0.1", "[::ffff:a00:1]"] {
+            assert!(long.admit(host), "{host}");
+        }
+        assert!(long.is_named("[fd00::1]:8080") && !long.is_named("[fd00::2]"));
         let open = Hosts::named(&[], true).unwrap();
         assert!(open.admit("10.0.0.2:8080") && open.admit("[fd00::2]") && !open.admit("evil.example"));
+    }
+
+    #[test]
+    fn what_is_admitted_is_said() {
+        let said = |names: &[String], any_address| Hosts::named(names, any_address).unwrap().to_string();
+        assert_eq!(said(&[], false), "localhost");
+        assert_eq!(said(&[], true), "localhost and any IP address");
+        assert_eq!(said(&["a.example".into()], false), "localhost and what --host names");
     }
 
     #[test]

@@ -15,16 +15,39 @@ use crate::{
 /// What is checked.
 #[derive(Clone, Debug)]
 pub(crate) struct Rule {
-    /// `None` where tokens are asked for, which no page of another name can have.
-    hosts: Option<Hosts>,
+    hosts: Hosts,
+    reach: Reach,
     /// Origins that may ask.
     origins: Vec<HeaderValue>,
 }
 
+/// Where hosts are checked: wherever no token is asked for, which no page of another name can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reach {
+    All,
+    /// All else that is open tells nothing of what the service holds and does.
+    Metrics,
+    Nothing,
+}
+
 impl Rule {
     pub(crate) fn of(access: &Access) -> Self {
-        let hosts = access.tokens.is_empty().then(|| access.hosts.clone());
-        Rule { hosts, origins: access.cors_origins.clone() }
+        let reach = match (access.tokens.is_empty(), access.open_metrics) {
+            (true, _) => Reach::All,
+            (false, true) => Reach::Metrics,
+            (false, false) => Reach::Nothing,
+        };
+        Rule { hosts: access.hosts.clone(), reach, origins: access.cors_origins.clone() }
+    }
+
+    /// The hosts that a request may ask, if it matters.
+    fn hosts(&self, request: &Request) -> Option<&Hosts> {
+        let is_checked = match self.reach {
+            Reach::All => true,
+            Reach::Metrics => request.uri().path() == METRICS,
+            Reach::Nothing => false,
+        };
+        is_checked.then_some(&self.hosts)
     }
 
     /// Whether a page of an origin may change something: its host is asked, or is named by a setting.
@@ -51,7 +74,7 @@ fn refusal(rule: &Rule, request: &Request) -> Option<Problem> {
             "an HTTP/1.1 request has one Host field, which names the service: send `Host: localhost`";
         return Some(Problem::new(ProblemType::InvalidRequest, detail));
     }
-    let hosts = rule.hosts.as_ref()?;
+    let hosts = rule.hosts(request)?;
     let field = first.map(|host| String::from_utf8_lossy(host.as_bytes()));
     let target = request.uri().authority().map(|authority| authority.as_str().into());
     let mut asked = [target, field].into_iter().flatten().peekable();
@@ -59,7 +82,8 @@ fn refusal(rule: &Rule, request: &Request) -> Option<Problem> {
     if let Some(other) = asked.find(|host| !hosts.admit(host)) {
         let shown: String = other.chars().take(LONGEST_SHOWN).collect();
         let detail = format!(
-            "the request asks `{shown}`, but this service without tokens answers as localhost only: start it with --host NAME to answer as another"
+            "the request asks `{shown}`, but without a token the service answers as {hosts} only: start it with --host NAME to \
+             answer as another"
         );
         return Some(Problem::new(ProblemType::MisdirectedRequest, detail));
     }
@@ -68,6 +92,8 @@ fn refusal(rule: &Rule, request: &Request) -> Option<Problem> {
     (!rule.admits_origin(hosts, origin, &own)).then(super::cross_origin)
 }
 
+/// What may be open although tokens are asked for.
+const METRICS: &str = "/metrics";
 /// Characters of a foreign host that a refusal repeats.
 const LONGEST_SHOWN: usize = 80;
 
@@ -76,6 +102,7 @@ mod tests {
     use axum::{body::Body, http::StatusCode};
 
     use super::*;
+    use crate::Tokens;
 
     fn status(rule: &Rule, method: Method, uri: &str, fields: &[(&str, &str)]) -> Option<u16> {
         let mut request = Request::builder().method(method).uri(uri);
@@ -87,12 +114,12 @@ mod tests {
 
     fn open() -> Rule {
         let hosts = Hosts::named(&["maps.example.org".to_owned()], false).unwrap();
-        Rule { hosts: Some(hosts), origins: vec![HeaderValue::from_static("https://pages.example")] }
+        Rule { hosts, reach: Reach::All, origins: vec![HeaderValue::from_static("https://pages.example")] }
     }
 
     #[test]
     fn a_request_names_one_host() {
-        for rule in [open(), Rule { hosts: None, origins: Vec::new() }] {
+        for rule in [open(), Rule { reach: Reach::Nothing, ..open() }] {
             assert_eq!(status(&rule, Method::GET, "/", &[]), Some(400));
             let two = [("host", "localhost"), ("host", "evil.example")];
             assert_eq!(status(&rule, Method::GET, "/", &two), Some(400));
@@ -103,10 +130,27 @@ mod tests {
     fn another_host_is_refused_only_where_no_token_is_asked_for() {
         let evil = [("host", "evil.example:8080"), ("origin", "http://evil.example:8080")];
         assert_eq!(status(&open(), Method::GET, "/", &evil), Some(421));
-        let guarded = Rule { hosts: None, origins: Vec::new() };
+        let guarded = Rule { reach: Reach::Nothing, ..open() };
         assert_eq!(status(&guarded, Method::GET, "/", &evil), None);
         let target = "http://evil.example/v1/maps";
         assert_eq!(status(&open(), Method::GET, target, &[("host", "localhost")]), Some(421));
+    }
+
+    #[test]
+    fn hosts_are_checked_wherever_metrics_are_open() {
+        let tokens = Tokens::parse("0123456789abcdef").unwrap();
+        let evil = [("host", "evil.example:8080")];
+        for (access, all, metrics) in [
+            (Access::default(), Some(421), Some(421)),
+            (Access { open_metrics: true, ..Access::default() }, Some(421), Some(421)),
+            (Access { tokens: tokens.clone(), open_metrics: true, ..Access::default() }, None, Some(421)),
+            (Access { tokens, ..Access::default() }, None, None),
+        ] {
+            let rule = Rule::of(&access);
+            assert_eq!(status(&rule, Method::GET, "/v1/maps", &evil), all, "{access:?}");
+            assert_eq!(status(&rule, Method::GET, "/metrics?a=b", &evil), metrics, "{access:?}");
+            assert_eq!(status(&rule, Method::GET, "/metrics", &[("host", "127.0.0.1:8080")]), None);
+        }
     }
 
     #[test]
