@@ -1,5 +1,7 @@
 //! The recordings at hand: in the store, each as it was sent, beside a note of what it is.
 
+use std::sync::Arc;
+
 use recording::{Format, Map, Reading, Room, Watch, read_file};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -72,6 +74,11 @@ impl RecordingStore {
         let map = map.or(own.as_ref());
         read_file(file, note.format, &note.name, map, watch, room)
             .map_err(|error| Problem::invalid_recording(&error))
+    }
+
+    /// What a tenant itself keeps, by id.
+    pub(crate) async fn own(&self, owner: &Tenant) -> Result<Vec<(String, Arc<Note>)>, Problem> {
+        self.recordings.notes.of(owner).list().await
     }
 
     /// All recordings that a tenant sees, in the order of their ids.
