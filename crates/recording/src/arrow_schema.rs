@@ -5,6 +5,8 @@
 //! `Message.fbs` and `Schema.fbs`). One number of it is wanted, for which the Arrow crates would bring in their arrays and readers, and
 //! generated FlatBuffers code is unsafe; so the few tables on the way are walked here, every offset checked.
 
+use std::collections::HashMap;
+
 use base64::{Engine, engine::general_purpose::STANDARD};
 
 /// Key of the schema in the file's metadata.
@@ -34,9 +36,9 @@ const TIME_UNITS: [&str; 4] = ["s", "ms", "us", "ns"];
 const DEFAULT_UNIT: u16 = 1;
 
 /// The top-level duration columns of an encoded schema, with the symbols of their units. What cannot be read has none.
-pub(crate) fn durations(encoded: &str) -> Vec<(String, &'static str)> {
+pub(crate) fn durations(encoded: &str) -> HashMap<String, &'static str> {
     if encoded.len() > LONGEST_BYTES {
-        return Vec::new();
+        return HashMap::new();
     }
     let bytes = STANDARD.decode(encoded.trim_end_matches('\0')).unwrap_or_default();
     Buffer(&bytes).durations().unwrap_or_default()
@@ -50,26 +52,31 @@ struct Buffer<'b>(&'b [u8]);
 #[derive(Clone, Copy)]
 struct Table(usize);
 
-impl Buffer<'_> {
-    fn durations(self) -> Option<Vec<(String, &'static str)>> {
+impl<'b> Buffer<'b> {
+    fn durations(self) -> Option<HashMap<String, &'static str>> {
         let start = if self.u32(0)? == CONTINUATION { 8 } else { 4 };
         let message = Table(self.follow(start)?);
         let schema = self.table(message, MESSAGE_HEADER)?;
         let fields = self.follow(self.field(schema, SCHEMA_FIELDS)?)?;
         let count = self.u32(fields)? as usize;
-        let mut found = Vec::new();
+        let mut found = HashMap::new();
+        // Columns have names of their own, so that all names fit into the buffer, unless many entries lead to one field.
+        let mut bytes_left = self.0.len();
         // A count that lies ends where the buffer does.
         for index in 0..count {
             let field = Table(self.follow(fields.checked_add(4 * (index + 1))?)?);
-            if let Some(duration) = self.duration(field) {
-                found.push(duration);
+            if let Some((name, unit)) = self.duration(field) {
+                bytes_left = bytes_left.checked_sub(name.len().max(1))?;
+                if let Ok(name) = std::str::from_utf8(name) {
+                    found.entry(name.to_owned()).or_insert(unit);
+                }
             }
         }
         Some(found)
     }
 
     /// Name and unit of a field, if it is a duration.
-    fn duration(self, field: Table) -> Option<(String, &'static str)> {
+    fn duration(self, field: Table) -> Option<(&'b [u8], &'static str)> {
         let kind = *self.0.get(self.field(field, FIELD_TYPE_KIND)?)?;
         if kind != DURATION {
             return None;
@@ -116,10 +123,9 @@ impl Buffer<'_> {
         self.follow(self.field(table, number)?).map(Table)
     }
 
-    fn text(self, at: usize) -> Option<String> {
+    fn text(self, at: usize) -> Option<&'b [u8]> {
         let start = at.checked_add(4)?;
-        let bytes = self.0.get(start..start.checked_add(self.u32(at)? as usize)?)?;
-        std::str::from_utf8(bytes).ok().map(str::to_owned)
+        self.0.get(start..start.checked_add(self.u32(at)? as usize)?)
     }
 }
 
@@ -135,9 +141,34 @@ mod tests {
     #[test]
     fn units_are_those_that_arrow_wrote() {
         let expected = ["s", "ms", "us", "ns"].map(|unit| (unit.to_owned(), unit));
-        assert_eq!(durations(WRITTEN.trim()), expected);
-        assert_eq!(durations(""), []);
-        assert_eq!(durations("no Base64"), []);
+        assert_eq!(durations(WRITTEN.trim()), HashMap::from(expected));
+        assert!(durations("").is_empty());
+        assert!(durations("no Base64").is_empty());
+    }
+
+    /// A schema of which so many entries lead to one and the same field, a duration in milliseconds with a name of so many bytes.
+    fn repeated(entries: usize, name_bytes: usize) -> String {
+        let mut bytes = Vec::new();
+        let mut u32s = |numbers: &[u32]| numbers.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        // Pairs of 16 bits, the first in the low half: length of a list of fields and its table, then where each field stands.
+        let pair = |low: u32, high: u32| low | high << 16;
+        // From the root to the message at 24, its header at 40, and the vector of fields at 48.
+        u32s(&[CONTINUATION, 0, 16, pair(10, 8), 0, 4]);
+        u32s(&[12, 12, pair(8, 8), pair(0, 4), 8, 4]);
+        u32s(&[entries as u32]);
+        // The field begins 12 bytes behind the vector.
+        (0..entries).for_each(|entry| u32s(&[(4 * (entries - entry) + 12) as u32]));
+        u32s(&[pair(12, 16), pair(4, 0), pair(8, 12), 12, 20, u32::from(DURATION), 8]);
+        u32s(&[pair(4, 4), 4, name_bytes as u32]);
+        bytes.extend(std::iter::repeat_n(b'a', name_bytes));
+        STANDARD.encode(bytes)
+    }
+
+    #[test]
+    fn entries_that_share_a_field_take_no_more_memory_than_the_schema() {
+        assert_eq!(durations(&repeated(1, 5)), HashMap::from([("aaaaa".to_owned(), "ms")]));
+        assert_eq!(durations(&repeated(1000, 100_000)), HashMap::new(), "100 MB of names in 0.1 MB");
+        assert_eq!(durations(&repeated(3_000, 0)).len(), 1);
     }
 
     proptest! {

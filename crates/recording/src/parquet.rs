@@ -1,6 +1,9 @@
 //! Parquet with the columns of the CSV format.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::{
+    collections::HashMap,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
 
 use ::parquet::{
     basic::{ConvertedType, LogicalType, TimeUnit, Type as Physical},
@@ -99,14 +102,17 @@ fn read_file(
 }
 
 /// The duration columns of a file that Arrow wrote, with their units.
-fn durations_of<R: ChunkReader + 'static>(file: &SerializedFileReader<R>) -> Vec<(String, &'static str)> {
+fn durations_of<R: ChunkReader + 'static>(file: &SerializedFileReader<R>) -> HashMap<String, &'static str> {
     let pairs = file.metadata().file_metadata().key_value_metadata();
     let schema = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == arrow_schema::KEY));
     schema.and_then(|pair| pair.value.as_deref()).map(arrow_schema::durations).unwrap_or_default()
 }
 
 /// The unit that a column of integers stores times in by its type, whatever the writer says it by; `None` for plain numbers.
-fn time_unit(descriptor: &ColumnDescriptor, durations: &[(String, &'static str)]) -> Option<&'static str> {
+fn time_unit(
+    descriptor: &ColumnDescriptor,
+    durations: &HashMap<String, &'static str>,
+) -> Option<&'static str> {
     if descriptor.physical_type() == Physical::INT96 {
         return Some("ns");
     }
@@ -124,9 +130,8 @@ fn time_unit(descriptor: &ColumnDescriptor, durations: &[(String, &'static str)]
         (None, ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS) => Some("ms"),
         (None, ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS) => Some("us"),
         _ => {
-            let path = descriptor.path().parts();
-            let own = durations.iter().find(|(name, _)| matches!(path, [only] if only == name));
-            own.map(|(_, unit)| *unit)
+            let [name] = descriptor.path().parts() else { return None };
+            durations.get(name).copied()
         }
     }
 }
