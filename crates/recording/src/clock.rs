@@ -27,8 +27,11 @@ const USUAL_STEP_S: [f64; 2] = [1e-3, 2.0];
 /// Rounding of the clock's numbers that steps are accepted with, as a share of a step.
 const STEP_ROUNDING: f64 = 1e-3;
 
-/// Steps that tell the rhythm of a run: fewer may be what is left between two pauses.
+/// Steps that tell the rhythm of a run: of fewer, half may be pauses.
 const LEAST_STEPS: usize = 3;
+
+/// Symbol of the unit that times are kept in.
+const SECONDS: &str = "s";
 
 /// A unit that times may be in by mistake.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,11 +155,12 @@ pub(crate) fn check_time(recording: &Recording, source: &TimeSource<'_>) -> Resu
     for run in &recording.runs {
         check_order(recording, run, source)?;
     }
-    let tells_rhythm = |run: &&Run| run.rows.len() > LEAST_STEPS;
-    let any_tells = recording.runs.iter().any(|run| tells_rhythm(&run));
-    for run in recording.runs.iter().filter(|run| !any_tells || tells_rhythm(run)) {
-        if let Some(evidence) = implausible_steps(times(recording, run), source.rows_per_row) {
-            return Err(not_seconds(run, run.rows.start, evidence, source));
+    for run in &recording.runs {
+        match implausible_steps(times(recording, run), source.rows_per_row) {
+            // Whoever names seconds in a map knows that rows are so far apart.
+            Some(TimeEvidence::LongSteps { .. }) if source.map_unit == Some(SECONDS) => {}
+            Some(evidence) => return Err(not_seconds(run, run.rows.start, evidence, source)),
+            None => {}
         }
     }
     Ok(())
@@ -185,8 +189,12 @@ fn check_order(recording: &Recording, run: &Run, source: &TimeSource<'_>) -> Res
     })
 }
 
-/// Evidence that the steps of a run are not those of a log in seconds. Rows that stand for several of the file count as many.
+/// Evidence that the steps of a run are not those of a log in seconds; `None` for fewer than [`LEAST_STEPS`]. Rows that stand for
+/// several of the file count as many.
 pub(crate) fn implausible_steps(t_s: &[f64], rows_per_row: u32) -> Option<TimeEvidence> {
+    if t_s.len() <= LEAST_STEPS {
+        return None;
+    }
     let median_s = median_step_s(t_s)? / f64::from(rows_per_row);
     let mean_s = (t_s.last()? - t_s.first()?) / (t_s.len() - 1) as f64;
     if median_s > LONGEST_STEP_S * (1.0 + STEP_ROUNDING) {
@@ -210,15 +218,19 @@ fn not_seconds(run: &Run, row: usize, evidence: TimeEvidence, source: &TimeSourc
 
 /// The remedy for times that are not seconds, for messages.
 pub(crate) fn remedy(evidence: TimeEvidence, column: &str, map_unit: Option<&str>) -> String {
-    if let Some(unit) = map_unit {
+    if let Some(unit) = map_unit.filter(|unit| *unit != SECONDS) {
         return format!("the map gives its unit as `{unit}`: correct it");
     }
     let units = evidence.likely_units();
     let names: Vec<&str> = units.iter().map(|unit| unit.name).collect();
+    let seconds = match evidence {
+        TimeEvidence::LongSteps { .. } => "; `s` if rows are so far apart",
+        TimeEvidence::ShortSteps { .. } | TimeEvidence::Magnitude { .. } => "",
+    };
     match units.first() {
-        None => "give its unit in a map".to_owned(),
+        None => format!("give its unit in a map{seconds}"),
         Some(first) => format!(
-            "these look like {}: give its unit in a map, as {{\"channel\": \"t_s\", \"column\": \"{column}\", \"unit\": \"{}\"}}",
+            "these look like {}: give its unit in a map, as {{\"channel\": \"t_s\", \"column\": \"{column}\", \"unit\": \"{}\"}}{seconds}",
             names.join(" or "),
             first.symbol
         ),
@@ -255,6 +267,8 @@ mod tests {
             even(3_973_327_200.5, 0.1, 600),
             even(-3.0, 0.1, 600),
             even(0.0, 1.0, 1),
+            vec![0.0, 5.0, 3600.0],
+            vec![0.0, 3600.0],
             paused,
             bursts,
             vec![0.0, 1.0, 2.0, 1_764_338_400.0, 1_764_338_401.0],

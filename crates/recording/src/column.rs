@@ -51,6 +51,8 @@ struct Entry {
     combine: Combine,
     conversion: Conversion,
     unit: String,
+    /// Whether a map names the unit.
+    is_unit_given: bool,
 }
 
 impl Plan {
@@ -104,6 +106,7 @@ impl Plan {
                         combine: source.combine,
                         conversion: source.conversion,
                         unit: source.unit.clone(),
+                        is_unit_given: source.is_unit_given,
                     });
                     continue;
                 }
@@ -132,7 +135,8 @@ impl Plan {
                 return Err(Error::Duplicate { channel, first, second: header.clone() });
             }
             let (combine, conversion) = (Combine::Mean, Conversion::IDENTITY);
-            self.entries.push(Entry { target, columns: vec![index], combine, conversion, unit: unit.into() });
+            let (columns, unit) = (vec![index], unit.into());
+            self.entries.push(Entry { target, columns, combine, conversion, unit, is_unit_given: false });
         }
         Ok(())
     }
@@ -229,7 +233,7 @@ impl Plan {
         Ok(())
     }
 
-    /// The time column of the file in seconds, its name, and the unit that a map gave unless that is seconds.
+    /// The time column of the file in seconds, its name, and the unit that a map gives.
     fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String, Option<String>), Error> {
         let Some(at) = self.entries.iter().position(|entry| entry.target == Target::Time) else {
             return Err(Error::missing_names(&["t_s".into()], &["t_s"], &self.headers));
@@ -237,10 +241,7 @@ impl Plan {
         let entry = self.entries.remove(at);
         let name = self.names(&entry);
         match self.combined(&entry, columns) {
-            Ok(Column::Numbers(t_s)) => {
-                let is_seconds = entry.unit == units::si_unit(Quantity::Time);
-                Ok((t_s, name, (!is_seconds).then_some(entry.unit)))
-            }
+            Ok(Column::Numbers(t_s)) => Ok((t_s, name, entry.is_unit_given.then_some(entry.unit))),
             Ok(Column::Unusable(reason)) | Err(reason) => Err(Error::Field {
                 topic: "of the table".into(),
                 field: name,

@@ -58,6 +58,8 @@ pub struct Source {
     pub conversion: Conversion,
     /// The unit it comes in, for the report.
     pub unit: String,
+    /// Whether the map names that unit.
+    pub is_unit_given: bool,
 }
 
 /// What a column or field becomes.
@@ -220,8 +222,10 @@ impl SourceFile {
         if !scale.is_finite() || scale == 0.0 {
             return Err(wrong(".scale", "must be finite and not 0"));
         }
+        let is_unit_given = self.unit.is_some();
         let (conversion, unit) = conversion(index, &target, self.unit, wheel_radius_m)?;
-        Ok(Source { target, place, combine: self.combine, conversion: conversion.scaled(scale), unit })
+        let conversion = conversion.scaled(scale);
+        Ok(Source { target, place, combine: self.combine, conversion, unit, is_unit_given })
     }
 }
 

@@ -73,6 +73,24 @@ fn plain_numbers_in_another_unit_are_refused_by_line_and_read_with_their_unit_in
 }
 
 #[test]
+fn rows_far_apart_are_read_where_a_map_names_seconds_and_times_beyond_every_clock_are_not() {
+    let slow = |start: f64| csv((0..20).map(|row| format!("{}", start + 20.0 * f64::from(row))));
+    let message = read(slow(0.0), Format::Csv, "drive", None).unwrap_err().to_string();
+    assert!(
+        message.contains("rows are 20 s apart") && message.contains("`s` if rows are so far"),
+        "{message}"
+    );
+    let silent = r#"{"name": "lab", "sources": [{"channel": "t_s", "column": "t_s"}]}"#;
+    let silent = Map::from_json(silent).unwrap();
+    assert!(read(slow(0.0), Format::Csv, "drive", Some(&silent)).is_err(), "this map names no unit");
+    let seconds = map_with("s");
+    let t_s = read(slow(0.0), Format::Csv, "drive", Some(&seconds)).unwrap().recording.t_s;
+    assert_eq!(t_s[19], 380.0);
+    let message = read(slow(1.7e12), Format::Csv, "drive", Some(&seconds)).unwrap_err().to_string();
+    assert!(message.contains("year 2200") && message.contains("look like milliseconds"), "{message}");
+}
+
+#[test]
 fn a_run_of_milliseconds_behind_one_of_seconds_is_named_with_its_line() {
     let mut text = String::from("run,t_s,v_left_mps,v_right_mps,power_w\n");
     for row in 0..20 {
