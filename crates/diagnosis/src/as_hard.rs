@@ -5,7 +5,7 @@
 
 use model::{
     Robot, Sides,
-    mechanism::{self, Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{self, Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 use crate::{polish::Polished, second_ground::GROUND, series::Applied};
@@ -24,6 +24,11 @@ impl Mechanism for AsHard {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "change", unit: "1", bounds: [-0.9, 5.0], probe: 0.05 }]
+    }
+
+    /// As the rolling resistance of other ground.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.5)]
     }
 
     fn equation(&self) -> &'static str {

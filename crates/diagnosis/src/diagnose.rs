@@ -21,6 +21,7 @@ use crate::{
     needed::shown_in,
     next_drive::next_drive,
     null::Null,
+    posterior,
     report::{Diagnosis, Verdict},
     search::{Search, TOLD, search},
     series::{Applied, Look, Series},
@@ -42,12 +43,24 @@ pub struct Question<'a> {
     pub healthy: Option<&'a Recording>,
     /// Mechanisms that are known not to act.
     pub ruled_out: &'a [&'static dyn Mechanism],
+    /// By what it is answered.
+    pub engine: Engine,
+}
+
+/// Ways of diagnosing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Engine {
+    /// Candidates one after the other, each through a row of tests.
+    #[default]
+    Gates,
+    /// The posterior over sets of mechanisms by one Gaussian model; see [`crate::posterior`].
+    Posterior,
 }
 
 impl<'a> Question<'a> {
     /// A question about drives of which nothing is ruled out.
     pub fn new(robot: &'a Robot, suspect: &'a Recording, healthy: Option<&'a Recording>) -> Self {
-        Question { robot, suspect, healthy, ruled_out: &[] }
+        Question { robot, suspect, healthy, ruled_out: &[], engine: Engine::default() }
     }
 }
 
@@ -70,7 +83,10 @@ pub fn diagnose_watched(
     progress: &dyn Fn(&str, f64),
     watch: &Watch,
 ) -> Result<Diagnosis, Error> {
-    let Question { robot, suspect, healthy, ruled_out } = *question;
+    if question.engine == Engine::Posterior {
+        return posterior::diagnose::diagnose(question, progress, watch);
+    }
+    let Question { robot, suspect, healthy, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
     admissible::check(suspect, healthy)?;
     // Means over angles in another unit are none.
@@ -129,6 +145,9 @@ pub fn diagnose_watched(
     let mut diagnosis = Diagnosis {
         verdict: judged.verdict(&found),
         sentence: String::new(),
+        file: None,
+        probability: None,
+        explanations: Vec::new(),
         baseline: judged.baseline,
         places,
         findings,
@@ -153,7 +172,7 @@ pub fn diagnose_watched(
 }
 
 /// Mechanisms that cannot act in drives: an inclinometer that is askew where none was read.
-fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
+pub(crate) fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
     let is_read = suspect.channel(Channel::Pitch).is_some();
     mechanism::by_name("pitch_bias").filter(|_| !is_read).into_iter().collect()
 }

@@ -55,6 +55,8 @@ impl Discovered {
             },
             indistinguishable_from: Vec::new(),
             fit: FindingFit { held_out_rmse_before_w: before_w, held_out_rmse_after_w: after_w },
+            probability: None,
+            scope: None,
         }
     }
 

@@ -261,7 +261,7 @@ impl Judged {
 }
 
 /// Where the robot was so long after a drive began.
-fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
+pub(crate) fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
     let rows = recording.runs.get(run)?.rows.clone();
     let times = recording.t_s.get(rows.clone())?;
     let wanted_s = times.first()? + t_s;
@@ -309,5 +309,7 @@ fn finding(series: &Series, robot: &Robot, found: &Found, [before_w, after_w]: [
         },
         indistinguishable_from: found.indistinguishable_from.clone(),
         fit: FindingFit { held_out_rmse_before_w: before_w, held_out_rmse_after_w: after_w },
+        probability: None,
+        scope: None,
     }
 }

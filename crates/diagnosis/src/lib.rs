@@ -66,6 +66,7 @@ mod parts;
 mod plain;
 mod plausible;
 mod polish;
+mod posterior;
 mod profile;
 mod ranked;
 mod reached;
@@ -97,7 +98,7 @@ mod widths;
 mod words;
 
 pub use average::{Average, Input};
-pub use diagnose::{Question, diagnose, diagnose_watched};
+pub use diagnose::{Engine, Question, diagnose, diagnose_watched};
 pub use error::Error;
 pub use imitate::imitate;
 pub use plain::Plain;

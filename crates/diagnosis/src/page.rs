@@ -209,6 +209,8 @@ mod tests {
                 evidence: EvidenceFigures { p_value: 1e-4, delta_bic: 20.0, held_out_gain: 0.1 },
                 indistinguishable_from: Vec::new(),
                 fit: FindingFit { held_out_rmse_before_w: 3.0, held_out_rmse_after_w: 2.0 },
+                probability: None,
+                scope: None,
             })
         };
         let (outside, payload) = (of(UNKNOWN), of("payload"));

@@ -37,6 +37,15 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// The same in one sentence.
     pub sentence: String,
+    /// The robot's file as it is against the recording; of the posterior engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<FileError>,
+    /// Probabilities of nothing, of listed and of unlisted effects; of the posterior engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probability: Option<Probability>,
+    /// The credible set of explanations, likeliest first; of the posterior engine.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub explanations: Vec<ExplanationFigures>,
     /// The model before.
     pub baseline: BaselineFit,
     /// Where they differ; empty where they do not.
@@ -62,6 +71,50 @@ pub struct Diagnosis {
     /// Power over time, for drawing.
     #[serde(skip)]
     pub trace: Trace,
+}
+
+/// How far predictions by the robot's file are off, over seconds of the whole power.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FileError {
+    /// Root mean square error [W].
+    pub rmse_w: f64,
+    /// Mean of recorded less predicted [W].
+    pub bias_w: f64,
+    /// Mean of recorded power [W].
+    pub mean_power_w: f64,
+}
+
+/// Posterior probabilities, which sum to one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Probability {
+    /// Nothing is missing.
+    pub nothing: f64,
+    /// Mechanisms of the list alone are.
+    pub listed: f64,
+    /// Something outside the list is, alone or beside a mechanism.
+    pub unlisted: f64,
+}
+
+/// One explanation with its posterior probability.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplanationFigures {
+    /// Its mechanisms, `unknown` among them where something unlisted acts; none where nothing is missing.
+    pub mechanisms: Vec<String>,
+    /// Its probability.
+    pub probability: f64,
+}
+
+/// When and where a finding acts; nothing is given where it always acts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Scope {
+    /// From so long after the beginning of the drive on [s].
+    pub from_s: Option<f64>,
+    /// Until so long after it [s].
+    pub until_s: Option<f64>,
+    /// The drive that both count in, and all after or before it.
+    pub run: Option<String>,
+    /// A part of the ground, in words.
+    pub region: Option<String>,
 }
 
 /// How far the model is off before anything is found, over averages of one second of each channel.
@@ -155,6 +208,12 @@ pub struct Finding {
     pub indistinguishable_from: Vec<String>,
     /// Errors without and with it.
     pub fit: FindingFit,
+    /// Probability of its mechanism, summed over explanations; of the posterior engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// When and where it acts; of the posterior engine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scope: Option<Scope>,
 }
 
 /// A number of a mechanism.

@@ -22,6 +22,8 @@ pub struct Diagnosis {
     pub program: PathBuf,
     /// Threads that each process may use.
     pub threads: usize,
+    /// What `--engine` is given.
+    pub engine: &'static str,
 }
 
 /// What came of a diagnosis.
@@ -49,7 +51,7 @@ impl Diagnosis {
         let mut command = Command::new(&self.program);
         command
             .args(["diagnose", "--robot", ROBOT, "--recording", RECORDING])
-            .args(["--reference", REFERENCE, "--out", RESULT])
+            .args(["--reference", REFERENCE, "--out", RESULT, "--engine", self.engine])
             .env_clear()
             .env("RAYON_NUM_THREADS", self.threads.to_string())
             .current_dir(room.path())

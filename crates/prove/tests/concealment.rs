@@ -46,7 +46,7 @@ fn run(
         share: None,
         robot_json: &robot_json,
         out,
-        diagnosis: Diagnosis { program: program.to_owned(), threads: 1 },
+        diagnosis: Diagnosis { program: program.to_owned(), threads: 1, engine: "gates" },
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
         progress,
@@ -127,7 +127,7 @@ fn failing_programs_and_reports_that_are_none_are_errors_on_the_board() {
         for name in [prove::ROBOT, prove::RECORDING, prove::REFERENCE] {
             fs::write(case.join(name), "").unwrap();
         }
-        let outcome = Diagnosis { program, threads: 1 }.run(&case).unwrap();
+        let outcome = Diagnosis { program, threads: 1, engine: "gates" }.run(&case).unwrap();
         assert!(matches!(&outcome, prove::Outcome::Failed(why) if why.contains(said)), "{outcome:?}");
     }
 }

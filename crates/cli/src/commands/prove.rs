@@ -13,7 +13,9 @@ use model::Robot;
 use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Stage, Trial};
 use recording::read_paths;
 
-use crate::{failure::BadInput, output, progress, recorded::robot, scored::summary};
+use crate::{
+    commands::diagnose::EngineName, failure::BadInput, output, progress, recorded::robot, scored::summary,
+};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -37,6 +39,9 @@ pub(crate) struct Arguments {
     /// How strong every effect is, as a share of power; otherwise 1.2, 3, 6 and 12 % take turns
     #[arg(long)]
     share: Option<f64>,
+    /// Way of diagnosing
+    #[arg(long, hide = true, default_value = "gates")]
+    engine: EngineName,
     /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
     #[arg(long, required_unless_present = "together")]
     out: Option<PathBuf>,
@@ -96,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         robot_json: &robot_json,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program, threads: 1 },
+        diagnosis: Diagnosis { program, threads: 1, engine: arguments.engine.name() },
         peers: &peers,
         at_once: available_parallelism().map_or(1, usize::from),
         progress: &told,

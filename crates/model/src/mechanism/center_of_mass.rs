@@ -2,12 +2,15 @@
 
 use crate::{
     Robot, STANDARD_GRAVITY_MPS2, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Farthest that it lies from the middle, as a share of what axles or sides are apart: an axle then carries four fifths. The paper's
 /// robot came to 0.2 with 28 kg on its back.
 const MOST_OFF: f64 = 0.3;
+
+/// Where a form behind the middle begins \[m\].
+const BEHIND_M: f64 = -1e-6;
 
 /// A centre of mass off the place that the robot's file gives.
 pub(super) struct CenterOfMass;
@@ -35,6 +38,21 @@ impl Mechanism for CenterOfMass {
             if parameter == 0 { (com.forward_m, robot.wheelbase_m) } else { (com.left_m, robot.track_m) };
         let farthest_m = MOST_OFF * apart_m;
         [(-farthest_m - filed_m).min(0.0), (farthest_m - filed_m).max(0.0)]
+    }
+
+    /// A fifth of what axles and sides are apart: the paper's robot came to that with 28 kg on its back.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let Robot { wheelbase_m, track_m, .. } = *scale.robot;
+        [wheelbase_m, track_m].map(|apart_m| SizePrior::either(0.2 * apart_m)).into()
+    }
+
+    /// Ahead of the middle, behind it, and to the side alone: power hardly changes with the sign of the distance from the middle.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        [0.0, BEHIND_M]
+            .map(|forward_m| Form { values: vec![forward_m, 0.0], free: vec![0, 1] })
+            .into_iter()
+            .chain([Form::one_free(vec![0.0; 2], 1)])
+            .collect()
     }
 
     fn equation(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! `clock_offset`: power that was recorded by another clock than speeds.
 
-use crate::mechanism::{Kind, Mechanism, Parameter};
+use crate::mechanism::{Kind, Mechanism, Parameter, Scale, SizePrior};
 
 /// Power that was recorded by another clock than speeds.
 pub(super) struct ClockOffset;
@@ -16,6 +16,16 @@ impl Mechanism for ClockOffset {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "delay_s", unit: "s", bounds: [-3.0, 3.0], probe: 0.05 }]
+    }
+
+    /// Four rows of a log of ten a second.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.4)]
+    }
+
+    /// Half a row of a log of ten a second.
+    fn healthy_share(&self) -> f64 {
+        0.12
     }
 
     fn equation(&self) -> &'static str {

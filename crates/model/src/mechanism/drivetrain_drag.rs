@@ -1,8 +1,8 @@
 //! `drivetrain_drag`: bearings, chains or brakes that hold the wheels of a side back.
 
 use crate::{
-    Robot, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    Robot, STANDARD_GRAVITY_MPS2, Sides,
+    mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
     rolling,
 };
 
@@ -23,6 +23,16 @@ impl Mechanism for DrivetrainDrag {
             Parameter { name: "left_n", unit: "N", bounds: [-10.0, 300.0], probe: 1.0 },
             Parameter { name: "right_n", unit: "N", bounds: [-10.0, 300.0], probe: 1.0 },
         ]
+    }
+
+    /// A fortieth of the weight: about what rolling takes, as of a brake that rubs.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::positive(0.025 * scale.robot.mass_kg * STANDARD_GRAVITY_MPS2); 2]
+    }
+
+    /// One side; what holds both back alike is the ground.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        [0, 1].map(|side| Form::one_free(vec![0.0; 2], side)).into()
     }
 
     fn equation(&self) -> &'static str {

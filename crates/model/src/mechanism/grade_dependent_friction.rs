@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Rolling resistance that grows with the steepness of the ground.
@@ -19,6 +19,11 @@ impl Mechanism for GradeDependentFriction {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "per_slope", unit: "1", bounds: [-20.0, 40.0], probe: 0.3 }]
+    }
+
+    /// Three per cent for each per cent of slope: a third more rolling resistance on a slope of one in ten.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(3.0)]
     }
 
     fn equation(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Electronics that take power whatever the robot does.
@@ -19,6 +19,13 @@ impl Mechanism for HotelLoad {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "power_w", unit: "W", bounds: [-300.0, 1000.0], probe: 1.0 }]
+    }
+
+    /// A quarter of mean power, as of a computer beside small motors; a file that gives none cannot give too much.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let sigma_w = 0.25 * scale.mean_power_w;
+        let is_given = scale.robot.hotel_power_w > 0.0;
+        vec![if is_given { SizePrior::either(sigma_w) } else { SizePrior::positive(sigma_w) }]
     }
 
     fn equation(&self) -> &'static str {

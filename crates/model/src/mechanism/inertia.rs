@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Inertia of the rotors and gears of a side that a robot may have at the rims, in masses of the robot: a rotor of 10⁻⁵ kg m² behind gears
@@ -29,6 +29,16 @@ impl Mechanism for Inertia {
     fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
         let [low, high] = self.parameters()[parameter].bounds_of(robot);
         [low, high.min(MOST_MASSES * robot.mass_kg)]
+    }
+
+    /// Three tenths of the robot on each side: rotors behind gears of 80:1 are a tenth of it.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::positive(0.3 * scale.robot.mass_kg)]
+    }
+
+    /// Every drive train has rotors, by a few hundredths of the robot's mass at the rims.
+    fn healthy_share(&self) -> f64 {
+        0.1
     }
 
     fn equation(&self) -> &'static str {

@@ -6,7 +6,7 @@
 
 use crate::{
     Robot, STANDARD_GRAVITY_MPS2, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// A centre of mass high above the ground shifts load to the lower and to the outer side.
@@ -23,6 +23,18 @@ impl Mechanism for LoadTransfer {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "height_m", unit: "m", bounds: [-1.0, 3.0], probe: 0.02 }]
+    }
+
+    /// Half a track: the height of a robot that stands as high as it is wide. A file that gives none is never too high.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let sigma_m = 0.5 * scale.robot.track_m;
+        let is_given = scale.robot.center_of_mass.height_m > 0.0;
+        vec![if is_given { SizePrior::either(sigma_m) } else { SizePrior::positive(sigma_m) }]
+    }
+
+    /// Files that give no height leave out one of some centimetres.
+    fn healthy_share(&self) -> f64 {
+        0.3
     }
 
     fn equation(&self) -> &'static str {

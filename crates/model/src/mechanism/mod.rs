@@ -16,6 +16,7 @@ mod pitch_bias;
 mod power_offset;
 mod power_scale;
 mod regeneration;
+mod size;
 mod soft_soil;
 mod speed_dependent_friction;
 mod surface_change;
@@ -23,6 +24,8 @@ mod towed_load;
 mod wheel_radius;
 mod wheel_slip;
 mod wind;
+
+pub use size::{Form, Scale, Sign, SizePrior};
 
 use crate::{Acceleration, Attitude, Motion, Robot, Sides};
 
@@ -180,6 +183,29 @@ pub trait Mechanism: Sync {
         None
     }
 
+    /// Prior of each parameter: what a user could plausibly meet, in the robot's own units, with its reason.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior>;
+
+    /// Prior correlation of the first two parameters' sizes. Default: none.
+    fn size_correlation(&self) -> f64 {
+        0.0
+    }
+
+    /// Share of its prior size that healthy robots and good logs have of it and no file states. Default: none.
+    fn healthy_share(&self) -> f64 {
+        0.0
+    }
+
+    /// Shapes that are tried side by side, where power does not follow all parameters in proportion. Default: one, with all of them free.
+    fn forms(&self, _robot: &Robot) -> Vec<Form> {
+        vec![Form::all_free(self.parameters().len())]
+    }
+
+    /// Whether it may set in or end during the drives. What remembers has no onset but the beginning.
+    fn is_windowed(&self) -> bool {
+        true
+    }
+
     /// Its equation, in the symbols of the paper.
     fn equation(&self) -> &'static str;
 
@@ -253,6 +279,28 @@ pub fn by_name(name: &str) -> Option<&'static dyn Mechanism> {
 mod tests {
     use super::*;
     use crate::{Friction, FrictionShape, Manoeuvre, builtin};
+
+    #[test]
+    fn prior_sizes_are_within_what_a_robot_can_have_and_forms_hold_one_value_for_each_parameter() {
+        let robot = builtin::husky_a200();
+        let scale = Scale { robot: &robot, mean_power_w: 100.0, mean_loss_w: 5.0 };
+        for mechanism in ALL {
+            let priors = mechanism.size_prior(&scale);
+            assert_eq!(priors.len(), mechanism.parameters().len(), "{}", mechanism.name());
+            for form in mechanism.forms(&robot) {
+                assert_eq!(form.values.len(), priors.len(), "{}", mechanism.name());
+                for free in form.free {
+                    let [low, high] = mechanism.bounds(&robot, free);
+                    let SizePrior { sigma, sign } = priors[free];
+                    let in_reach = match sign {
+                        Sign::Negative => -sigma >= low,
+                        Sign::Positive | Sign::Either => sigma <= high,
+                    };
+                    assert!(sigma > 0.0 && in_reach, "{} {sigma} in {low}..{high}", mechanism.name());
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_mechanism_at_nothing_changes_nothing_and_at_a_probe_changes_power_or_what_is_read() {

@@ -2,8 +2,15 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
+
+/// Mean rise of temperature, one sigma \[K\].
+const MEAN_RISE_K: f64 = 25.0;
+/// Motors that lose less warm by nothing that could be told \[W\].
+const LEAST_LOSS_W: f64 = 0.1;
+/// Time constants that are tried \[s\].
+const MEMORIES_S: [f64; 6] = [60.0, 180.0, 480.0, 900.0, 1800.0, 3600.0];
 
 /// Motors that grow warm from their own losses: more resistance, weaker magnets (eqs. 7-10).
 pub(super) struct MotorHeating;
@@ -22,6 +29,21 @@ impl Mechanism for MotorHeating {
             Parameter { name: "rise_k_per_w", unit: "K/W", bounds: [0.0, 10.0], probe: 0.05 },
             Parameter { name: "time_constant_s", unit: "s", bounds: [20.0, 7200.0], probe: 10.0 },
         ]
+    }
+
+    /// A mean rise of 25 K, as of a motor at half of what its windings bear.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let rise_k_per_w = MEAN_RISE_K / scale.mean_loss_w.max(LEAST_LOSS_W);
+        vec![SizePrior::positive(rise_k_per_w), SizePrior::positive(MEMORIES_S[3])]
+    }
+
+    /// Time constants from that of a small winding to that of a heavy case.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        MEMORIES_S.map(|memory_s| Form::one_free(vec![0.0, memory_s], 0)).into()
+    }
+
+    fn is_windowed(&self) -> bool {
+        false
     }
 
     fn equation(&self) -> &'static str {

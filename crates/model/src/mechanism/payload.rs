@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Share of a robot that may have been taken off: an arm, one of two batteries.
@@ -28,6 +28,11 @@ impl Mechanism for Payload {
     fn bounds(&self, robot: &Robot, parameter: usize) -> [f64; 2] {
         let [low, high] = self.parameters()[parameter].bounds_of(robot);
         [low.max(-LEAST_SHARE * robot.mass_kg), high]
+    }
+
+    /// A quarter of the robot: what its maker lets it carry and people take off.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.25 * scale.robot.mass_kg)]
     }
 
     fn equation(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! `pitch_bias`: an inclinometer that is not level with the robot.
 
-use crate::mechanism::{Kind, Mechanism, Moment, Parameter};
+use crate::mechanism::{Kind, Mechanism, Moment, Parameter, Scale, SizePrior};
 
 /// An inclinometer that is not level with the robot.
 pub(super) struct PitchBias;
@@ -16,6 +16,16 @@ impl Mechanism for PitchBias {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "bias_rad", unit: "rad", bounds: [-0.2, 0.2], probe: 0.005 }]
+    }
+
+    /// Two degrees, as of an inclinometer that was bolted on by eye.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(2.0_f64.to_radians())]
+    }
+
+    /// An inclinometer is read to a sixteenth of a degree.
+    fn healthy_share(&self) -> f64 {
+        0.03
     }
 
     fn equation(&self) -> &'static str {

@@ -1,6 +1,9 @@
 //! `power_offset`: a power meter whose zero is off.
 
-use crate::mechanism::{Kind, Mechanism, Parameter};
+use crate::{
+    Robot,
+    mechanism::{Form, Kind, Mechanism, Parameter, Scale, SizePrior},
+};
 
 /// Share of what meters are off by, up to which they are so alike.
 const ALIKE: f64 = 0.1;
@@ -25,6 +28,16 @@ impl Mechanism for PowerOffset {
             Parameter { name: "offset_w", unit: "W", bounds: [-200.0, 200.0], probe: 1.0 },
             Parameter { name: "battery_more", unit: "1", bounds: [-2.0, 2.0], probe: 1.0 },
         ]
+    }
+
+    /// 15 % of mean power, half of it on each side's meter.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.075 * scale.mean_power_w), SizePrior::either(1.0)]
+    }
+
+    /// The battery's meter off as each side's, or right. Off by their sum it would be what drivers lose.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        [0.0, -1.0].map(|more| Form::one_free(vec![0.0, more], 0)).into()
     }
 
     fn equation(&self) -> &'static str {

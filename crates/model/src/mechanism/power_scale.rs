@@ -1,6 +1,6 @@
 //! `power_scale`: a power meter that reads too much or too little.
 
-use crate::mechanism::{Kind, Mechanism, Parameter};
+use crate::mechanism::{Kind, Mechanism, Parameter, Scale, SizePrior};
 
 /// A power meter that reads too much or too little.
 pub(super) struct PowerScale;
@@ -16,6 +16,11 @@ impl Mechanism for PowerScale {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "gain", unit: "1", bounds: [-0.6, 1.0], probe: 0.02 }]
+    }
+
+    /// 20 %, as of a shunt of the next size.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.2)]
     }
 
     fn equation(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// More or less of what the hill drives comes back.
@@ -19,6 +19,15 @@ impl Mechanism for Regeneration {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "added", unit: "1", bounds: [-1.0, 1.0], probe: 0.05 }]
+    }
+
+    /// Half of what returns; a file that has all return cannot have more.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![match scale.robot.motors.regeneration {
+            all if all >= 1.0 => SizePrior::negative(0.5),
+            none if none <= 0.0 => SizePrior::positive(0.5),
+            _ => SizePrior::either(0.5),
+        }]
     }
 
     fn equation(&self) -> &'static str {

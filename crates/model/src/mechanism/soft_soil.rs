@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Wheels that sink, the more the more they slip sideways.
@@ -19,6 +19,16 @@ impl Mechanism for SoftSoil {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "sinking", unit: "1", bounds: [0.0, 20.0], probe: 0.05 }]
+    }
+
+    /// Half as much again as on hard ground, never less.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::positive(0.5)]
+    }
+
+    /// Tyres on any ground roll harder in turns than straight on; healthy robots of worlds with another law of that came to 0.12 of c.
+    fn healthy_share(&self) -> f64 {
+        0.3
     }
 
     fn equation(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use crate::{
     Robot,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Rolling resistance that grows with speed.
@@ -19,6 +19,16 @@ impl Mechanism for SpeedDependentFriction {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "per_mps", unit: "s/m", bounds: [-2.0, 5.0], probe: 0.05 }]
+    }
+
+    /// Rolling resistance that is six tenths more at top speed than at rest: tyres on soft ground (Wong, Theory of Ground Vehicles, ch. 2).
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.6 / scale.robot.max_wheel_speed_mps)]
+    }
+
+    /// Rolling resistance of tyres on hard ground grows by some per cent from rest to top speed.
+    fn healthy_share(&self) -> f64 {
+        0.15
     }
 
     fn equation(&self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use crate::{
     Robot, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Other ground than the recording says.
@@ -22,6 +22,17 @@ impl Mechanism for SurfaceChange {
             Parameter { name: "roll_change", unit: "1", bounds: [-0.9, 10.0], probe: 0.05 },
             Parameter { name: "skid_change", unit: "1", bounds: [-0.9, 5.0], probe: 0.05 },
         ]
+    }
+
+    /// Half as much rolling and a third as much skid resistance: what hard floors, asphalt and loam differ by (Dogru & Marques 2018, Fig. 13;
+    /// BorealTC).
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        [0.5, 0.3].map(SizePrior::either).into()
+    }
+
+    /// Ground that rolls harder skids harder.
+    fn size_correlation(&self) -> f64 {
+        0.8
     }
 
     fn equation(&self) -> &'static str {

@@ -3,7 +3,7 @@
 
 use crate::{
     Motion, Robot, STANDARD_GRAVITY_MPS2, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
     rolling,
 };
 
@@ -27,6 +27,17 @@ impl Mechanism for TowedLoad {
             Parameter { name: "rolling_n", unit: "N", bounds: [0.0, 500.0], probe: 1.0 },
             Parameter { name: "mass_kg", unit: "kg", bounds: [0.0, 500.0], probe: 1.0 },
         ]
+    }
+
+    /// A pull of 4 % of the robot's weight, by a trailer of four tenths of its mass that rolls at 0.1.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let mass_kg = scale.robot.mass_kg;
+        [0.04 * mass_kg * STANDARD_GRAVITY_MPS2, 0.4 * mass_kg].map(SizePrior::positive).into()
+    }
+
+    /// What is heavy is hard to roll.
+    fn size_correlation(&self) -> f64 {
+        0.8
     }
 
     fn equation(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! `wheel_radius`: encoders that take the wheels for larger or smaller than they are.
 
-use crate::mechanism::{Kind, Mechanism, Moment, Parameter};
+use crate::mechanism::{Kind, Mechanism, Moment, Parameter, Scale, SizePrior};
 
 /// Encoders that take the wheels for larger or smaller than they are.
 pub(super) struct WheelRadius;
@@ -16,6 +16,16 @@ impl Mechanism for WheelRadius {
 
     fn parameters(&self) -> &'static [Parameter] {
         &[Parameter { name: "scale", unit: "1", bounds: [-0.4, 0.4], probe: 0.01 }]
+    }
+
+    /// 6 %, as of tyres that are soft or worn.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        vec![SizePrior::either(0.06)]
+    }
+
+    /// Half a per cent, as of tyres by their pressure.
+    fn healthy_share(&self) -> f64 {
+        0.1
     }
 
     fn equation(&self) -> &'static str {

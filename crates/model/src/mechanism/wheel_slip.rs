@@ -1,6 +1,9 @@
 //! `wheel_slip`: wheels that turn and do not carry the robot as far.
 
-use crate::mechanism::{Kind, Mechanism, Moment, Parameter};
+use crate::{
+    Robot,
+    mechanism::{Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
+};
 
 /// Wheels that turn and do not carry the robot as far.
 ///
@@ -36,6 +39,21 @@ impl Mechanism for WheelSlip {
     /// Only ground that gives way under pull has the second.
     fn is_optional(&self, parameter: usize) -> bool {
         parameter == 1
+    }
+
+    /// A tenth in going straight on and twice as much in turns, where wheels pull hardest.
+    fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
+        [0.1, 0.2].map(SizePrior::positive).into()
+    }
+
+    /// What spins carries the robot less far and turns it less; what gives way under pull shows in turns; or both.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        [vec![0], vec![1], vec![0, 1]].map(|free| Form { values: vec![0.0; 2], free }).into()
+    }
+
+    /// Wheels slip by some hundredths of their way wherever they pull.
+    fn healthy_share(&self) -> f64 {
+        0.2
     }
 
     fn equation(&self) -> &'static str {

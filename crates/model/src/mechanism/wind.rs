@@ -2,7 +2,7 @@
 
 use crate::{
     Robot, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter},
+    mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// ρ of the standard atmosphere at sea level and 15 °C (ISO 2533) [kg/m³].
@@ -15,6 +15,11 @@ const MOST_FOOTPRINTS: f64 = 4.0;
 /// as large as what lies between its wheels, with the drag coefficient of a cube, 0.8 to 1.05 (Hoerner, Fluid-Dynamic Drag, 1965,
 /// chapter 3), bare or with a mast.
 const USUAL_FOOTPRINTS: [f64; 2] = [1.0, 1.7];
+
+/// Winds that are tried \[m/s\]: a breeze, a strong wind, a gale (Beaufort 2, 4 and 5).
+const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
+/// Directions that winds are tried towards.
+const DIRECTIONS: u32 = 8;
 
 /// Air that stands or moves against the robot.
 pub(super) struct Wind;
@@ -47,6 +52,25 @@ impl Mechanism for Wind {
     fn usual(&self, robot: &Robot, parameter: usize) -> Option<[f64; 2]> {
         let [footprints, factor] = USUAL_FOOTPRINTS;
         (parameter == 0).then_some([footprints * robot.track_m * robot.wheelbase_m, factor])
+    }
+
+    /// A drag area as large as what lies between the wheels, and winds up to a gale.
+    fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
+        let footprint_m2 = scale.robot.track_m * scale.robot.wheelbase_m;
+        let area = SizePrior::positive(USUAL_FOOTPRINTS[0] * footprint_m2);
+        vec![area, SizePrior::either(WINDS_MPS[1]), SizePrior::either(WINDS_MPS[1])]
+    }
+
+    /// Still air, and winds of several speeds towards eight directions.
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        let towards = |wind_mps: f64| {
+            (0..DIRECTIONS).map(move |i| {
+                let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(DIRECTIONS)).sin_cos();
+                Form::one_free(vec![0.0, wind_mps * cos, wind_mps * sin], 0)
+            })
+        };
+        let still = Form::one_free(vec![0.0; 3], 0);
+        std::iter::once(still).chain(WINDS_MPS.into_iter().flat_map(towards)).collect()
     }
 
     fn equation(&self) -> &'static str {

@@ -1,0 +1,124 @@
+//! The posterior diagnosis from recordings to the report.
+
+use calibration::with_powers;
+use model::mechanism::{self, Mechanism};
+use recording::Watch;
+
+use crate::{
+    Error, Question, Series, admissible,
+    diagnose::{NEEDED_S, impossible},
+    posterior::{
+        engine::find,
+        observations::Observations,
+        report::document::{Subject, document},
+    },
+    report::Diagnosis,
+};
+
+/// Diagnoses by the posterior over sets of mechanisms.
+///
+/// # Errors
+/// As [`crate::diagnose_watched`].
+pub(crate) fn diagnose(
+    question: &Question<'_>,
+    progress: &dyn Fn(&str, f64),
+    watch: &Watch,
+) -> Result<Diagnosis, Error> {
+    let Question { robot, suspect, healthy, ruled_out, .. } = *question;
+    progress("preparing the drives", 0.0);
+    admissible::check(suspect, healthy)?;
+    let suspect = &with_powers(robot, &suspect.thinned(), watch)?;
+    let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
+    let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?;
+    let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+    if seconds < NEEDED_S {
+        return Err(Error::TooShort { seconds, needed: NEEDED_S });
+    }
+    let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
+    let is_possible = |one: &&'static dyn Mechanism| !excluded.contains(&one.name());
+    let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_possible).collect();
+    let observed = Observations::new(&series, robot);
+    let found = find(&observed, robot, &library, progress)?;
+    let drives: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
+    let subject = Subject { file: robot, suspect, observed: &observed, drives: &drives };
+    let report = document(&subject, &found)?;
+    progress("done", 1.0);
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Applied, Engine, Span, hills::drive, report::Verdict};
+
+    fn drag(left_n: f64, from_s: f64) -> Vec<Applied> {
+        let mechanism = mechanism::by_name("drivetrain_drag").unwrap();
+        vec![Applied { mechanism, values: vec![left_n, 0.0], span: Span::From { run: 0, t_s: from_s } }]
+    }
+
+    fn asked(applied: &[Applied], with_healthy: bool) -> Diagnosis {
+        let robot = model::builtin::husky_a200();
+        let (suspect, healthy) = (drive(&robot, 0.0, applied), drive(&robot, 1.0, &[]));
+        let question = Question::new(&robot, &suspect, with_healthy.then_some(&healthy));
+        let question = Question { engine: Engine::Posterior, ..question };
+        crate::diagnose(&question, &|_, _| {}).unwrap()
+    }
+
+    #[test]
+    fn a_drag_that_sets_in_is_named_with_its_side_size_and_onset_with_and_without_healthy_drives() {
+        for with_healthy in [false, true] {
+            let found = asked(&drag(8.0, 400.0), with_healthy);
+            assert_eq!(found.verdict, Verdict::Explained, "{}", found.sentence);
+            let [finding] = &found.findings[..] else { panic!("{}", found.sentence) };
+            assert_eq!(finding.mechanism, "drivetrain_drag");
+            assert!(finding.probability.unwrap() > 0.9);
+            let left = &finding.parameters[0];
+            let [low, high] = left.interval_95.unwrap();
+            assert!(low <= 8.0 && 8.0 <= high && (left.value - 8.0).abs() < 1.0, "{left:?}");
+            let scope = finding.scope.as_ref().unwrap();
+            assert!((scope.from_s.unwrap() - 400.0).abs() < 20.0, "{scope:?}");
+            assert!(found.corrected.held_out_rmse_w < found.baseline.held_out_rmse_w);
+        }
+    }
+
+    #[test]
+    fn a_healthy_robot_is_consistent_with_and_without_healthy_drives() {
+        for with_healthy in [false, true] {
+            let found = asked(&[], with_healthy);
+            assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+            let probability = found.probability.unwrap();
+            let sum = probability.nothing + probability.listed + probability.unlisted;
+            assert!((sum - 1.0).abs() < 1e-9 && probability.nothing > 0.5, "{probability:?}");
+            assert!(found.file.unwrap().bias_w.abs() < 0.5);
+        }
+    }
+
+    #[test]
+    fn what_is_ruled_out_is_never_named() {
+        let robot = model::builtin::husky_a200();
+        let suspect = drive(&robot, 0.0, &drag(8.0, 400.0));
+        let drags = [mechanism::by_name("drivetrain_drag").unwrap()];
+        let question = Question {
+            engine: Engine::Posterior,
+            ruled_out: &drags,
+            ..Question::new(&robot, &suspect, None)
+        };
+        let found = crate::diagnose(&question, &|_, _| {}).unwrap();
+        let names: Vec<&String> = found.explanations.iter().flat_map(|one| &one.mechanisms).collect();
+        assert!(!names.iter().any(|name| *name == "drivetrain_drag") && found.verdict != Verdict::Consistent);
+    }
+
+    #[test]
+    fn a_watch_that_breaks_ends_the_search() {
+        let robot = model::builtin::husky_a200();
+        let suspect = drive(&robot, 0.0, &[]);
+        let question = Question { engine: Engine::Posterior, ..Question::new(&robot, &suspect, None) };
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let watch: Watch = std::sync::Arc::new(move |_| {
+            let so_often = asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            if so_often < 40 { std::ops::ControlFlow::Continue(()) } else { std::ops::ControlFlow::Break(()) }
+        });
+        let stopped = crate::diagnose_watched(&question, &|_, _| {}, &watch);
+        assert!(matches!(stopped, Err(Error::Calibration(calibration::Error::Stopped))));
+    }
+}

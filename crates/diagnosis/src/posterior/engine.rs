@@ -1,0 +1,206 @@
+//! The engine from drives to the posterior.
+
+use model::{
+    Robot,
+    mechanism::{Mechanism, Scale},
+};
+use nalgebra::DVector;
+
+use crate::Error;
+use crate::posterior::{
+    evidence::{linear_model::LinearModel, noise::Whitening},
+    fit::{baseline::Baseline, joint::Joint},
+    hypothesis::{
+        effect::{Beside, Effect, effects},
+        unlisted::{self, Block},
+        window::Grid,
+    },
+    observations::Observations,
+    report::held_out,
+    search::{explanation::Explanation, refine::Search, screen::Screen},
+};
+
+/// Divisor of all log likelihoods: neighbouring seconds of one manoeuvre are no independent witnesses of a form (see the module's table).
+pub(crate) const TEMPERATURE: f64 = 4.0;
+/// Amplitude of the discrepancy of a file that says nothing of it: measured parameters.
+const MODEL_ERROR: f64 = 0.03;
+/// Amplitudes that healthy drives choose from.
+const AMPLITUDES: [f64; 6] = [0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
+/// Residuals beyond so many standard deviations count linearly.
+const LARGE: f64 = 3.5;
+/// By how much wider the discrepancy is in the most flexible fit, from which weights are taken.
+const FLEXIBLE: f64 = 5.0;
+
+/// What the engine found.
+pub(crate) struct Found {
+    /// Explanations, likeliest first.
+    pub(crate) explanations: Vec<Explanation>,
+    /// Amplitude of the discrepancy.
+    pub(crate) model_error: f64,
+    /// The robot before any effect.
+    pub(crate) baseline: Baseline,
+    /// Unlisted blocks.
+    pub(crate) blocks: Vec<Block>,
+    /// Held-out error of power with nothing found, and with the likeliest explanation that names anything [W].
+    pub(crate) held_out_rmse_w: [f64; 2],
+    /// Noise of power, root mean square over the test drives [W].
+    pub(crate) noise_floor_w: f64,
+    /// Sizes that would have been noticed.
+    pub(crate) detectable: Vec<(Effect, f64)>,
+}
+
+/// Finds the posterior over what is missing in the test drives.
+///
+/// # Errors
+/// A surface that the robot does not know; a watch that breaks.
+pub(crate) fn find(
+    observed: &Observations<'_>,
+    file: &Robot,
+    library: &[&'static dyn Mechanism],
+    progress: &dyn Fn(&str, f64),
+) -> Result<Found, Error> {
+    progress("fitting the robot", 0.1);
+    let baseline = Baseline::fit(observed, file)?;
+    let scale = scale(observed, &baseline, file);
+    let beside = Beside {
+        series: observed.series,
+        robot: &baseline.robot,
+        applied: &[],
+        predicted: &baseline.predicted,
+        everywhere: false,
+    };
+    progress("making effects", 0.2);
+    let effects = effects(library, &scale, &beside)?;
+    let mut common = common(library, &scale, &beside)?;
+    common.extend(healthy_shares(&effects));
+    progress("learning what the model misses", 0.3);
+    let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
+    let model_error = model_error(observed, &baseline, &plain, &common);
+    let mut others = baseline.discrepancy(observed, model_error);
+    others.extend(common);
+    let whitening = weighted(observed, (&baseline, file), &others, &plain);
+    let joint = Joint::new(observed, (&baseline, file), others, whitening, TEMPERATURE);
+    progress("screening mechanisms", 0.4);
+    let grid = Grid::new(observed);
+    let screen = Screen::new(&joint, &grid, effects);
+    let blocks = unlisted::blocks(&joint);
+    progress("refitting the leading sets", 0.5);
+    let search = Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks };
+    let explanations = search.posterior()?;
+    progress("holding stretches out", 0.9);
+    let held_out_rmse_w = held_out(&joint, &explanations);
+    let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
+    let noise_floor_w = noise_floor_w(observed, &baseline);
+    Ok(Found { explanations, model_error, held_out_rmse_w, noise_floor_w, detectable, blocks, baseline })
+}
+
+/// Held-out errors of nothing and of the likeliest explanation that names anything [W].
+fn held_out(joint: &Joint<'_>, explanations: &[Explanation]) -> [f64; 2] {
+    let fit = |is_own: &dyn Fn(&Explanation) -> bool| {
+        let found = explanations.iter().find(|one| is_own(one))?;
+        Some(held_out::rmse_w(joint, found.fitted.as_ref()?))
+    };
+    let nothing = fit(&|one| one.names.is_empty()).unwrap_or(f64::NAN);
+    let named = fit(&|one| !one.names.is_empty()).unwrap_or(nothing);
+    [nothing, named]
+}
+
+/// Noise of the power of the test drives, root mean square [W].
+fn noise_floor_w(observed: &Observations<'_>, baseline: &Baseline) -> f64 {
+    let sigma = |i: usize| baseline.noise.sigma(observed.averages()[i].channel, baseline.predicted[i]);
+    observed.power_rms(&(0..observed.test_rows).map(sigma).collect::<Vec<_>>())
+}
+
+/// Figures that prior sizes are measured in.
+fn scale<'r>(observed: &Observations<'_>, baseline: &Baseline, file: &'r Robot) -> Scale<'r> {
+    let mut sums = [0.0; 2];
+    for i in (0..observed.test_rows).filter(|i| observed.is_power(*i)) {
+        sums = [sums[0] + baseline.predicted[i].abs(), sums[1] + 1.0];
+    }
+    let channels = observed.series.channels() as f64;
+    let mean_power_w = channels * sums[0] / f64::max(sums[1], 1.0);
+    // Of what a side draws about a fifth heats its windings on level ground (Dogru & Marques 2018, Table II: k1 F² of k1 F² + k2 F u).
+    let mean_loss_w = 0.2 * mean_power_w / 2.0;
+    Scale { robot: file, mean_power_w, mean_loss_w }
+}
+
+/// With healthy drives, every mechanism's sizes that all drives share: what the file lacks of this robot.
+fn common(
+    library: &[&'static dyn Mechanism],
+    scale: &Scale<'_>,
+    beside: &Beside<'_>,
+) -> Result<Vec<Vec<f64>>, Error> {
+    if !beside.series.has_healthy() {
+        return Ok(Vec::new());
+    }
+    let everywhere = Beside { everywhere: true, ..*beside };
+    Ok(effects(library, scale, &everywhere)?.into_iter().flat_map(|effect| effect.columns).collect())
+}
+
+/// Columns of what healthy robots and good logs have of mechanisms: in all drives without healthy ones, in the test drives beside them.
+fn healthy_shares(effects: &[Effect]) -> Vec<Vec<f64>> {
+    let mut columns = Vec::new();
+    for (i, effect) in effects.iter().enumerate() {
+        let (name, share) = (effect.mechanism.name(), effect.mechanism.healthy_share());
+        if share <= 0.0 {
+            continue;
+        }
+        for (j, size) in effect.free.iter().enumerate() {
+            let is_known = |other: &Effect| {
+                other.mechanism.name() == name && other.free.iter().any(|s| s.parameter == size.parameter)
+            };
+            if !effects[..i].iter().any(is_known) {
+                columns.push(effect.columns[j].iter().map(|by| share * by).collect());
+            }
+        }
+    }
+    columns
+}
+
+/// The amplitude of the discrepancy: of healthy drives the likeliest, else that of a measured file.
+fn model_error(
+    observed: &Observations<'_>,
+    baseline: &Baseline,
+    whitening: &Whitening,
+    common: &[Vec<f64>],
+) -> f64 {
+    if !observed.series.has_healthy() {
+        return MODEL_ERROR;
+    }
+    let log = |share: &f64| {
+        let rows = observed.test_rows..observed.rows();
+        let discrepancy = baseline.discrepancy(observed, *share);
+        let columns: Vec<DVector<f64>> = baseline
+            .sensitivities
+            .iter()
+            .chain(&discrepancy)
+            .chain(common)
+            .map(|column| {
+                DVector::from_vec(whitening.apply(column)[rows.clone()].to_vec()) / TEMPERATURE.sqrt()
+            })
+            .collect();
+        let residual = DVector::from_vec(whitening.apply(&baseline.residual)[rows.clone()].to_vec());
+        let model =
+            LinearModel::new(nalgebra::DMatrix::from_columns(&columns), rows.len() as f64 / TEMPERATURE);
+        let residual = nalgebra::DMatrix::from_columns(&[residual / TEMPERATURE.sqrt()]);
+        model.reduce(&[&model.group(residual)]).evidence(&[]).log
+    };
+    let logs: Vec<f64> = AMPLITUDES.iter().map(log).collect();
+    let best = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b]));
+    best.map_or(MODEL_ERROR, |best| AMPLITUDES[best])
+}
+
+/// Whitening with weights from what the most flexible fit leaves, and with the temperature.
+fn weighted(
+    observed: &Observations<'_>,
+    (baseline, file): (&Baseline, &Robot),
+    others: &[Vec<f64>],
+    plain: &Whitening,
+) -> Whitening {
+    let wide: Vec<Vec<f64>> =
+        others.iter().map(|column| column.iter().map(|x| FLEXIBLE * x).collect()).collect();
+    let joint = Joint::new(observed, (baseline, file), wide, plain.clone(), 1.0);
+    let left = unlisted::left_by_all(&joint);
+    let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
+    plain.scaled(|i| weight(i) / TEMPERATURE.sqrt())
+}

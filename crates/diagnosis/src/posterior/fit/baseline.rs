@@ -1,0 +1,171 @@
+//! The robot at its most probable parameters before any effect, and the linear model about it.
+
+use model::Robot;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::posterior::{
+    evidence::noise::{Noise, Whitening},
+    fit::{
+        discrepancy::{self, Components},
+        parameter::{Parameter, Shown},
+    },
+    observations::{Observations, REST, YAW_RATE},
+};
+use crate::{Error, Series};
+
+/// Steps of Gauss and Newton at most.
+const STEPS: usize = 4;
+/// A fit has settled where no parameter moves by more, in prior standard deviations.
+const SETTLED: f64 = 0.02;
+/// Step of differences, in prior standard deviations.
+const DIFFERENCE: f64 = 0.2;
+/// Whitened residuals count linearly beyond so many standard deviations (Huber, Ann. Math. Stat. 35, 1964).
+const HUBER: f64 = 3.0;
+
+/// A robot fitted to drives on which nothing acts, and its sensitivities.
+pub(crate) struct Baseline {
+    /// The robot.
+    pub(crate) robot: Robot,
+    /// Its free parameters.
+    pub(crate) parameters: Vec<Parameter>,
+    /// Their values, in prior standard deviations from the file.
+    pub(crate) z: DVector<f64>,
+    /// Predictions, row by row.
+    pub(crate) predicted: Vec<f64>,
+    /// Change of predictions with each parameter, per prior standard deviation.
+    pub(crate) sensitivities: Vec<Vec<f64>>,
+    /// Noise of the rows.
+    pub(crate) noise: Noise,
+    /// Recorded less what is predicted at the file's parameters, linearised about the fit.
+    pub(crate) residual: Vec<f64>,
+}
+
+impl Baseline {
+    /// Fits a robot to its healthy drives if there are any, else to the test drives.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know; a watch that breaks.
+    pub(crate) fn fit(observed: &Observations<'_>, file: &Robot) -> Result<Self, Error> {
+        let series = observed.series;
+        let shown = Shown {
+            battery: series.channels() == 1 || observed.has_channel(REST),
+            yaw_rate: observed.has_channel(YAW_RATE),
+        };
+        let parameters = Parameter::of(file, &series.surfaces(), shown);
+        let first_fitted = if series.has_healthy() { observed.test_rows } else { 0 };
+        let mut robot = file.clone();
+        let mut z = DVector::zeros(parameters.len());
+        let mut predicted = series.predict(&robot, &[])?;
+        let mut sensitivities = sensitivities(series, file, &parameters, &z, &predicted)?;
+        for _ in 0..STEPS {
+            let errors = differences(&series.recorded, &predicted);
+            let noise = Noise::of(&errors, &predicted, &observed.places);
+            let white = noise.whitening(&predicted, &observed.places);
+            let step = step(&white, &errors, &sensitivities, &z, first_fitted);
+            z += &step;
+            parameters.iter().zip(z.iter()).for_each(|(parameter, z)| parameter.set(&mut robot, *z));
+            predicted = series.predict(&robot, &[])?;
+            sensitivities = self::sensitivities(series, file, &parameters, &z, &predicted)?;
+            if step.amax() < SETTLED {
+                break;
+            }
+        }
+        let errors = differences(&series.recorded, &predicted);
+        let noise = Noise::of(&errors, &predicted, &observed.places);
+        let mut residual = errors;
+        for (column, z) in sensitivities.iter().zip(z.iter()) {
+            residual.iter_mut().zip(column).for_each(|(r, by)| *r += z * by);
+        }
+        Ok(Baseline { robot, parameters, z, predicted, sensitivities, noise, residual })
+    }
+
+    /// Powers that discrepancies multiply.
+    pub(crate) fn components(&self, observed: &Observations<'_>) -> Components {
+        let sum = |is_own: fn(&Parameter) -> bool| {
+            let mut sum = vec![0.0; observed.rows()];
+            for (parameter, column) in
+                self.parameters.iter().zip(&self.sensitivities).filter(|(p, _)| is_own(p))
+            {
+                let per_log = 1.0 / parameter.sigma();
+                sum.iter_mut().zip(column).for_each(|(sum, by)| *sum += per_log * by);
+            }
+            sum
+        };
+        Components {
+            rolling: sum(Parameter::is_rolling),
+            skid: sum(Parameter::is_skid),
+            total: self.with_power_at_rest(observed),
+        }
+    }
+
+    /// Predictions, and where a channel is of what is left between meters, the power of both sides in its place.
+    fn with_power_at_rest(&self, observed: &Observations<'_>) -> Vec<f64> {
+        let averages = observed.averages();
+        let mut sides = std::collections::HashMap::new();
+        for (average, w) in averages.iter().zip(&self.predicted).filter(|(a, _)| a.channel < 2) {
+            *sides.entry((average.suspect, average.run, average.t_s.to_bits())).or_insert(0.0) += w;
+        }
+        let of = |(average, value): (&crate::Average, &f64)| {
+            if average.channel != REST {
+                return *value;
+            }
+            sides.get(&(average.suspect, average.run, average.t_s.to_bits())).copied().unwrap_or(0.0)
+        };
+        averages.iter().zip(&self.predicted).map(of).collect()
+    }
+
+    /// Discrepancy columns of an amplitude.
+    pub(crate) fn discrepancy(&self, observed: &Observations<'_>, share: f64) -> Vec<Vec<f64>> {
+        discrepancy::columns(observed, &self.components(observed), share)
+    }
+}
+
+/// Recorded less predicted.
+pub(crate) fn differences(recorded: &[f64], predicted: &[f64]) -> Vec<f64> {
+    recorded.iter().zip(predicted).map(|(r, p)| r - p).collect()
+}
+
+/// Change of predictions with each parameter about z, per prior standard deviation.
+fn sensitivities(
+    series: &Series,
+    file: &Robot,
+    parameters: &[Parameter],
+    z: &DVector<f64>,
+    predicted: &[f64],
+) -> Result<Vec<Vec<f64>>, Error> {
+    let column = |i: usize| {
+        let mut robot = file.clone();
+        for (j, parameter) in parameters.iter().enumerate() {
+            parameter.set(&mut robot, z[j] + if i == j { DIFFERENCE } else { 0.0 });
+        }
+        let moved = series.predict(&robot, &[])?;
+        Ok(moved.iter().zip(predicted).map(|(a, b)| (a - b) / DIFFERENCE).collect())
+    };
+    (0..parameters.len()).into_par_iter().map(column).collect()
+}
+
+/// One step towards the most probable parameters.
+fn step(
+    white: &Whitening,
+    errors: &[f64],
+    sensitivities: &[Vec<f64>],
+    z: &DVector<f64>,
+    first_fitted: usize,
+) -> DVector<f64> {
+    let errors = DVector::from_vec(white.apply(errors));
+    let weight =
+        |i: usize| if i < first_fitted { 0.0 } else { (HUBER / errors[i].abs().max(1e-9)).min(1.0).sqrt() };
+    let weights = DVector::from_fn(errors.len(), |i, _| weight(i));
+    let columns: Vec<DVector<f64>> = sensitivities
+        .iter()
+        .map(|column| DVector::from_vec(white.apply(column)).component_mul(&weights))
+        .collect();
+    if columns.is_empty() {
+        return DVector::zeros(0);
+    }
+    let columns = DMatrix::from_columns(&columns);
+    let gram = columns.tr_mul(&columns) + DMatrix::identity(z.len(), z.len());
+    let right = columns.tr_mul(&errors.component_mul(&weights)) - z;
+    gram.cholesky().map_or_else(|| DVector::zeros(z.len()), |root| root.solve(&right))
+}

@@ -1,0 +1,185 @@
+//! The report put together.
+
+use model::Robot;
+use recording::Recording;
+
+use crate::discovered::UNKNOWN;
+use crate::{
+    Applied, Error,
+    corrected::corrected,
+    judged::position_m,
+    posterior::{
+        engine::Found,
+        fit::joint::Member,
+        observations::Observations,
+        report::{
+            detectable::detectable,
+            file_error,
+            finding::{Reading, members},
+            sentence::sentence,
+            verdict::{Circumstances, is_beyond_uncertainty, probability, verdict},
+        },
+        search::explanation::{Explanation, credible},
+    },
+    report::{BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, Finding, FindingFit, Trace, Verdict},
+};
+
+/// Standard deviations from which a parameter is worth a note.
+const FAR_OFF_SIGMAS: f64 = 2.5;
+
+/// What a report is about.
+pub(crate) struct Subject<'a> {
+    /// The robot's file.
+    pub(crate) file: &'a Robot,
+    /// The test drives.
+    pub(crate) suspect: &'a Recording,
+    /// Rows.
+    pub(crate) observed: &'a Observations<'a>,
+    /// Names of the test drives.
+    pub(crate) drives: &'a [String],
+}
+
+/// The report of what was found.
+///
+/// # Errors
+/// A surface that the robot does not know; a watch that breaks.
+pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis, Error> {
+    let Subject { file, observed, .. } = *subject;
+    let filed = observed.series.predict(file, &[])?;
+    let error = file_error::of(observed, &filed);
+    let said = verdict(&found.explanations, circumstances(observed, found));
+    let findings = if said == Verdict::Consistent { Vec::new() } else { findings(subject, found) };
+    let first = found.explanations.iter().find(|one| !one.names.is_empty() || one.unlisted);
+    let first = first.filter(|_| !findings.is_empty());
+    let applied: Vec<Applied> = first.map_or(&[][..], members).iter().map(Member::applied).collect();
+    let (corrected_robot, mut notes) =
+        corrected(&fitted_robot(file, found, first), &applied, &observed.series.surfaces(), subject.drives);
+    notes.extend(assumed(observed, found));
+    let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
+    let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
+    let (detectable, not_judged) = detectable(&information, &named);
+    let [nothing_w, named_w] = found.held_out_rmse_w;
+    let held_out_rmse_w = if findings.is_empty() { nothing_w } else { named_w };
+    let trace = trace(subject, found, &filed, first);
+    Ok(Diagnosis {
+        verdict: said,
+        sentence: sentence(said, &error, found.noise_floor_w, &findings),
+        file: Some(error),
+        probability: Some(probability(&found.explanations)),
+        explanations: credible(&found.explanations).iter().map(figures).collect(),
+        baseline: baseline(observed, &filed, found),
+        places: Vec::new(),
+        findings,
+        corrected: CorrectedFit { rmse_w: rmse_w(&trace), held_out_rmse_w },
+        next_drive: None,
+        explainable: [0.0; 2],
+        detectable,
+        not_judged,
+        notes,
+        corrected_robot,
+        trace,
+    })
+}
+
+/// What was assumed of the file, and which of its numbers would have to be far off with nothing missing.
+fn assumed(observed: &Observations<'_>, found: &Found) -> Vec<String> {
+    let source =
+        if observed.series.has_healthy() { "by the healthy drives" } else { "as for measured constants" };
+    let share = 100.0 * found.model_error;
+    let mut notes = vec![format!("the model is taken to miss {share:.0} % of power smoothly, {source}")];
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
+    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| &fitted.z);
+    for (parameter, z) in found.baseline.parameters.iter().zip(z.into_iter().flat_map(|z| z.iter())) {
+        if z.abs() > FAR_OFF_SIGMAS {
+            let name = &parameter.name;
+            notes.push(format!(
+                "with nothing missing, `{name}` would lie {z:+.1} standard deviations from its file"
+            ));
+        }
+    }
+    notes
+}
+
+fn circumstances(observed: &Observations<'_>, found: &Found) -> Circumstances {
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
+    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| fitted.z.as_slice().to_vec());
+    Circumstances {
+        held_out_ratio: found.held_out_rmse_w[0] / found.noise_floor_w.max(1e-9),
+        file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&z.unwrap_or_default()),
+    }
+}
+
+fn findings(subject: &Subject<'_>, found: &Found) -> Vec<Finding> {
+    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out_rmse_w;
+    let reading = Reading {
+        series: subject.observed.series,
+        drives: subject.drives,
+        explanations: &found.explanations,
+        fit: FindingFit { held_out_rmse_before_w, held_out_rmse_after_w },
+        blocks: &found.blocks,
+    };
+    reading.findings()
+}
+
+/// The robot at its parameters beside an explanation, or beside nothing.
+fn fitted_robot(file: &Robot, found: &Found, explanation: Option<&Explanation>) -> Robot {
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty());
+    let fitted = explanation.or(nothing).and_then(|one| one.fitted.as_ref());
+    let mut robot = file.clone();
+    if let Some(fitted) = fitted {
+        let parameters = found.baseline.parameters.iter().zip(fitted.z.iter());
+        parameters.for_each(|(parameter, z)| parameter.set(&mut robot, *z));
+    }
+    robot
+}
+
+fn figures(explanation: &Explanation) -> ExplanationFigures {
+    let mut mechanisms: Vec<String> = explanation.names.iter().map(|name| (*name).to_owned()).collect();
+    if explanation.unlisted {
+        mechanisms.push(UNKNOWN.to_owned());
+    }
+    ExplanationFigures { mechanisms, probability: explanation.probability }
+}
+
+fn baseline(observed: &Observations<'_>, filed: &[f64], found: &Found) -> BaselineFit {
+    let errors: Vec<f64> = (0..observed.test_rows).map(|i| observed.series.recorded[i] - filed[i]).collect();
+    let power: Vec<f64> = (0..errors.len()).filter(|i| observed.is_power(*i)).map(|i| errors[i]).collect();
+    BaselineFit {
+        rmse_w: observed.power_rms(&errors),
+        bias_w: power.iter().sum::<f64>() / power.len().max(1) as f64,
+        held_out_rmse_w: found.held_out_rmse_w[0],
+        noise_floor_w: found.noise_floor_w,
+    }
+}
+
+/// Power of the test drives over time, all channels of power together.
+fn trace(subject: &Subject<'_>, found: &Found, filed: &[f64], first: Option<&Explanation>) -> Trace {
+    let Subject { suspect, observed, drives, .. } = *subject;
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty());
+    let change = first.or(nothing).and_then(|one| one.fitted.as_ref()).map(|fitted| &fitted.change);
+    let z: Vec<f64> = found.baseline.z.iter().copied().collect();
+    // Fitted predictions are told about those at the file's parameters.
+    let corrected = |i: usize| {
+        let moved: f64 = found.baseline.sensitivities.iter().zip(&z).map(|(column, z)| column[i] * z).sum();
+        found.baseline.predicted[i] - moved + change.map_or(0.0, |change| change[i])
+    };
+    let count = (0..observed.test_rows).filter(|i| observed.averages()[*i].channel == 0).count();
+    let all = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..count).map(|i| (0..observed.series.channels()).map(|c| value(i + c * count)).sum()).collect()
+    };
+    let averages = &observed.averages()[..count];
+    Trace {
+        run: averages.iter().map(|a| a.run).collect(),
+        t_s: averages.iter().map(|a| a.t_s).collect(),
+        recorded_w: all(&|i| observed.series.recorded[i]),
+        filed_w: all(&|i| filed[i]),
+        corrected_w: all(&corrected),
+        runs: drives.to_vec(),
+        position_m: averages.iter().map(|a| position_m(suspect, a.run, a.t_s)).collect(),
+    }
+}
+
+fn rmse_w(trace: &Trace) -> f64 {
+    let squares = trace.recorded_w.iter().zip(&trace.corrected_w).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / trace.recorded_w.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,47 @@
+//! The sentence of a report: the file's error first, then what was found.
+
+use crate::{
+    discovered::UNKNOWN,
+    report::{FileError, Finding, Verdict},
+    words::{capital, listed, plain},
+};
+
+/// The sentence.
+pub(crate) fn sentence(verdict: Verdict, file: &FileError, noise_w: f64, findings: &[Finding]) -> String {
+    let way = if file.bias_w >= 0.0 { "low" } else { "high" };
+    let about = format!(
+        "The robot file predicts these drives {:.1} W too {way} on average ({:.1} W RMSE; noise {noise_w:.1} W).",
+        file.bias_w.abs(),
+        file.rmse_w
+    );
+    format!("{about} {}", found(verdict, findings))
+}
+
+fn found(verdict: Verdict, findings: &[Finding]) -> String {
+    let named: Vec<&Finding> = findings.iter().filter(|finding| finding.mechanism != UNKNOWN).collect();
+    let statements: Vec<String> = named.iter().map(|finding| stated(finding)).collect();
+    match verdict {
+        Verdict::Consistent => "Within its uncertainty nothing is missing.".to_owned(),
+        Verdict::Explained | Verdict::Ambiguous => capital(&format!("{}.", statements.join("; "))),
+        Verdict::Unexplained if findings.iter().any(|finding| finding.mechanism == UNKNOWN) => {
+            let all: Vec<String> = findings.iter().map(|finding| finding.statement.clone()).collect();
+            capital(&format!("{}.", all.join("; and ")))
+        }
+        Verdict::Unexplained if statements.is_empty() => {
+            "That is more than its uncertainty and noise allow, and no mechanism of the list explains it."
+                .to_owned()
+        }
+        Verdict::Unexplained => {
+            format!("Several explanations are about as likely, among them: {}.", statements.join("; "))
+        }
+    }
+}
+
+fn stated(finding: &Finding) -> String {
+    if finding.indistinguishable_from.is_empty() {
+        return finding.statement.clone();
+    }
+    let others: Vec<String> =
+        finding.indistinguishable_from.iter().map(|name| plain(name).to_owned()).collect();
+    format!("{} (or {})", finding.statement, listed(&others))
+}

@@ -1,0 +1,5 @@
+//! The posterior over sets of mechanisms: screening on linear columns, refits in full, explanations.
+
+pub(crate) mod explanation;
+pub(crate) mod refine;
+pub(crate) mod screen;
