@@ -59,7 +59,11 @@ pub(crate) fn find(
     library: &[&'static dyn Mechanism],
     progress: &dyn Fn(&str, f64),
 ) -> Result<Found, Error> {
-    progress("fitting the robot", 0.1);
+    let step = |name: &str, share: f64| {
+        progress(name, share);
+        observed.go_on()
+    };
+    step("fitting the robot", 0.1)?;
     let baseline = Baseline::fit(observed, file)?;
     let scale = scale(observed, &baseline, file);
     let beside = Beside {
@@ -69,25 +73,25 @@ pub(crate) fn find(
         predicted: &baseline.predicted,
         everywhere: false,
     };
-    progress("making effects", 0.2);
+    step("making effects", 0.2)?;
     let effects = effects(library, &scale, &beside)?;
     let mut common = common(library, &scale, &beside)?;
     common.extend(healthy_shares(&effects));
-    progress("learning what the model misses", 0.3);
+    step("learning what the model misses", 0.3)?;
     let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
     let model_error = model_error(observed, &baseline, &plain, &common);
     let mut others = baseline.discrepancy(observed, model_error);
     others.extend(common);
     let whitening = weighted(observed, (&baseline, file), &others, &plain);
     let joint = Joint::new(observed, (&baseline, file), others, whitening, TEMPERATURE);
-    progress("screening mechanisms", 0.4);
+    step("screening mechanisms", 0.4)?;
     let grid = Grid::new(observed);
     let screen = Screen::new(&joint, &grid, effects);
     let blocks = unlisted::blocks(&joint);
-    progress("refitting the leading sets", 0.5);
+    step("refitting the leading sets", 0.5)?;
     let search = Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks };
     let explanations = search.posterior()?;
-    progress("holding stretches out", 0.9);
+    step("holding stretches out", 0.9)?;
     let held_out_rmse_w = held_out(&joint, &explanations);
     let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
     let noise_floor_w = noise_floor_w(observed, &baseline);

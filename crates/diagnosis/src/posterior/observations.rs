@@ -3,7 +3,7 @@
 use model::Robot;
 
 use crate::posterior::evidence::noise::Place;
-use crate::{Average, Series};
+use crate::{Average, Error, Series};
 
 /// Channels beyond those of the sides' or the battery's power; see [`Average::channel`].
 pub(crate) const REST: usize = 2;
@@ -51,6 +51,14 @@ impl<'a> Observations<'a> {
             driven_s,
             begins_s,
         }
+    }
+
+    /// Asks the watch of the drives whether to go on.
+    ///
+    /// # Errors
+    /// [`calibration::Error::Stopped`] where it breaks.
+    pub(crate) fn go_on(&self) -> Result<(), Error> {
+        self.series.go_on()
     }
 
     /// Averages.

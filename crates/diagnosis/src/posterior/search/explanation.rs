@@ -1,6 +1,10 @@
 //! Explanations: sets of mechanisms, with or without something unlisted, and their posterior probabilities.
 
-use crate::posterior::{evidence::linear_model::log_sum, fit::joint::Fitted, observations::Observations};
+use crate::posterior::{
+    evidence::linear_model::log_sum,
+    fit::joint::Fitted,
+    observations::{GROUND_SPEED, Observations, REST, YAW_RATE},
+};
 
 /// Prior probability of each mechanism, and of something outside the list: of four drives that somebody has diagnosed about one lacks one
 /// of twenty mechanisms.
@@ -55,14 +59,12 @@ pub(crate) fn change_share(
     let rest = {
         // What the battery gives beyond both sides is a share of what both take.
         let power = observed.power_rms(predicted).max(1e-9);
-        let rows: Vec<usize> = (0..observed.test_rows)
-            .filter(|i| observed.averages()[*i].channel == crate::posterior::observations::REST)
-            .collect();
+        let rows: Vec<usize> =
+            (0..observed.test_rows).filter(|i| observed.averages()[*i].channel == REST).collect();
         let sum: f64 = rows.iter().map(|i| (change[*i] - other[*i]).powi(2)).sum();
         (sum / rows.len().max(1) as f64).sqrt() / power / 2.0
     };
-    let motion = of_channel(crate::posterior::observations::GROUND_SPEED)
-        .max(of_channel(crate::posterior::observations::YAW_RATE));
+    let motion = of_channel(GROUND_SPEED).max(of_channel(YAW_RATE));
     share(&|i| observed.is_power(i)).max(rest).max(motion)
 }
 

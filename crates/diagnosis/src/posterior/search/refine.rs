@@ -13,6 +13,7 @@ use crate::posterior::{
     observations::Observations,
     search::{
         explanation::{Explanation, change_share, counted, log_prior, normalise},
+        fits::{Fits, Kept, Names},
         screen::{Scored, Screen},
     },
 };
@@ -34,8 +35,6 @@ const BEHIND: f64 = 12.0;
 /// Moves of a window's edge that are tried, as shares of a piece of the grid.
 const EDGE_MOVES: [f64; 4] = [-0.5, 0.5, -0.25, 0.25];
 
-type Names = Vec<&'static str>;
-
 /// A search over sets of mechanisms.
 pub(crate) struct Search<'a> {
     /// The model.
@@ -54,42 +53,33 @@ impl Search<'_> {
     /// # Errors
     /// A surface that the robot does not know; a watch that breaks.
     pub(crate) fn posterior(&self) -> Result<Vec<Explanation>, Error> {
-        let nothing = self.joint.fit(&[])?;
-        let singles = self.screen.singles();
-        let by_name = self.screen.by_names(&singles);
-        let mut fits = BTreeMap::<Names, (Fitted, f64)>::new();
-        fits.insert(Vec::new(), (nothing, 0.0));
-        let mut keep = |names: Names, fitted: Fitted, spread: f64| {
-            let is_better =
-                fits.get(&names).is_none_or(|(known, more)| fitted.log + spread > known.log + more);
-            if is_better {
-                fits.insert(names, (fitted, spread));
-            }
-        };
-        let mut refit = |ranked: &[(Names, Scored, f64)], most: usize| -> Result<(), Error> {
-            let best = ranked.first().map_or(0.0, |one| one.1.log);
-            let hopeful: Vec<_> =
-                ranked.iter().take(most).filter(|one| one.1.log > best - HOPELESS).collect();
-            let fits: Vec<Fitted> = hopeful
-                .par_iter()
-                .map(|(_, scored, _)| self.joint.fit(&self.screen.members(&scored.set)))
-                .collect::<Result<_, Error>>()?;
-            let best = fits.iter().map(|fitted| fitted.log).fold(f64::NEG_INFINITY, f64::max);
-            for ((names, _, spread), mut fitted) in hopeful.into_iter().zip(fits) {
-                if fitted.log > best - BEHIND {
-                    fitted = self.with_moved_edges(fitted)?;
-                }
-                keep(names.clone(), fitted, *spread);
-            }
-            Ok(())
-        };
-        refit(&by_name, SINGLES)?;
-        let pairs = self.grown(by_name.iter().take(PAIR_SEEDS).map(|one| &one.1), &singles);
-        refit(&pairs, PAIRS)?;
-        let triples = self.grown(pairs.iter().take(TRIPLE_SEEDS).map(|one| &one.1), &singles);
-        refit(&triples, TRIPLES)?;
-        self.with_subsets(&mut fits)?;
+        let mut fits = Fits::default();
+        fits.keep(Vec::new(), Kept { fitted: self.joint.fit(&[])?, spread: 0.0 });
+        let all = self.screen.singles();
+        let singles = self.screen.by_names(&all);
+        self.refit(&singles, SINGLES, &mut fits)?;
+        let pairs = self.grown(singles.iter().take(PAIR_SEEDS).map(|one| &one.1), &all)?;
+        self.refit(&pairs, PAIRS, &mut fits)?;
+        let triples = self.grown(pairs.iter().take(TRIPLE_SEEDS).map(|one| &one.1), &all)?;
+        self.refit(&triples, TRIPLES, &mut fits)?;
+        self.fit_subsets(&mut fits)?;
         Ok(self.explanations(&fits))
+    }
+
+    /// Fits the first of some ranked sets in full.
+    fn refit(&self, ranked: &[(Names, Scored, f64)], most: usize, fits: &mut Fits) -> Result<(), Error> {
+        let best = ranked.first().map_or(0.0, |one| one.1.log);
+        let hopeful: Vec<_> = ranked.iter().take(most).filter(|one| one.1.log > best - HOPELESS).collect();
+        let fit = |one: &&(Names, Scored, f64)| self.joint.fit(&self.screen.members(&one.1.set));
+        let fitted: Vec<Fitted> = hopeful.par_iter().map(fit).collect::<Result<_, Error>>()?;
+        let best = fitted.iter().map(|fitted| fitted.log).fold(f64::NEG_INFINITY, f64::max);
+        for ((names, _, spread), mut fitted) in hopeful.into_iter().zip(fitted) {
+            if fitted.log > best - BEHIND {
+                fitted = self.with_moved_edges(fitted)?;
+            }
+            fits.keep(names.clone(), Kept { fitted, spread: *spread });
+        }
+        Ok(())
     }
 
     /// Sets with one candidate more, by names.
@@ -97,38 +87,31 @@ impl Search<'_> {
         &self,
         sets: impl Iterator<Item = &'s Scored>,
         singles: &[Scored],
-    ) -> Vec<(Names, Scored, f64)> {
+    ) -> Result<Vec<(Names, Scored, f64)>, Error> {
         let mut seen = std::collections::BTreeSet::new();
-        let all = sets.flat_map(|scored| self.screen.grown(&scored.set, singles));
+        let mut all = Vec::new();
+        for scored in sets {
+            self.joint.observed.go_on()?;
+            all.extend(self.screen.grown(&scored.set, singles));
+        }
         let is_new = |one: &Scored| {
             let mut set = one.set.clone();
             set.sort_unstable();
             seen.insert(set)
         };
-        let all: Vec<Scored> = all.collect::<Vec<_>>().into_iter().filter(is_new).collect();
-        self.screen.by_names(&all)
+        let all: Vec<Scored> = all.into_iter().filter(is_new).collect();
+        Ok(self.screen.by_names(&all))
     }
 
-    /// Fits the subsets of every fitted set from where it ended, until nothing is better.
-    fn with_subsets(&self, fits: &mut BTreeMap<Names, (Fitted, f64)>) -> Result<(), Error> {
-        let best =
-            fits.values().map(|(fitted, spread)| fitted.log + spread).fold(f64::NEG_INFINITY, f64::max);
+    /// Fits the subsets of every leading set from where it ended: a good pair must not beat a single that is stuck elsewhere.
+    fn fit_subsets(&self, fits: &mut Fits) -> Result<(), Error> {
         for size in [3, 2] {
-            let leads = |(fitted, spread): &&(Fitted, f64)| {
-                fitted.members.len() == size && fitted.log + spread > best - BEHIND
-            };
-            let sets: Vec<(Fitted, f64)> = fits.values().filter(leads).cloned().collect();
-            for (fitted, spread) in sets {
+            for Kept { fitted, spread } in fits.leading(size, BEHIND) {
                 for without in 0..size {
                     let mut members = fitted.members.clone();
                     members.remove(without);
-                    let names = names(&members);
                     let part = self.joint.fit(&members)?;
-                    let is_better =
-                        fits.get(&names).is_none_or(|(known, more)| part.log + spread > known.log + more);
-                    if is_better {
-                        fits.insert(names, (part, spread));
-                    }
+                    fits.keep(names(&members), Kept { fitted: part, spread });
                 }
             }
         }
@@ -157,26 +140,25 @@ impl Search<'_> {
     }
 
     /// All explanations with their posterior.
-    fn explanations(&self, fits: &BTreeMap<Names, (Fitted, f64)>) -> Vec<Explanation> {
+    fn explanations(&self, fits: &Fits) -> Vec<Explanation> {
         let counted = self.counted(fits);
-        let mut all: Vec<Explanation> = counted
-            .iter()
-            .map(|(names, log)| Explanation {
-                names: names.clone(),
-                unlisted: false,
-                log: log + log_prior(names.len(), false),
-                fitted: fits.get(names).map(|one| one.0.clone()),
-                block: None,
-                probability: 0.0,
-            })
-            .collect();
+        let listed = |(names, log): (&Names, &f64)| Explanation {
+            names: names.clone(),
+            unlisted: false,
+            log: log + log_prior(names.len(), false),
+            fitted: fits.get(names).map(|kept| kept.fitted.clone()),
+            block: None,
+            probability: 0.0,
+        };
+        let mut all: Vec<Explanation> = counted.iter().map(listed).collect();
         let mut singles: Vec<(&Names, f64)> =
             counted.iter().filter(|(names, _)| names.len() <= 1).map(|(names, log)| (names, *log)).collect();
         singles.sort_by(|a, b| b.1.total_cmp(&a.1));
         let tried = singles.iter().filter(|one| one.0.len() == 1).take(UNLISTED_BESIDE);
         for (names, log) in tried.chain(singles.iter().filter(|one| one.0.is_empty())) {
-            let Some((fitted, _)) = fits.get(*names) else { continue };
-            all.push(self.unlisted_beside(names, *log, fitted));
+            if let Some(kept) = fits.get(names) {
+                all.push(self.unlisted_beside(names, *log, &kept.fitted));
+            }
         }
         normalise(&mut all);
         all
@@ -199,30 +181,31 @@ impl Search<'_> {
     }
 
     /// Log evidence of every set with the gain of each member counted by what it changes.
-    fn counted(&self, fits: &BTreeMap<Names, (Fitted, f64)>) -> BTreeMap<Names, f64> {
+    fn counted(&self, fits: &Fits) -> BTreeMap<Names, f64> {
         let mut logs = BTreeMap::<Names, f64>::new();
-        let predicted = &self.joint.baseline.predicted;
-        let mut sets: Vec<&Names> = fits.keys().collect();
-        sets.sort_by_key(|names| names.len());
-        for names in sets {
-            let (fitted, spread) = &fits[names];
-            let own = fitted.log + spread;
+        for names in fits.by_size() {
+            let Some(kept) = fits.get(names) else { continue };
             let without = |which: usize| {
                 let mut rest = names.clone();
                 rest.remove(which);
-                let (part, more) = fits.get(&rest)?;
-                // A lone effect that the robot's parameters imitate is an effect all the same.
-                let share = match rest.is_empty() {
-                    true => change_share(self.joint.observed, predicted, &fitted.effect, &part.effect),
-                    false => change_share(self.joint.observed, predicted, &fitted.change, &part.change),
-                };
-                let gain = own - (part.log + more);
-                logs.get(&rest).map(|log| log + counted(gain, share))
+                let part = fits.get(&rest)?;
+                let gain = kept.log() - part.log();
+                logs.get(&rest).map(|log| log + counted(gain, self.share(&kept.fitted, &part.fitted)))
             };
             let least = (0..names.len()).filter_map(without).fold(f64::INFINITY, f64::min);
-            logs.insert(names.clone(), if names.is_empty() { own } else { least.min(own) });
+            logs.insert(names.clone(), if names.is_empty() { kept.log() } else { least.min(kept.log()) });
         }
         logs
+    }
+
+    /// Share of power by which a fit changes the prediction of one of its subsets.
+    fn share(&self, whole: &Fitted, part: &Fitted) -> f64 {
+        let (observed, predicted) = (self.joint.observed, &self.joint.baseline.predicted);
+        // A lone effect that the robot's parameters imitate is an effect all the same.
+        if part.members.is_empty() {
+            return change_share(observed, predicted, &whole.effect, &part.effect);
+        }
+        change_share(observed, predicted, &whole.change, &part.change)
     }
 }
 
