@@ -18,7 +18,7 @@ const MOST_CHARACTERS: usize = 300;
 /// How to diagnose.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// The program; it is called with `diagnose --robot .. --recording .. --reference .. --out ..`.
+    /// The program; it is called with `diagnose --robot .. --recording .. --reference .. --out .. --engine ..`.
     pub program: PathBuf,
     /// Threads that each process may use.
     pub threads: usize,

@@ -170,3 +170,45 @@ fn extent_m(observed: &Observations<'_>) -> Option<[[f64; 2]; 2]> {
     });
     extent_m.iter().all(|[low, high]| high - low > SHORTEST_M).then_some(extent_m)
 }
+
+#[cfg(test)]
+mod tests {
+    use model::mechanism;
+
+    use super::*;
+
+    fn grid(extent_m: Option<[[f64; 2]; 2]>) -> Grid {
+        let borders_s = (0..=PIECES).map(|i| 20.0 * i as f64).collect();
+        Grid { borders_s, begins_s: vec![0.0, 130.0, 300.0], extent_m }
+    }
+
+    #[test]
+    fn windows_share_one_prior_half_of_which_is_for_all_the_time() {
+        for extent_m in [None, Some([[0.0, 8.0], [0.0, 8.0]])] {
+            for mechanism in mechanism::ALL {
+                let windows = grid(extent_m).windows(mechanism);
+                let total: f64 = windows.iter().map(|(_, log)| log.exp()).sum();
+                assert!((total - 1.0).abs() < 1e-9, "{} {total}", mechanism.name());
+                let expected = if mechanism.is_windowed() { 0.5 } else { 1.0 };
+                assert!((windows[0].1.exp() - expected).abs() < 1e-9 && windows[0].0 == Window::Always);
+            }
+        }
+    }
+
+    #[test]
+    fn a_span_acts_where_its_window_holds() {
+        let grid = grid(Some([[0.0, 8.0], [0.0, 8.0]]));
+        let soil = mechanism::by_name("soft_soil").unwrap();
+        for (window, _) in grid.windows(soil) {
+            let span = grid.span(window);
+            for driven_s in [5.0, 95.0, 131.0, 175.0, 290.0] {
+                for at_m in [[1.0, 1.0], [5.0, 7.5], [-3.0, 20.0]] {
+                    let run = usize::from(driven_s > 130.0);
+                    let t_s = driven_s - grid.begins_s[run];
+                    let holds = window.holds(grid.piece(driven_s), grid.part(at_m));
+                    assert_eq!(span.acts(run, t_s, at_m), holds, "{window:?} {driven_s} s {at_m:?}");
+                }
+            }
+        }
+    }
+}

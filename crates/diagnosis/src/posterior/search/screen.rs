@@ -241,3 +241,53 @@ impl<'a> Screen<'a> {
         ranked
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use model::mechanism::{self, Scale};
+
+    use super::*;
+    use crate::{
+        Series,
+        hills::drive,
+        posterior::{
+            fit::baseline::Baseline,
+            hypothesis::effect::{Beside, effects},
+            observations::Observations,
+        },
+    };
+
+    #[test]
+    fn products_by_piece_give_the_evidence_of_masked_columns() {
+        let robot = model::builtin::husky_a200();
+        let series = Series::new(&robot, &drive(&robot, 0.0, &[]), None).unwrap();
+        let observed = Observations::new(&series, &robot);
+        let baseline = Baseline::fit(&observed, &robot).unwrap();
+        let white = baseline.noise.whitening(&baseline.predicted, &observed.places);
+        let others = baseline.discrepancy(&observed, 0.03);
+        let joint = Joint::new(&observed, (&baseline, &robot), others, white, 4.0);
+        let library = ["payload", "surface_change"].map(|name| mechanism::by_name(name).unwrap());
+        let scale = Scale { robot: &robot, mean_power_w: 90.0, mean_loss_w: 9.0 };
+        let (series, robot) = (&series, &baseline.robot);
+        let beside =
+            Beside { series, robot, applied: &[], predicted: &baseline.predicted, everywhere: false };
+        let effects = effects(&library, &scale, &beside).unwrap();
+        let grid = Grid::new(&observed);
+        let screen = Screen::new(&joint, &grid, effects.clone());
+        for window in [Window::Always, Window::From(6), Window::Until(9)] {
+            let is_it = |c: &Candidate| c.effect == 1 && c.window == window;
+            let place = screen.candidates.iter().position(is_it).unwrap();
+            let masked = |column: &DVector<f64>| {
+                let holds = |i: usize| window.holds(grid.piece(observed.driven_s[i]), None);
+                DVector::from_fn(column.len(), |i, _| if holds(i) { column[i] } else { 0.0 })
+            };
+            let columns: Vec<_> = joint.whiten(&effects[1].columns).iter().map(masked).collect();
+            let group = joint.model.group(DMatrix::from_columns(&columns));
+            let residual = joint.model.group(DMatrix::from_columns(std::slice::from_ref(&joint.residual)));
+            let whole = joint.model.reduce(&[&group, &residual]).evidence(&[]).log;
+            let expected = whole + screen.candidates[place].log_prior;
+            let found = screen.score(&[place]).log;
+            assert!((found - expected).abs() < 1e-6 * expected.abs(), "{window:?}: {found} for {expected}");
+        }
+    }
+}
