@@ -49,7 +49,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let error = file_error::of(observed, &filed);
     let said = verdict(&found.explanations, circumstances(observed, found));
     let findings = if said == Verdict::Consistent { Vec::new() } else { findings(subject, found) };
-    let first = found.explanations.iter().find(|one| !one.names.is_empty() || one.unlisted);
+    let first = found.explanations.first().filter(|one| !one.names.is_empty() || one.unlisted);
     let first = first.filter(|_| !findings.is_empty());
     let applied: Vec<Applied> = first.map_or(&[][..], members).iter().map(Member::applied).collect();
     let (corrected_robot, mut notes) =

@@ -33,10 +33,10 @@ pub(crate) struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// Findings of the likeliest explanation that names anything.
+    /// Findings of the likeliest explanation; none where that is nothing.
     pub(crate) fn findings(&self) -> Vec<Finding> {
         let is_something = |one: &&Explanation| !one.names.is_empty() || one.unlisted;
-        let Some(first) = self.explanations.iter().find(is_something) else { return Vec::new() };
+        let Some(first) = self.explanations.first().filter(is_something) else { return Vec::new() };
         let members =
             first.fitted.iter().flat_map(|fitted| (0..fitted.members.len()).map(move |m| (fitted, m)));
         let mut findings: Vec<Finding> = members.map(|(fitted, m)| self.finding(first, fitted, m)).collect();
