@@ -314,7 +314,7 @@ fn every_command_refuses_times_in_another_unit_before_it_computes_anything() {
                 "{command:?}: {said}"
             );
             assert!(
-                said.contains("s apart: `t_s` must be in seconds") && said.contains(unit),
+                said.contains(" s apart") && said.contains("`t_s` must be in seconds") && said.contains(unit),
                 "{command:?}: {said}"
             );
         }

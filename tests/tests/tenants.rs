@@ -315,7 +315,7 @@ fn robots_are_removed_by_id_and_built_in_ones_are_not() {
     assert_eq!(server.get("/v1/robots").json()["stored"], json!([]));
     let problem = server.delete("/v1/robots/husky-a200").problem(403, "built-in");
     assert!(problem["detail"].as_str().unwrap().contains("husky-a200"), "{problem}");
-    for name in [String::new(), "n".repeat(3_000_000), "a\nb".to_owned()] {
+    for name in [String::new(), "n".repeat(300_000), "a\nb".to_owned()] {
         let problem = server.post_json("/v1/robots", &robot(&name)).problem(400, "invalid-robot");
         assert_eq!(problem["errors"][0]["pointer"], "/name");
         assert!(problem.to_string().len() < 1000, "the name is not told again");
