@@ -23,7 +23,7 @@ pub(crate) struct JsonBody<T>(pub(crate) T);
 pub(crate) struct ShortJsonBody<T>(pub(crate) T);
 
 /// Most bytes of a [`ShortJsonBody`]: a robot, a map of columns and a lifting test take some tens of kilobytes.
-const SHORT_BODY_BYTES: usize = 1 << 20;
+const SHORT_BODY_BYTES: usize = 4 << 20;
 
 impl<T: DeserializeOwned + Send + 'static> FromRequest<Engine> for JsonBody<T> {
     type Rejection = Problem;

@@ -203,10 +203,11 @@ function Proof() {
   const search = state.comparison.value?.energy.search;
   if (!search) return null;
   const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
-  const text = search.optimal || search.bound === null
-    ? "Proven: no path of the planner's lattice takes less."
-    : state.isDragging.value
-      ? `${near}, which follows.`
-      : `${near}.`;
+  const text =
+    search.optimal || search.bound === null
+      ? "Proven: no path of the planner's lattice takes less."
+      : state.isDragging.value
+        ? `${near}, which follows.`
+        : `${near}.`;
   return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
 }
