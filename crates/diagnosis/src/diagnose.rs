@@ -53,7 +53,7 @@ pub enum Engine {
     /// Candidates one after the other, each through a row of tests.
     #[default]
     Gates,
-    /// The posterior over sets of mechanisms by one Gaussian model; see [`crate::posterior`].
+    /// The posterior over sets of mechanisms by one Gaussian model.
     Posterior,
 }
 

@@ -58,7 +58,7 @@ pub struct Found {
     /// States expanded.
     pub expanded: u64,
     /// Proven: no path of the lattice takes less of the objective when driven, in its own unit, `besides` included. The
-    /// rounding of the table is taken off, see [`CostTable::proven`].
+    /// rounding of the table is taken off.
     pub least: f64,
     /// Proven: its cost is at most so many times the least, rounding included; `None` where the least may be nothing or a
     /// gain, which no factor bounds.

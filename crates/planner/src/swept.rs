@@ -4,7 +4,9 @@
 //! On a straight the outline sweeps a rectangle. On an arc and on the spot the piece is cut into parts, and of each part the
 //! bounding rectangle is taken in the frame of the outline half way:
 //!
-//!     |x| ≤ l + (R + w) sin h,   −w − l sin h ≤ y ≤ w + l sin h + R (1 − cos h)
+//! ```text
+//! |x| ≤ l + (R + w) sin h,   −w − l sin h ≤ y ≤ w + l sin h + R (1 − cos h)
+//! ```
 //!
 //! l, w half length and width of the outline [m]; R radius of the path, 0 on the spot [m]; h half the part's turn, at most π/2
 //! [rad]; x forwards, y towards the centre of turning. A point (a, b) of the outline that turns by φ about (0, R) comes to
