@@ -5,7 +5,11 @@
 
 use std::fmt;
 
-use crate::{Error, Recording, Run, error::Position, gap::median_step_s};
+use crate::{
+    Error, Recording, Run,
+    error::Position,
+    gap::{median, median_step_s},
+};
 
 /// Longest median step of a run \[s\]: robots start, turn and stop within seconds, so that longer steps show none of it. Slow fleet
 /// loggers write every 1 to 5 s; the same rows in milliseconds are above 10 from 100 Hz down.
@@ -125,8 +129,8 @@ pub(crate) struct TimeSource<'a> {
     pub(crate) column: &'a str,
     /// Unit that a map gives, if any does.
     pub(crate) map_unit: Option<&'a str>,
-    /// Rows of the file that a row stands for at most.
-    pub(crate) rows_per_row: u32,
+    /// Rows of the file that a row stands for.
+    pub(crate) weight: &'a dyn Fn(usize) -> u32,
     /// Place of a row in the file.
     pub(crate) position: &'a dyn Fn(usize) -> Position,
 }
@@ -139,7 +143,7 @@ impl Recording {
     /// The row, the run and the evidence.
     pub fn check_time(&self) -> Result<(), Error> {
         let position = |row: usize| Position::Row(row as u64 + 1);
-        check_time(self, &TimeSource { column: "t_s", map_unit: None, rows_per_row: 1, position: &position })
+        check_time(self, &TimeSource { column: "t_s", map_unit: None, weight: &|_| 1, position: &position })
     }
 }
 
@@ -156,7 +160,8 @@ pub(crate) fn check_time(recording: &Recording, source: &TimeSource<'_>) -> Resu
         check_order(recording, run, source)?;
     }
     for run in &recording.runs {
-        match implausible_steps(times(recording, run), source.rows_per_row) {
+        let weight = |row: usize| (source.weight)(run.rows.start + row);
+        match implausible_steps(times(recording, run), weight) {
             // Whoever names seconds in a map knows that rows are so far apart.
             Some(TimeEvidence::LongSteps { .. }) if source.map_unit == Some(SECONDS) => {}
             Some(evidence) => return Err(not_seconds(run, run.rows.start, evidence, source)),
@@ -189,14 +194,18 @@ fn check_order(recording: &Recording, run: &Run, source: &TimeSource<'_>) -> Res
     })
 }
 
-/// Evidence that the steps of a run are not those of a log in seconds; `None` for fewer than [`LEAST_STEPS`]. Rows that stand for
-/// several of the file count as many.
-pub(crate) fn implausible_steps(t_s: &[f64], rows_per_row: u32) -> Option<TimeEvidence> {
+/// Evidence that the steps of a run are not those of a log in seconds; `None` for fewer than [`LEAST_STEPS`]. `weight` is the
+/// number of rows of the file that a row is the mean of.
+///
+/// From the middle of such a row to the middle of the next are (w₁ + w₂) / 2 steps of the file.
+pub(crate) fn implausible_steps(t_s: &[f64], weight: impl Fn(usize) -> u32) -> Option<TimeEvidence> {
     if t_s.len() <= LEAST_STEPS {
         return None;
     }
-    let median_s = median_step_s(t_s)? / f64::from(rows_per_row);
-    let mean_s = (t_s.last()? - t_s.first()?) / (t_s.len() - 1) as f64;
+    let steps_between = |row: usize| 0.5 * (f64::from(weight(row)) + f64::from(weight(row + 1)));
+    let in_file = |(row, pair): (usize, &[f64])| (pair[1] - pair[0]) / steps_between(row);
+    let median_s = median(t_s.windows(2).enumerate().map(in_file).collect())?;
+    let mean_s = (t_s.last()? - t_s.first()?) / (0..t_s.len() - 1).map(steps_between).sum::<f64>();
     if median_s > LONGEST_STEP_S * (1.0 + STEP_ROUNDING) {
         Some(TimeEvidence::LongSteps { step_s: median_s })
     } else if mean_s < SHORTEST_STEP_S * (1.0 - STEP_ROUNDING) {
@@ -310,6 +319,24 @@ mod tests {
         let runs = runs.map(|(rows, name)| Run::new(name.into(), rows, &t_s, None)).into();
         let message = Recording { t_s, runs, ..Recording::default() }.check_time().unwrap_err().to_string();
         assert!(message.starts_with("row 51, run `second`: rows are 100 s apart"), "{message}");
+    }
+
+    #[test]
+    fn rows_that_are_means_are_judged_by_the_steps_of_their_file() {
+        let joined = |step_s: f64, weight: u32| {
+            implausible_steps(&even(0.0, step_s * f64::from(weight), 600), |_| weight)
+        };
+        let days_at_ten_hertz = 0.1 / 86_400.0;
+        assert!(matches!(joined(days_at_ten_hertz, 128), Some(TimeEvidence::ShortSteps { .. })));
+        assert!(matches!(joined(20.0, 128), Some(TimeEvidence::LongSteps { step_s }) if step_s == 20.0));
+        assert_eq!(joined(0.1, 128), None);
+        // Of rows 1 s apart, the first 300 were joined 4:1: the step between a mean and a row is 2.5 s.
+        let means = (0..300).map(|row| 1.5 + 4.0 * f64::from(row));
+        let t_s: Vec<f64> = means.chain((0..300).map(|row| 1200.0 + f64::from(row))).collect();
+        let weight = |row: usize| if row < 300 { 4 } else { 1 };
+        let slow: Vec<f64> = t_s.iter().map(|t| 11.0 * t).collect();
+        assert_eq!(implausible_steps(&t_s, weight), None);
+        assert_eq!(implausible_steps(&slow, weight), Some(TimeEvidence::LongSteps { step_s: 11.0 }));
     }
 
     proptest! {

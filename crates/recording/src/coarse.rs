@@ -31,7 +31,8 @@ pub(crate) struct Groups {
 }
 
 impl Coarse {
-    fn weight(&self, row: usize) -> u32 {
+    /// Rows of the file that a row stands for.
+    pub(crate) fn weight(&self, row: usize) -> u32 {
         self.weight.get(row).copied().unwrap_or(1)
     }
 
@@ -39,11 +40,6 @@ impl Coarse {
     pub(crate) fn first_in_file(&self, row: usize) -> usize {
         let before = self.weight.iter().take(row).map(|weight| *weight as usize);
         before.sum::<usize>() + row.saturating_sub(self.weight.len())
-    }
-
-    /// Rows of the file that a row stands for at most.
-    pub(crate) fn rows_per_row(&self) -> u32 {
-        self.per_row
     }
 
     /// Whether any row stands for several.

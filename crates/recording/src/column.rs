@@ -203,11 +203,12 @@ impl Plan {
             recording.surface = Some(Labels::constant(surface, recording.rows()));
         }
         let order = divide(&mut recording, runs, name, &mut report, &looks)?;
+        let in_table = |row: usize| order.as_ref().map_or(row, |order| order[row]);
         let source = TimeSource {
             column: &time_column,
             map_unit: map_unit.as_deref(),
-            rows_per_row: coarse.rows_per_row(),
-            position: &|row| position(order.as_ref().map_or(row, |order| order[row])),
+            weight: &|row| coarse.weight(in_table(row)),
+            position: &|row| position(in_table(row)),
         };
         check_time(&recording, &source)?;
         report.ignored = self.ignored;

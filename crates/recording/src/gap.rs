@@ -11,13 +11,17 @@ pub(crate) fn threshold_s(t_s: &[f64]) -> f64 {
 
 /// The median step of increasing times \[s\].
 pub(crate) fn median_step_s(t_s: &[f64]) -> Option<f64> {
-    let mut steps_s: Vec<f64> = t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps_s.is_empty() {
+    median(t_s.windows(2).map(|pair| pair[1] - pair[0]).collect())
+}
+
+/// The median; the upper one of an even number, `None` of no values.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    if values.is_empty() {
         return None;
     }
-    let middle = steps_s.len() / 2;
-    let (_, median_s, _) = steps_s.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(*median_s)
+    let middle = values.len() / 2;
+    let (_, median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(*median)
 }
 
 #[cfg(test)]

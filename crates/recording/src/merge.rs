@@ -174,7 +174,7 @@ impl Topics<'_> {
 /// Refuses stamps whose steps are not those of a drive log.
 fn check_steps(base: &Named) -> Result<(), Error> {
     let origin_ns = base.stream.t_ns.first().copied().unwrap_or(0);
-    match implausible_steps(&base.stream.t_s(origin_ns), base.stream.messages_each) {
+    match implausible_steps(&base.stream.t_s(origin_ns), |at| base.stream.weight(at)) {
         None => Ok(()),
         Some(evidence) => {
             let other = if base.stream.clock == BY_HEADER { "log" } else { "header" };

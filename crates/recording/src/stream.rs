@@ -39,8 +39,8 @@ pub(crate) struct Stream {
     pub(crate) t_ns: Vec<i64>,
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) clock: &'static str,
-    /// Messages of the file that each stands for at most.
-    pub(crate) messages_each: u32,
+    /// Messages of the file that each stands for; empty where each stands for itself.
+    weight: Vec<u32>,
 }
 
 impl Samples {
@@ -111,8 +111,9 @@ impl Samples {
             if by_header { (self.stamp_ns, BY_HEADER) } else { (self.log_ns.clone(), "log time") };
         let other = if by_header { "log" } else { "header" };
         refuse_jumps(topic, &t_ns, &self.log_ns, other, &self.coarse)?;
-        let messages_each = self.coarse.rows_per_row();
-        let mut stream = Stream { t_ns, columns: self.columns, clock, messages_each };
+        let messages = if self.coarse.is_joined() { t_ns.len() } else { 0 };
+        let weight = (0..messages).map(|at| self.coarse.weight(at)).collect();
+        let mut stream = Stream { t_ns, columns: self.columns, clock, weight };
         let mut repair = |count: usize, what: &str| {
             if count > 0 {
                 repairs.push(Repair { place: format!("topic {topic}"), what: format!("{count} {what}") });
@@ -188,6 +189,14 @@ impl Stream {
         for column in &mut self.columns {
             *column = order.iter().map(|&at| column[at]).collect();
         }
+        if !self.weight.is_empty() {
+            self.weight = order.iter().map(|&at| self.weight[at]).collect();
+        }
+    }
+
+    /// Messages of the file that one stands for.
+    pub(crate) fn weight(&self, at: usize) -> u32 {
+        self.weight.get(at).copied().unwrap_or(1)
     }
 
     /// Times in seconds after an origin.
