@@ -83,13 +83,6 @@ impl Chain {
         self.on_level_surface(self.surfaces().saturating_sub(1))
     }
 
-    /// The least of a cost over all surfaces, on level ground and whatever the limits.
-    pub(crate) fn least_on_level_ground(&self, cost: impl Fn(&Edge) -> f64) -> f64 {
-        (0..self.surfaces())
-            .map(|surface| cost(&self.on_level_surface(surface)))
-            .fold(f64::INFINITY, f64::min)
-    }
-
     /// Number of surfaces that it is prepared for.
     fn surfaces(&self) -> usize {
         self.steps.first().map_or(0, |(_, manoeuvres)| manoeuvres.len())

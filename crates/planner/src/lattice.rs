@@ -17,7 +17,7 @@ use crate::{
     preparation::Preparation,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
     spans::{Span, first_blocked, shifted},
-    step::Limits,
+    step::{Limits, Step},
     swept::Rectangle,
 };
 
@@ -187,6 +187,11 @@ impl Lattice {
     /// κ m g: the potential per metre of height [J/m].
     pub(crate) fn lift_j_per_m(&self) -> f64 {
         self.kappa() * self.robot.lifted_mass_kg() * STANDARD_GRAVITY_MPS2
+    }
+
+    /// Energy of a step without lifting, E − κ m g Δz [J].
+    pub(crate) fn unlifted_j(&self, step: &Step) -> f64 {
+        step.energy_j() - step.rise_m * self.lift_j_per_m()
     }
 
     /// Whether the robot can stand in a pose, and if not, why.

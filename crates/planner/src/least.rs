@@ -6,9 +6,9 @@ use crate::{
     cost::SINGLE_PRECISION,
     edge::Chain,
     lattice::Lattice,
-    objective::{Objective, Weights},
+    objective::Weights,
     primitive::Motion,
-    step::PreparedStep,
+    step::{Limits, PreparedStep, Step},
 };
 
 /// Least cost per metre between the ends of a motion, over all motions, surfaces and slopes that limits allow, in the
@@ -37,22 +37,41 @@ pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
     (least * (1.0 - SINGLE_PRECISION)).max(0.0)
 }
 
-/// Least cost of any motion that takes something of the objective, in the objective's unit: turns on the spot have no length.
+/// Least cost of any motion that takes something of a sum, in its unit: turns on the spot have no length.
 ///
 /// Side slopes count up to 84°, where a tenth of the normal force is left. The forms of power without a floor on friction
-/// are taken to keep a sixteenth of what each motion costs on level ground of its smoothest surface.
-pub(crate) fn least_cost_of_motion(lattice: &Lattice, objective: Objective, weights: &Weights) -> f64 {
+/// are driven on level ground and on the steepest that the limits allow; slopes between are taken to cost at least half of
+/// the least of these. What a wind may push for nothing costs nothing.
+pub(crate) fn least_cost_of_motion(
+    lattice: &Lattice,
+    weights: &Weights,
+    takes_some: impl Fn(i32, i32) -> bool,
+) -> f64 {
     const LEAST_NORMAL: f64 = 0.1;
-    const SHARE_OF_LEVEL: f64 = 1.0 / 16.0;
+    const SHARE_BETWEEN_SLOPES: f64 = 0.5;
     let normal = lattice.robot.limits.max_roll_rad.cos().max(LEAST_NORMAL);
     let of = |chain: &Chain| match friction_floor(lattice) {
         Some(floor) => least_cost(lattice, weights, chain, floor * normal),
-        None => SHARE_OF_LEVEL * chain.least_on_level_ground(|edge| weights.of(edge)),
+        None => SHARE_BETWEEN_SLOPES * least_cost_on_slopes(lattice, weights, chain),
     };
-    let takes_some =
-        |motion: &Motion| objective != Objective::Distance || (motion.columns, motion.rows) != (0, 0);
-    let chains = chains(lattice).filter(|(_, motion)| takes_some(motion));
-    chains.map(|(chain, _)| of(chain)).fold(f64::INFINITY, f64::min)
+    let chains = chains(lattice).filter(|(_, motion)| takes_some(motion.columns, motion.rows));
+    chains.map(|(chain, _)| of(chain).max(0.0)).fold(f64::INFINITY, f64::min)
+}
+
+/// Least cost of a chain's steps on level ground and the steepest slopes, whatever the surface.
+fn least_cost_on_slopes(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
+    let steps = chain.steps_with_manoeuvres();
+    let of_step = |(step, manoeuvres, reverse): (&PreparedStep, &[Manoeuvre], bool)| {
+        let on = |(surface, manoeuvre)| {
+            let driven = move |slope| driven_on(step, (manoeuvre, surface, reverse), slope);
+            slopes(lattice).filter_map(driven).map(|done| {
+                let unlifted_j = lattice.unlifted_j(&done);
+                weights.per_j * unlifted_j + weights.per_m * done.length_m + weights.per_s * done.duration_s
+            })
+        };
+        manoeuvres.iter().enumerate().flat_map(on).fold(f64::INFINITY, f64::min)
+    };
+    steps.map(of_step).sum()
 }
 
 /// All variants of all motions.
@@ -96,4 +115,24 @@ fn least_of_step(
         weights.per_j * least_w * duration_s + weights.per_m * step.horizontal_m + weights.per_s * duration_s
     };
     manoeuvres.iter().map(on).fold(f64::INFINITY, f64::min)
+}
+
+/// Level ground and the steepest that limits allow, up, down and to either side.
+pub(crate) fn slopes(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
+    /// Beyond, a robot's weight is all on the slope and costs hardly change [m/m].
+    const STEEPEST: f64 = 100.0;
+    let steepest = |grade: f64| [-1.0, 0.0, 1.0].map(|sign| sign * grade.abs().min(STEEPEST));
+    let (pitches, rolls) = (steepest(lattice.limits.pitch_grade), steepest(lattice.limits.roll_grade));
+    pitches.into_iter().flat_map(move |pitch| rolls.map(|roll| [pitch, roll]))
+}
+
+/// A step driven on a slope that is given along its travel and across it [m/m].
+pub(crate) fn driven_on(
+    step: &PreparedStep,
+    (manoeuvre, surface, reverse): (&Manoeuvre, usize, bool),
+    [grade, side_grade]: [f64; 2],
+) -> Option<Step> {
+    let (cos, sin) = step.travel;
+    let slope = (grade * cos - side_grade * sin, grade * sin + side_grade * cos);
+    step.drive(manoeuvre, grade * step.horizontal_m, slope, reverse, &Limits::NONE, surface)
 }

@@ -3,9 +3,8 @@
 use crate::{
     cost::{LARGEST_ROUNDING, SINGLE_PRECISION},
     lattice::Lattice,
-    least::{chains, least_cost_of_motion},
+    least::{chains, driven_on, least_cost_of_motion, slopes},
     objective::{Objective, Weights},
-    step::Limits,
 };
 
 /// A lower bound of an objective's amount along any path, from a lower bound of its cost in the table.
@@ -49,17 +48,35 @@ impl Proof {
         if objective == Objective::Energy && weights.per_s > 0.0 {
             return Proof::NONE;
         }
-        let least_units = least_cost_of_motion(lattice, objective, weights) * units;
-        let allowed = 1.0 + cancellation(lattice, weights) * units;
-        let share = (1.0 - LARGEST_ROUNDING) * (1.0 - SINGLE_PRECISION) - allowed / least_units;
-        let tie = Tie::new(lattice, objective, weights, allowed / units);
-        Proof { per_unit: share.max(0.0) / units / (1.0 + tie.share), off: tie.once / (1.0 + tie.share) }
+        let takes_some = |columns, rows| objective != Objective::Distance || (columns, rows) != (0, 0);
+        let sum = Self::of_sum(lattice, weights, units, takes_some);
+        let tie = Tie::new(lattice, objective, weights, allowed(lattice, weights, units) / units);
+        Proof { per_unit: sum.per_unit / (1.0 + tie.share), off: tie.once / (1.0 + tie.share) }
+    }
+
+    /// Of a sum of energy without lifting, length and time, over paths of motions that take some of it.
+    pub(crate) fn of_sum(
+        lattice: &Lattice,
+        weights: &Weights,
+        units: f64,
+        takes_some: impl Fn(i32, i32) -> bool,
+    ) -> Self {
+        let least_units = least_cost_of_motion(lattice, weights, takes_some) * units;
+        let lost = allowed(lattice, weights, units) / least_units;
+        let share = (1.0 - LARGEST_ROUNDING) * (1.0 - SINGLE_PRECISION) - lost;
+        // A motion that may take nothing proves nothing.
+        Proof { per_unit: share.max(0.0) / units, off: 0.0 }
     }
 
     /// The least amount of a path that costs at least so many units.
     pub(crate) fn least(&self, units: f64) -> f64 {
         (units * self.per_unit - self.off).max(0.0)
     }
+}
+
+/// Most units of a motion's cost that are not its own: the whole one that it is rounded up by, and those of cancellation.
+fn allowed(lattice: &Lattice, weights: &Weights, units: f64) -> f64 {
+    1.0 + cancellation(lattice, weights) * units
 }
 
 /// Largest error of a motion's cost that comes from taking lifting work off energy in single precision, in the objective's
@@ -95,14 +112,11 @@ impl Tie {
         for (chain, _) in chains(lattice) {
             for (step, manoeuvres, reverse) in chain.steps_with_manoeuvres() {
                 for (surface, manoeuvre) in manoeuvres.iter().enumerate() {
-                    for [grade, side_grade] in slopes(lattice) {
-                        let (cos, sin) = step.travel;
-                        let slope = (grade * cos - side_grade * sin, grade * sin + side_grade * cos);
-                        let rise_m = grade * step.horizontal_m;
-                        let driven = step.drive(manoeuvre, rise_m, slope, reverse, &Limits::NONE, surface);
-                        let Some(done) = driven else { continue };
-                        let lifted_j = done.rise_m * lattice.lift_j_per_m();
-                        let energy = weights.per_j * (done.energy_j() - lifted_j).max(0.0);
+                    for slope in slopes(lattice) {
+                        let Some(done) = driven_on(step, (manoeuvre, surface, reverse), slope) else {
+                            continue;
+                        };
+                        let energy = weights.per_j * lattice.unlifted_j(&done).max(0.0);
                         let amount = weights.per_m * done.length_m + weights.per_s * done.duration_s;
                         if amount > 0.0 {
                             share = share.max(energy / amount);
@@ -116,13 +130,4 @@ impl Tie {
         let once = Self::TURNS_IN_PLACE * turn;
         Tie { share: share + once / lattice.terrain.grid.cell_size_m, once }
     }
-}
-
-/// Level ground and the steepest that limits allow, up, down and to either side.
-fn slopes(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
-    /// Beyond, a robot's weight is all on the slope and costs hardly change [m/m].
-    const STEEPEST: f64 = 100.0;
-    let steepest = |grade: f64| [-1.0, 0.0, 1.0].map(|sign| sign * grade.abs().min(STEEPEST));
-    let (pitches, rolls) = (steepest(lattice.limits.pitch_grade), steepest(lattice.limits.roll_grade));
-    pitches.into_iter().flat_map(move |pitch| rolls.map(|roll| [pitch, roll]))
 }

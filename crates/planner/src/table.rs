@@ -68,6 +68,8 @@ impl CostTable {
     pub fn weighted(lattice: &Arc<Lattice>, weights: Weights) -> Self {
         let units = units_per_cost(lattice, &weights);
         let cell_size_m = lattice.terrain.grid.cell_size_m;
+        let takes_some =
+            |columns, rows| weights.per_j > 0.0 || weights.per_s > 0.0 || (columns, rows) != (0, 0);
         CostTable {
             lattice: Arc::clone(lattice),
             weights,
@@ -79,7 +81,7 @@ impl CostTable {
             turns: [const { Mutex::new(()) }; TURNS],
             displacements: Displacement::of(lattice),
             least_units_per_cell: (least_cost_per_m(lattice, &weights) * units * cell_size_m) as f32,
-            proof: Proof::NONE,
+            proof: Proof::of_sum(lattice, &weights, units, takes_some),
         }
     }
 
@@ -151,8 +153,8 @@ impl CostTable {
         self.units
     }
 
-    /// The least amount of its objective, in its unit, that a path of at least so many units takes when it is driven; for
-    /// energy without lifting. 0 for a table of weights.
+    /// The least amount of its objective, or of its sum of weights, that a path of at least so many units takes when it is
+    /// driven; for energy without lifting.
     pub(crate) fn proven(&self, units: f64) -> f64 {
         self.proof.least(units)
     }

@@ -33,10 +33,14 @@ pub(crate) struct Way {
     /// Motions in order, each with its variant.
     pub(crate) motions: Vec<(usize, usize)>,
     pub(crate) takes: Amounts,
+    /// Proven: no path has less of the sum that this one has least of, whatever the table rounds.
+    pub(crate) least: f64,
 }
 
 /// By how much the planner's tables may be above what a motion takes, as a share: their rounding, and single precision.
-pub(crate) const TABLE_ROUNDING: f64 = CostTable::LARGEST_ROUNDING + 1e-4;
+pub(crate) const TABLE_ROUNDING: f64 = CostTable::LARGEST_ROUNDING + SHARE_OF_SINGLE_PRECISION;
+/// What sums in single precision may be off by, as a share.
+const SHARE_OF_SINGLE_PRECISION: f64 = 1e-4;
 
 /// Share of a path's length that its time may weigh, to choose between equals.
 const TIE_SHARE: f64 = 1e-6;
@@ -111,7 +115,9 @@ impl<'q> Bounded<'q> {
         let mut workspace = Workspace::of(self.planner.lattice());
         match search(&table, &field, &question, &mut workspace) {
             Outcome::Found(found) if !found.late => {
-                Ok(self.along(&sum, found.start, &found.motions).ok_or(late)?)
+                // The tie of length is a small part of the share that single precision may take.
+                let least = found.least * (1.0 - SHARE_OF_SINGLE_PRECISION);
+                Ok(self.along(&sum, (found.start, least), &found.motions).ok_or(late)?)
             }
             Outcome::Unreachable => self.no_path(),
             _ => Err(late),
@@ -131,7 +137,7 @@ impl<'q> Bounded<'q> {
     }
 
     /// Motions from a start, each in the variant with least of a weighted sum.
-    fn along(&self, sum: &Amounts, start: State, motions: &[usize]) -> Option<Way> {
+    fn along(&self, sum: &Amounts, (start, least): (State, f64), motions: &[usize]) -> Option<Way> {
         let lattice = self.planner.lattice();
         let (mut state, mut takes, mut ways) = (start, Amounts::default(), Vec::new());
         let mut pacer = self.query.patience.pacer();
@@ -147,7 +153,7 @@ impl<'q> Bounded<'q> {
         }
         let (_, after_j) = self.goals.iter().find(|(goal, _)| *goal == state)?;
         takes[place(Objective::Energy)] += after_j;
-        Some(Way { start, motions: ways, takes })
+        Some(Way { start, motions: ways, takes, least })
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use planner::{Objective, Plan, Planner, Query, SearchReport, refine};
 
 use crate::{
-    bounded::{Bounded, TABLE_ROUNDING, Way},
+    bounded::{Bounded, Way},
     corridor::Corridor,
     error::{Contradiction, Error},
     labels::{Labelled, Labelling},
@@ -51,7 +51,7 @@ pub(crate) fn best_within(
     let ends = planner.ends(query, objective)?;
     let bounded = Bounded::new(planner, (query, &ends), objective, limits);
     let best = bounded.least_of(bounded.objective)?;
-    let least = best.takes[bounded.objective] * (1.0 - TABLE_ROUNDING);
+    let least = best.least;
     let hint = multiplier(&bounded, best)?;
     let known =
         hint.within.as_ref().map_or(bounded.most[bounded.objective], |way| way.takes[bounded.objective]);
@@ -81,7 +81,7 @@ pub(crate) fn best_within(
         report.least = report.least.max(least);
         if let Some((start, motions)) = report.path.take() {
             let (start, takes) = (corridor.states[start as usize], [0.0; 3]);
-            found = Some(Way { start, motions, takes });
+            found = Some(Way { start, motions, takes, least });
         }
     }
     let Some(way) = found else {
@@ -130,14 +130,14 @@ struct Hint {
 /// The multiplier of the limit that the objective's best path exceeds most, once each limit is known to be possible.
 fn multiplier(bounded: &Bounded<'_>, best: Way) -> Result<Hint, Error> {
     let objective = bounded.objective;
-    let beyond = |amount: f64, at: usize| amount * (1.0 - TABLE_ROUNDING) > bounded.most[at];
-    if beyond(best.takes[objective], objective) {
+    let beyond = |way: &Way, at: usize| way.least > bounded.most[at];
+    if beyond(&best, objective) {
         return Err(contradiction(bounded));
     }
     let mut ways = Vec::new();
     for at in bounded.limited() {
         let way = bounded.least_of(at)?;
-        if beyond(way.takes[at], at) {
+        if beyond(&way, at) {
             return Err(contradiction(bounded));
         }
         ways.push((at, way));
