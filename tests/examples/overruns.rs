@@ -1,8 +1,9 @@
 //! Drives each endpoint into each of its long steps and prints how much later than its deadline it answers.
 //!
-//! `cargo run --release -p joulepath-tests --example overruns -- [--side 1400] [--most-ms 50]`, after `cargo build --release`.
-//! Every question is asked with each of [`DEADLINES_S`], so that the deadline falls into one step after another. A job has no
-//! deadline of its own: it is cancelled, and late is the time until its turn is free.
+//! `cargo run --release -p joulepath-tests --example overruns -- [--side 1400] [--most-ms 50] [--most-held-ms 1000] [--only compare]`,
+//! after `cargo build --release`. Every question is asked with each of [`DEADLINES_S`], so that the deadline falls into one step
+//! after another. A job has no deadline of its own: it is cancelled, and late is the time until its turn is free, which may
+//! take a second: the service looks at the store for the wish twice a second.
 
 #![allow(clippy::unwrap_used)]
 
@@ -25,32 +26,38 @@ const LONGEST_WAIT_S: f64 = 60.0;
 
 fn main() {
     let side = option("--side", 1400.0) as usize;
-    let most_ms = option("--most-ms", 50.0);
+    let only = word_after("--only").unwrap_or_default();
     let trial = Trial::new(side);
-    let mut worst_ms = f64::MIN;
-    println!("{:<44} {:>12}  answers", "question", "latest");
-    for question in trial.questions() {
-        let (late_ms, statuses) = trial.ask(&question);
-        worst_ms = worst_ms.max(late_ms);
-        println!("{:<44} {late_ms:>+9.1} ms  {statuses:?}", question.name);
+    let (mut late_ms, mut held_ms) = (0.0_f64, 0.0_f64);
+    println!("{:<44} {:>12}  after each deadline [ms]: status", "question", "latest");
+    for question in trial.questions().iter().filter(|question| question.name.contains(&only)) {
+        let answers = trial.ask(question);
+        let latest_ms = answers.iter().map(|(late_ms, _)| *late_ms).fold(f64::MIN, f64::max);
+        late_ms = late_ms.max(latest_ms);
+        let each: Vec<String> =
+            answers.iter().map(|(late_ms, status)| format!("{late_ms:+.0}: {status}")).collect();
+        println!("{:<44} {latest_ms:>+9.1} ms  {}", question.name, each.join(", "));
     }
-    for job in trial.jobs() {
-        let late_ms = trial.cancel(&job);
-        worst_ms = worst_ms.max(late_ms);
-        println!("{:<44} {late_ms:>+9.1} ms  cancelled", job.name);
+    for job in trial.jobs().iter().filter(|job| job.name.contains(&only)) {
+        let latest_ms = trial.cancel(job);
+        held_ms = held_ms.max(latest_ms);
+        println!("{:<44} {latest_ms:>+9.1} ms  cancelled", job.name);
     }
-    println!("worst              {worst_ms:+.1} ms");
-    assert!(
-        worst_ms < most_ms,
-        "an answer came {worst_ms:.1} ms after its deadline, {most_ms} ms are allowed"
-    );
+    println!("latest answer {late_ms:+.1} ms after its deadline, longest cancelled job {held_ms:.1} ms");
+    for (worst_ms, name, most_ms) in [(late_ms, "--most-ms", 50.0), (held_ms, "--most-held-ms", 1000.0)] {
+        let most_ms = option(name, most_ms);
+        assert!(worst_ms < most_ms, "{worst_ms:.1} ms, {most_ms} ms are allowed ({name})");
+    }
 }
 
 /// The value of a flag.
 fn option(name: &str, default: f64) -> f64 {
-    let words: Vec<String> = std::env::args().collect();
-    let at = words.iter().position(|word| word == name);
-    at.and_then(|at| words.get(at + 1)?.parse().ok()).unwrap_or(default)
+    word_after(name).and_then(|word| word.parse().ok()).unwrap_or(default)
+}
+
+/// The word after a flag.
+fn word_after(name: &str) -> Option<String> {
+    std::env::args().skip_while(|word| word != name).nth(1)
 }
 
 /// A request without its deadline.
@@ -124,10 +131,9 @@ impl Trial {
         Trial { server, hills, maze, recordings: recordings.to_vec() }
     }
 
-    /// Asks with every deadline; how late the latest answer was [ms], and what all were.
-    fn ask(&self, question: &Question) -> (f64, Vec<u16>) {
-        let mut late_ms = f64::MIN;
-        let mut statuses = Vec::new();
+    /// Asks with every deadline; how late each answer was [ms], and its status.
+    fn ask(&self, question: &Question) -> Vec<(f64, u16)> {
+        let mut answers = Vec::new();
         for (count, timeout_s) in DEADLINES_S.into_iter().enumerate() {
             let mut body = question.body.clone();
             body["timeout_s"] = json!(timeout_s);
@@ -137,10 +143,9 @@ impl Trial {
             }
             let began = Instant::now();
             let answer = self.server.post_json(question.path, &body);
-            late_ms = late_ms.max(1e3 * (began.elapsed().as_secs_f64() - timeout_s));
-            statuses.push(answer.status);
+            answers.push((1e3 * (began.elapsed().as_secs_f64() - timeout_s), answer.status));
         }
-        (late_ms, statuses)
+        answers
     }
 
     fn questions(&self) -> Vec<Question> {

@@ -5,7 +5,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use planner::Patience;
@@ -57,6 +57,10 @@ struct Shared {
     job_turns: Arc<Semaphore>,
     stuck_threads: StuckThreads,
 }
+
+/// What a computation may take to notice that its time is over, put down its best path and let go of its tables; who asked
+/// does not wait longer for it: half of the 50 ms by which no answer may be late.
+const LAST_STEPS: Duration = Duration::from_millis(25);
 
 /// Cancels a computation when its request is dropped, as it is when the client leaves.
 struct Asked(Arc<AtomicBool>);
@@ -185,11 +189,13 @@ impl Engine {
         &self,
         work: impl FnOnce(&Patience) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
-        self.compute_within(0, None, work).await
+        let turn = self.0.admission.soon().await?;
+        let deadline = Instant::now() + self.limits().plan_time;
+        self.work_in(turn, move |left| work(&Patience::until_or(deadline, Arc::clone(left)))).await
     }
 
     /// The same within memory that the computation has to itself, and up to the request's own deadline, which counts while it
-    /// waits for its turn.
+    /// waits for its turn. The answer comes by then, whatever the computation still has to put away.
     pub(crate) async fn compute_within<T: Send + 'static>(
         &self,
         bytes: u64,
@@ -198,12 +204,17 @@ impl Engine {
     ) -> Result<T, Problem> {
         let turn = self.0.admission.before(own_deadline).await?;
         let reserved = self.admission().reserve(bytes)?;
-        let deadline = Instant::now() + self.limits().plan_time;
-        self.work_in(turn, move |left| {
+        let longest = Instant::now() + self.limits().plan_time;
+        let deadline = own_deadline.map_or(longest, |own| own.min(longest));
+        let answer = self.work_in(turn, move |left| {
             let _reserved = reserved;
-            work(&Patience::until_or(deadline, Arc::clone(left)).no_later_than(own_deadline))
+            work(&Patience::until_or(deadline, Arc::clone(left)))
+        });
+        tokio::time::timeout_at((deadline + LAST_STEPS).into(), answer).await.unwrap_or_else(|_| {
+            let detail =
+                "the time was over before there was a path to show: allow more time, or a looser bound";
+            Err(Problem::new(ProblemType::Timeout, detail))
         })
-        .await
     }
 
     /// Reads a document: at once where it is short, otherwise on a thread of its own.

@@ -131,6 +131,8 @@ fn panicked() -> Response {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use axum::{
         body::{Body, to_bytes},
         http::Request,
@@ -186,6 +188,21 @@ mod tests {
             assert_eq!(outcome.unwrap_err().kind, ProblemType::Internal);
         }
         assert_eq!(engine.metrics().panics.get(), 3);
+        assert!(engine.compute(|_| Ok(())).await.is_ok());
+    }
+    #[tokio::test]
+    async fn an_answer_comes_at_its_deadline_and_the_turn_when_the_computation_has_ended() {
+        let engine = engine(Limits { parallel_plans: 1, ..Limits::default() }).await;
+        let (end, ended) = std::sync::mpsc::channel::<()>();
+        let stays = move |_: &planner::Patience| {
+            ended.recv().ok();
+            Ok(())
+        };
+        let refused = engine.compute_within(0, Some(Instant::now()), stays).await.unwrap_err();
+        assert_eq!(refused.kind, ProblemType::Timeout);
+        let next = engine.compute_within(0, Some(Instant::now()), |_| Ok(())).await.unwrap_err();
+        assert!(next.detail.contains("before its turn"), "{}", next.detail);
+        end.send(()).unwrap();
         assert!(engine.compute(|_| Ok(())).await.is_ok());
     }
 }
