@@ -4,13 +4,20 @@ use recording::{Channel, Recording, Run};
 
 use crate::Error;
 
-/// Refuses times that cannot be those of a drive log, and drives that are among the healthy ones.
+/// Rows may be so far apart \[s\]: speeds change within a second or two, and averages are of one.
+const MOST_STEP_S: f64 = 5.0;
+
+/// Refuses times that cannot be those of a drive log, rows that are too far apart, and drives that are among the healthy ones.
 ///
 /// # Errors
 /// See above.
 pub(crate) fn check(suspect: &Recording, healthy: Option<&Recording>) -> Result<(), Error> {
     for recording in [Some(suspect), healthy].into_iter().flatten() {
         recording.check_time()?;
+        let step_s = median_step_s(recording);
+        if step_s > MOST_STEP_S {
+            return Err(Error::TooCoarse { step_s, most_s: MOST_STEP_S });
+        }
     }
     let Some(healthy) = healthy else { return Ok(()) };
     for run in &suspect.runs {
@@ -19,6 +26,14 @@ pub(crate) fn check(suspect: &Recording, healthy: Option<&Recording>) -> Result<
         }
     }
     Ok(())
+}
+
+/// Time between neighbouring rows of a run in the median; 0 of nothing \[s\].
+fn median_step_s(recording: &Recording) -> f64 {
+    let times = recording.runs.iter().filter_map(|run| recording.t_s.get(run.rows.clone()));
+    let mut steps: Vec<f64> = times.flat_map(|t_s| t_s.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Whether two runs hold the same values to the last digit: noise never comes twice.
@@ -58,6 +73,13 @@ mod tests {
         assert!(said.contains("100 s apart") && said.contains("seconds"), "{said}");
         assert!(check(&drive(1.0, 1.0), Some(&drive(100.0, 2.0))).is_err());
         assert!(check(&drive(1.0, 1.0), None).is_ok());
+    }
+
+    #[test]
+    fn rows_that_show_no_change_of_speed_are_refused() {
+        let said = check(&drive(1.0, 1.0), Some(&drive(8.0, 2.0))).unwrap_err().to_string();
+        assert!(said.contains("8.0 s apart") && said.contains("5"), "{said}");
+        assert!(check(&drive(5.0, 1.0), None).is_ok());
     }
 
     #[test]

@@ -27,6 +27,14 @@ pub enum Error {
     /// Times that cannot be those of a drive log.
     #[error(transparent)]
     Recording(#[from] recording::Error),
+    /// Rows that are too far apart to tell how fast speeds change.
+    #[error("rows are {step_s:.1} s apart, and a diagnosis needs {most_s} s at most: record more often")]
+    TooCoarse {
+        /// Time between rows in the median \[s\].
+        step_s: f64,
+        /// Most that is accepted \[s\].
+        most_s: f64,
+    },
     /// Drives under suspicion that are among the healthy ones.
     #[error(
         "drive `{drive}` of the recording is among the healthy ones too, as `{healthy}`: held against itself it lacks nothing; name other drives as healthy"
