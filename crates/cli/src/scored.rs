@@ -2,14 +2,42 @@
 
 use prove::{Rate, Scoreboard};
 
-/// Every figure on a line of its own; those of no case are left out.
-pub(crate) fn summary(board: &Scoreboard) -> String {
+/// Every figure on a line of its own, a column for each board; those of no case are left out.
+pub(crate) fn summary(columns: &[(&str, &Scoreboard)]) -> String {
+    let figures: Vec<Vec<(&str, Option<String>)>> = columns.iter().map(|(_, board)| figures(board)).collect();
+    let mut lines = Vec::new();
+    if columns.len() > 1 {
+        let heads: Vec<String> = columns.iter().map(|(head, _)| format!("{head:<WIDTH$}")).collect();
+        lines.push(format!("{:<34} {}", "", heads.concat().trim_end()));
+    }
+    for i in 0..figures.first().map_or(0, Vec::len) {
+        if figures.iter().all(|column| column[i].1.is_none()) {
+            continue;
+        }
+        let cells: Vec<String> = figures
+            .iter()
+            .map(|column| format!("{:<WIDTH$}", column[i].1.as_deref().unwrap_or("-")))
+            .collect();
+        lines.push(format!("{:<34} {}", figures[0][i].0, cells.concat().trim_end()));
+    }
+    lines.join("\n")
+}
+
+/// Characters of a column.
+const WIDTH: usize = 28;
+
+fn figures(board: &Scoreboard) -> Vec<(&'static str, Option<String>)> {
     let strong = |low: f64, high: f64| {
         let rows = board.strengths.iter().filter(|row| (low..high).contains(&row.from_z));
         let (hits, of) = rows.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
         Rate::new(hits, of)
     };
-    let lines = [
+    vec![
+        ("healthy drives given a name", rate(board.false_names)),
+        ("true set first or second", rate(board.set_named)),
+        ("true set among three at most", rate(board.set_in_three)),
+        ("other names given", rate(board.set_wrong)),
+        ("no name given", rate(board.set_none)),
         ("false alarms, healthy drives", rate(board.false_alarms_healthy)),
         ("false alarms, decoys", rate(board.false_alarms_decoy)),
         ("false alarms, effects taken away", rate(board.false_alarms_twin)),
@@ -30,9 +58,7 @@ pub(crate) fn summary(board: &Scoreboard) -> String {
         ("the same where terms are given", percent(board.unlisted_terms_explain_median)),
         ("held-out error, outside the list", ratio(board.rmse_ratio_unlisted_median)),
         ("diagnoses that failed", rate(board.errors)),
-    ];
-    let shown = lines.into_iter().filter_map(|(what, shown)| Some(format!("{what:<34} {}", shown?)));
-    shown.collect::<Vec<String>>().join("\n")
+    ]
 }
 
 fn rate(rate: Rate) -> Option<String> {

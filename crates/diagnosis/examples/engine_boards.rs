@@ -1,7 +1,7 @@
 //! Both engines on the cases of trials, three ways: by the robot's file alone, by a file calibrated on the healthy drives with nothing
 //! beside it, and with the healthy drives beside.
 //!
-//! `cargo run --release -p joulepath-diagnosis --example engine_boards -- TRIAL...`: folders that `joulepath prove` left.
+//! `cargo run --release -p joulepath-diagnosis --example engine_boards -- [--without=gates] TRIAL...`: folders that `joulepath prove` left.
 
 use std::{
     error::Error,
@@ -10,9 +10,9 @@ use std::{
 };
 
 use calibration::{Options, calibrate};
-use diagnosis::{Diagnosis, Engine, Question, diagnose};
+use diagnosis::{Diagnosis, Engine, Question, diagnose, learn};
 use model::Robot;
-use recording::{Recording, read_paths};
+use recording::{Recording, read_paths, unwatched};
 use serde_json::Value;
 
 const ENGINES: [(&str, Engine); 2] = [("gates", Engine::Gates), ("posterior", Engine::Posterior)];
@@ -31,20 +31,21 @@ struct Board {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut boards = [[Board::default(); WAYS.len()]; ENGINES.len()];
-    for trial in std::env::args().skip(1).map(PathBuf::from) {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let is_asked =
+        |(name, _): &&(&str, Engine)| !words.iter().any(|word| word == &format!("--without={name}"));
+    let engines: Vec<(&str, Engine)> = ENGINES.iter().filter(is_asked).copied().collect();
+    for trial in words.iter().filter(|word| !word.starts_with("--")).map(PathBuf::from) {
         for case in folders(&trial.join("cases"))? {
             let truth = truth(&trial, &case)?;
-            each(&case, |engine, way, found| boards[engine][way].add(found, &truth))?;
+            each(&case, &engines, |engine, way, found| boards[engine][way].add(&case, found, &truth))?;
         }
         for twin in folders(&trial.join("twins"))? {
-            each(&twin, |engine, way, found| {
-                boards[engine][way].twins += 1;
-                boards[engine][way].false_alarms += usize::from(!names(found).is_empty());
-            })?;
+            each(&twin, &engines, |engine, way, found| boards[engine][way].add(&twin, found, &[]))?;
         }
     }
     println!("{:<10} {:<22} named  in three  wrong  abstained  false alarms", "engine", "");
-    for ((engine, _), boards) in ENGINES.iter().zip(&boards) {
+    for ((engine, _), boards) in engines.iter().zip(&boards) {
         for (way, board) in WAYS.iter().zip(boards) {
             let Board { named, in_three, wrong, abstained, false_alarms, twins } = board;
             println!(
@@ -57,7 +58,25 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 impl Board {
     /// The true set is the first explanation or the second, one of three, none that was given, or nothing was.
-    fn add(&mut self, found: &Diagnosis, truth: &[String]) {
+    fn add(&mut self, case: &Path, found: &Diagnosis, truth: &[String]) {
+        let said: Vec<String> = found
+            .explanations
+            .iter()
+            .map(|one| format!("{}: {:.2}", one.mechanisms.join("+"), one.probability))
+            .collect();
+        println!(
+            "{} {:?} {}; truth {}; {}",
+            case.display(),
+            found.verdict,
+            names(found).join(", "),
+            truth.join(", "),
+            said.join(", ")
+        );
+        if truth.is_empty() {
+            self.twins += 1;
+            self.false_alarms += usize::from(!names(found).is_empty());
+            return;
+        }
         let sets = explanations(found);
         match sets.iter().position(|set| set == truth) {
             Some(0 | 1) => self.named += 1,
@@ -104,16 +123,21 @@ fn explanations(found: &Diagnosis) -> Vec<Vec<String>> {
 }
 
 /// Diagnoses the folder of a case by both engines in three ways.
-fn each(case: &Path, mut told: impl FnMut(usize, usize, &Diagnosis)) -> Result<(), Box<dyn Error>> {
+fn each(
+    case: &Path,
+    engines: &[(&str, Engine)],
+    mut told: impl FnMut(usize, usize, &Diagnosis),
+) -> Result<(), Box<dyn Error>> {
     let robot = Robot::from_json(&fs::read_to_string(case.join("robot.json"))?)?;
     let read =
         |name: &str| -> Result<Recording, Box<dyn Error>> { Ok(read_paths(&[case.join(name)], None)?.0) };
     let (suspect, healthy) = (read("recording.csv")?, read("reference.csv")?);
     let calibrated = calibrate(&robot, &healthy, &Options::default())?.robot;
+    let calibrated = learn(&robot, &calibrated, &healthy, &unwatched())?.robot;
     for (way, (robot, beside)) in
         [(&robot, None), (&calibrated, None), (&robot, Some(&healthy))].iter().enumerate()
     {
-        for (which, (_, engine)) in ENGINES.iter().enumerate() {
+        for (which, (_, engine)) in engines.iter().enumerate() {
             let question = Question { engine: *engine, ..Question::new(robot, &suspect, *beside) };
             told(which, way, &diagnose(&question, &|_, _| {})?);
         }

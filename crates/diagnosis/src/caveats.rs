@@ -8,7 +8,7 @@ const ALONE: &str = "without drives known to be healthy (`--reference`) only wha
      told; what acts all the time looks like what the model itself misses";
 
 /// What a diagnosis of motor currents has to say of itself.
-const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
+pub(crate) const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
 
 /// What a finding outside the list has to say of itself.
 const OUTSIDE: &str = "what is outside the list is described, not understood: no robot's file can hold it, and the corrected \

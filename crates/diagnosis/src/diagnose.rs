@@ -15,7 +15,7 @@ use crate::{
     caveats::caveats,
     corrected::corrected,
     discover::{Sure, discover},
-    doubts::{contradictions, doubts, mistakes},
+    doubts::{contradictions, doubts, mistakes, moved_far},
     gates,
     judged::Judged,
     needed::shown_in,
@@ -110,7 +110,7 @@ pub fn diagnose_watched(
     }
     let told = |step: &str, share: f64| progress(step, 0.1 + 0.6 * share.min(1.0));
     let begun = Search::begin(&series, robot, healthy, &told)?;
-    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &begun.before)?;
+    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &begun.before.robot)?;
     // Nothing else is told of what is not what it seems.
     let found = if mistakes.is_empty() { search(&series, robot, begun, &told)? } else { begun };
     progress("judging what is left", 0.7);
@@ -136,7 +136,9 @@ pub fn diagnose_watched(
         corrected(&found.after.robot, &applied, &series.surfaces(), &series.names);
     progress("weighing what could have been seen", 0.95);
     let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
-    let mut doubts = doubts(robot, suspect, &series, &found.after, &mistakes)?;
+    let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
+    let moved = found.after.knobs.iter().map(|knob| &knob.name[..]).zip(found.after.moved.iter().copied());
+    doubts.extend(moved_far(moved));
     doubts.append(&mut notes);
     doubts.extend(judged.left_beside_names(&found));
     let is_outside = !judged.discovered.is_empty();

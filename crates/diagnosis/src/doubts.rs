@@ -4,7 +4,7 @@ use calibration::{Drives, with_powers};
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
 
-use crate::{Error, baseline::Baseline, series::Series, turning::Line};
+use crate::{Error, series::Series, turning::Line};
 
 /// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
 const CLEARLY_BETTER: f64 = 0.5;
@@ -27,10 +27,10 @@ pub(crate) fn mistakes(
     robot: &Robot,
     (recording, as_recorded, mut said): (&Recording, &Recording, Vec<String>),
     series: &Series,
-    healthy: &Baseline,
+    of_healthy: &Robot,
 ) -> Result<Vec<String>, Error> {
     // Healthy drives tell what this robot takes better than its file.
-    let known = if series.has_healthy() { &healthy.robot } else { robot };
+    let known = if series.has_healthy() { of_healthy } else { robot };
     let given = follows(known, series, true)?;
     let mut mended = Vec::new();
     let swapped_currents = swapped(as_recorded, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
@@ -111,7 +111,6 @@ pub(crate) fn doubts(
     robot: &Robot,
     recording: &Recording,
     series: &Series,
-    fitted: &Baseline,
     mistakes: &[String],
 ) -> Result<Vec<String>, Error> {
     let mut said = mistakes.to_vec();
@@ -122,16 +121,15 @@ pub(crate) fn doubts(
     }
     said.extend(stuck(robot, recording, series)?);
     said.extend(series.turning.as_ref().map(turning));
-    for (knob, moved) in fitted.knobs.iter().zip(&fitted.moved) {
-        if moved.abs() > FAR_SIGMAS {
-            said.push(format!(
-                "to describe the drives, `{}` had to move by {:.0} times the uncertainty of the robot's file",
-                knob.name,
-                moved.abs()
-            ));
-        }
-    }
     Ok(said)
+}
+
+/// That a number of the file is far off, told of numbers and by how many widths of the file they moved.
+pub(crate) fn moved_far<'a>(moved: impl Iterator<Item = (&'a str, f64)>) -> impl Iterator<Item = String> {
+    moved.filter(|(_, widths)| widths.abs() > FAR_SIGMAS).map(|(name, widths)| {
+        let widths = widths.abs();
+        format!("to describe the drives, `{name}` had to move by {widths:.0} times the uncertainty of the robot's file")
+    })
 }
 
 /// What repeats with every turn of the wheels.

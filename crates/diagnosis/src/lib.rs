@@ -102,6 +102,7 @@ pub use diagnose::{Engine, Question, diagnose, diagnose_watched};
 pub use error::Error;
 pub use imitate::imitate;
 pub use plain::Plain;
+pub use posterior::learn::{Errors, Learnt, learn, taught};
 pub use refused::Refused;
 pub use region::Region;
 pub use report::{Diagnosis, Finding, Verdict};

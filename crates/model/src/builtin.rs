@@ -55,6 +55,11 @@ pub fn husky_a200() -> Robot {
         surfaces: BTreeMap::from([("marble".into(), marble()), ("sandy_loam".into(), sandy_loam())]),
         default_surface: "marble".into(),
         uncertainty: Uncertainty::default(),
+        source: None,
+        provenance: Default::default(),
+        posterior: None,
+        model_error: None,
+        noise: None,
         mechanisms: Vec::new(),
     }
 }

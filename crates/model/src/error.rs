@@ -49,6 +49,14 @@ pub enum Error {
         /// What is wrong and how to mend it.
         message: String,
     },
+    /// Something that the robot says of how well it is known, which cannot be.
+    #[error("{field}: {message}")]
+    Knowledge {
+        /// Where, as `posterior.covariance`.
+        field: String,
+        /// What is wrong and how to mend it.
+        message: String,
+    },
     /// No built-in robot of this name.
     #[error("there is no built-in robot `{name}`; built in are {}", known.join(", "))]
     UnknownRobot {
@@ -82,9 +90,10 @@ impl Error {
     pub fn field(&self) -> Option<&str> {
         match self {
             Error::Json(error) => error.field(),
-            Error::OutOfRange { field, .. } | Error::Mechanism { field, .. } | Error::Name { field, .. } => {
-                Some(field)
-            }
+            Error::OutOfRange { field, .. }
+            | Error::Mechanism { field, .. }
+            | Error::Knowledge { field, .. }
+            | Error::Name { field, .. } => Some(field),
             Error::UnknownSurface { .. } => Some("default_surface"),
             _ => None,
         }

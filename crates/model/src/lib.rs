@@ -15,6 +15,7 @@ pub mod fit;
 mod gravity;
 pub mod inversion;
 mod kernel;
+pub mod knowledge;
 mod known;
 mod known_limits;
 mod lateral;

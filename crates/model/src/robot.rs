@@ -8,6 +8,7 @@ pub use crate::battery::Battery;
 use crate::{
     Error, Sides,
     builtin::{HUSKY_KG, HUSKY_TOP_MPS},
+    knowledge::{ModelError, Posterior, PowerNoise, Sources},
     known::KnownMechanism,
     robot_limits,
 };
@@ -55,6 +56,22 @@ pub struct Robot {
     pub default_surface: String,
     /// Relative one-sigma uncertainty of the parameters.
     pub uncertainty: Uncertainty,
+    /// Where its numbers come from, in words. Default: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// Where single constants come from, by field. Default: none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    #[cfg_attr(feature = "openapi", schema(value_type = std::collections::HashMap<String, crate::knowledge::Provenance>))]
+    pub provenance: Sources,
+    /// What a fit left open of constants that hang together; for these it goes before `uncertainty`. Default: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<Posterior>,
+    /// What the model missed of the drives that the robot was fitted to. Default: by the least known of its constants.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model_error: Option<ModelError>,
+    /// Noise of the power that these drives recorded. Default: unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise: Option<PowerNoise>,
     /// What the fields above cannot hold, found by a diagnosis, say. Default: none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
@@ -310,6 +327,17 @@ pub struct RobotFile {
     pub default_surface: String,
     #[serde(default)]
     pub uncertainty: Uncertainty,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[cfg_attr(feature = "openapi", schema(value_type = std::collections::HashMap<String, crate::knowledge::Provenance>))]
+    pub provenance: Sources,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<Posterior>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_error: Option<ModelError>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<PowerNoise>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
     pub mechanisms: Vec<KnownMechanism>,
@@ -335,6 +363,11 @@ impl From<Robot> for RobotFile {
             surfaces: robot.surfaces,
             default_surface: robot.default_surface,
             uncertainty: robot.uncertainty,
+            source: robot.source,
+            provenance: robot.provenance,
+            posterior: robot.posterior,
+            model_error: robot.model_error,
+            noise: robot.noise,
             mechanisms: robot.mechanisms,
         }
     }
@@ -363,6 +396,11 @@ impl TryFrom<RobotFile> for Robot {
             surfaces: file.surfaces,
             default_surface: file.default_surface,
             uncertainty: file.uncertainty,
+            source: file.source,
+            provenance: file.provenance,
+            posterior: file.posterior,
+            model_error: file.model_error,
+            noise: file.noise,
             mechanisms: file.mechanisms,
         };
         robot.validate()?;

@@ -3,7 +3,7 @@
 //! They are wide enough for anything from a desk toy to a mining loader and narrow enough that a
 //! value in the wrong unit (millimetres, degrees, per cent) falls outside.
 
-use crate::{Error, Robot, battery::Battery, known_limits};
+use crate::{Error, Robot, battery::Battery, knowledge, known_limits};
 
 const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -21,6 +21,7 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
     check_electrics(robot)?;
     check_surfaces(robot)?;
     known_limits::check(robot)?;
+    knowledge::check(robot)?;
     let u = &robot.uncertainty;
     for (field, value) in [
         ("uncertainty.mu_roll", u.mu_roll),

@@ -4,10 +4,29 @@ use serde::Serialize;
 use world::Family;
 
 use crate::{
-    CaseScore, Kind, MechanismRow, PeerRow, Rate, StrengthRow, Verdict,
+    CaseScore, Kind, MechanismRow, PeerRow, Rate, StrengthRow, Verdict, Way,
     figures::{by_mechanism, by_peer, by_strength, listed, mean},
     rate::median,
 };
+
+/// The result of a trial, way by way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Boards {
+    /// With the most to go by.
+    #[serde(flatten)]
+    pub most: Scoreboard,
+    /// All ways that were gone, in the order of [`Way::ALL`].
+    pub ways: Vec<WayBoard>,
+}
+
+/// The result of a trial one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WayBoard {
+    /// Which.
+    pub way: Way,
+    /// How it came out.
+    pub board: Scoreboard,
+}
 
 /// The result of a trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,6 +45,16 @@ pub struct Scoreboard {
     pub false_alarms_decoy: Rate,
     /// Drives of the cases with effects, driven again without, in the same way.
     pub false_alarms_twin: Rate,
+    /// Healthy drives of all kinds to which a name was given, or whose diagnosis failed.
+    pub false_names: Rate,
+    /// Cases of listed effects whose true set is the first or second that was given.
+    pub set_named: Rate,
+    /// The same among three sets at most.
+    pub set_in_three: Rate,
+    /// The same that gave names, and the true set is not among three.
+    pub set_wrong: Rate,
+    /// The same that gave no name.
+    pub set_none: Rate,
     /// Effects of the list, of all that acted, in whose drives something was found.
     pub detected: Rate,
     /// The same that were named before all others.
@@ -97,6 +126,15 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         false_alarms_twin: Rate::of(
             scores.iter().filter_map(|case| case.twin.as_ref()).map(|twin| !twin.is_quiet()),
         ),
+        false_names: Rate::of(false_names(&scores)),
+        set_named: Rate::of(concealing_listed().map(|case| case.rank.is_some_and(|rank| rank <= 2))),
+        set_in_three: Rate::of(concealing_listed().map(is_in_three)),
+        set_wrong: Rate::of(
+            concealing_listed().map(|case| {
+                case.gave_a_name && !case.rank.is_some_and(|rank| rank <= 2) && !is_in_three(case)
+            }),
+        ),
+        set_none: Rate::of(concealing_listed().map(|case| !case.gave_a_name)),
         detected: Rate::of(listed(&scores).map(|truth| truth.detected)),
         named_first: Rate::of(listed(&scores).map(|truth| truth.named_first)),
         in_two: Rate::of(listed(&scores).map(|truth| truth.in_two)),
@@ -126,6 +164,19 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         peers: by_peer(&scores),
         scores,
     }
+}
+
+/// Whether the true set is among three at most.
+fn is_in_three(case: &CaseScore) -> bool {
+    case.sets <= 3 && case.rank.is_some()
+}
+
+/// Whether healthy drives were given a name, drive by drive, those of cases without their effects included.
+fn false_names(scores: &[CaseScore]) -> impl Iterator<Item = bool> + '_ {
+    let healthy = scores.iter().filter(|case| !case.kind.conceals());
+    let of_healthy = healthy.map(|case| case.gave_a_name || case.error.is_some());
+    let twins = scores.iter().filter_map(|case| case.twin.as_ref());
+    of_healthy.chain(twins.map(|twin| twin.gave_a_name || twin.error.is_some()))
 }
 
 /// Names that were right, and names that were wrong.

@@ -13,10 +13,13 @@ pub const ROBOT: &str = "robot.json";
 /// Drives of the same robot from before.
 pub const REFERENCE: &str = "reference.csv";
 
+/// The robot calibrated on these.
+pub(crate) const CALIBRATED: &str = "calibrated.json";
+
 /// How all cases together came out.
 pub(crate) const SCOREBOARD: &str = "scoreboard.json";
 
-/// The files of a case.
+/// The files of a case as it is dealt.
 pub(crate) const ALL: [&str; 3] = [RECORDING, ROBOT, REFERENCE];
 
 /// Writes a recording.

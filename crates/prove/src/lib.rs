@@ -24,8 +24,9 @@ mod score;
 mod strength;
 mod together;
 mod trial;
+mod way;
 
-pub use board::{Scoreboard, scoreboard};
+pub use board::{Boards, Scoreboard, WayBoard, scoreboard};
 pub use commitment::{Commitments, sha256};
 pub use deal::{Dealt, SHARES, deal};
 pub use error::Error;
@@ -41,3 +42,4 @@ pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};
 pub use strength::{Misled, z};
 pub use together::together;
 pub use trial::{Stage, Trial};
+pub use way::Way;

@@ -6,11 +6,11 @@ use std::{
 };
 
 use crate::{
-    Error, Report,
-    files::{self, RECORDING, REFERENCE, ROBOT},
+    Error, Report, Way,
+    files::{self, CALIBRATED, RECORDING, REFERENCE, ROBOT},
 };
 
-/// Folder of a diagnosis' results beside the case's files.
+/// Folder of a diagnosis' results where it runs.
 const RESULT: &str = "diagnosis";
 /// Characters of an error message that a scoreboard shows.
 const MOST_CHARACTERS: usize = 300;
@@ -18,7 +18,8 @@ const MOST_CHARACTERS: usize = 300;
 /// How to diagnose.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// The program; it is called with `diagnose --robot .. --recording .. --reference .. --out .. --engine ..`.
+    /// The program; it is called with `diagnose --robot .. --recording .. [--reference ..] --out .. --engine ..`, and, for a calibrated
+    /// file, with `calibrate --robot .. --recording .. --out ..` before.
     pub program: PathBuf,
     /// Threads that each process may use.
     pub threads: usize,
@@ -36,35 +37,77 @@ pub enum Outcome {
 }
 
 impl Diagnosis {
-    /// Diagnoses the case in a folder and leaves the results beside it.
+    /// Diagnoses the case in a folder by what a way gives, and leaves the results beside it.
     ///
-    /// The process runs in a fresh folder elsewhere that holds copies of the three files, with their names as its only
+    /// The process runs in a fresh folder elsewhere that holds copies of the files it is given, with their names as its only
     /// arguments and an empty environment: neither the case's name nor a way to the keys reaches it.
     ///
     /// # Errors
     /// Folders that cannot be made or copied. A process that fails is an outcome.
-    pub fn run(&self, case: &Path) -> Result<Outcome, Error> {
+    pub fn run(&self, case: &Path, way: Way) -> Result<Outcome, Error> {
+        let robot = match way {
+            Way::CalibratedFileAlone => match self.calibrated(case)? {
+                Ok(robot) => robot,
+                Err(why) => return Ok(Outcome::Failed(why)),
+            },
+            Way::FileAlone | Way::HealthyDrives => case.join(ROBOT),
+        };
+        let mut given = vec![(robot, ROBOT), (case.join(RECORDING), RECORDING)];
+        let mut words = vec!["diagnose", "--robot", ROBOT, "--recording", RECORDING, "--out", RESULT];
+        words.extend(["--engine", self.engine]);
+        if way == Way::HealthyDrives {
+            given.push((case.join(REFERENCE), REFERENCE));
+            words.extend(["--reference", REFERENCE]);
+        }
+        let results = case.join(way.folder());
+        if let Err(why) = self.call(&given, &words, |room| keep(&room.join(RESULT), &results))? {
+            return Ok(Outcome::Failed(why));
+        }
+        Ok(read_report(&results.join("report.json")))
+    }
+
+    /// The robot's file calibrated on the healthy drives, made once for a case; or why it could not be.
+    fn calibrated(&self, case: &Path) -> Result<Result<PathBuf, String>, Error> {
+        let made = case.join(CALIBRATED);
+        if made.is_file() {
+            return Ok(Ok(made));
+        }
+        let given = [(case.join(ROBOT), ROBOT), (case.join(REFERENCE), REFERENCE)];
+        let words = ["calibrate", "--robot", ROBOT, "--recording", REFERENCE, "--out", CALIBRATED];
+        let keep = |room: &Path| match room.join(CALIBRATED) {
+            file if file.is_file() => files::copy(&file, &made),
+            _ => Ok(()),
+        };
+        Ok(self.call(&given, &words, keep)?.map(|()| made.clone()))
+    }
+
+    /// Calls the program in a folder of its own with copies of files; what it left is kept before the folder goes. Why it failed, if it did.
+    fn call(
+        &self,
+        given: &[(PathBuf, &str)],
+        words: &[&str],
+        keep: impl Fn(&Path) -> Result<(), Error>,
+    ) -> Result<Result<(), String>, Error> {
         let room = tempfile::tempdir().map_err(Error::file(std::env::temp_dir()))?;
-        for name in files::ALL {
-            files::copy(&case.join(name), &room.path().join(name))?;
+        for (file, name) in given {
+            files::copy(file, &room.path().join(name))?;
         }
         let mut command = Command::new(&self.program);
         command
-            .args(["diagnose", "--robot", ROBOT, "--recording", RECORDING])
-            .args(["--reference", REFERENCE, "--out", RESULT, "--engine", self.engine])
+            .args(words)
             .env_clear()
             .env("RAYON_NUM_THREADS", self.threads.to_string())
             .current_dir(room.path())
             .stdin(Stdio::null());
         let output = match command.output() {
             Ok(output) => output,
-            Err(error) => return Ok(Outcome::Failed(format!("it did not start: {error}"))),
+            Err(error) => return Ok(Err(format!("it did not start: {error}"))),
         };
-        keep(&room.path().join(RESULT), &case.join(RESULT))?;
-        if !output.status.success() {
-            return Ok(Outcome::Failed(format!("{}: {}", output.status, last_line(&output.stderr))));
+        keep(room.path())?;
+        match output.status.success() {
+            true => Ok(Ok(())),
+            false => Ok(Err(format!("{}: {}", output.status, last_line(&output.stderr)))),
         }
-        Ok(read_report(&case.join(RESULT).join("report.json")))
     }
 }
 

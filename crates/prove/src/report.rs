@@ -17,6 +17,16 @@ pub struct Report {
     /// What it says would have been noticed.
     #[serde(default)]
     pub detectable: Vec<Least>,
+    /// Sets of mechanisms that may be missing, likeliest first, where it has such.
+    #[serde(default)]
+    pub explanations: Vec<Explanation>,
+}
+
+/// A set of mechanisms that may be missing.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Explanation {
+    /// Their names.
+    pub mechanisms: Vec<String>,
 }
 
 /// The least size of a mechanism that would have been noticed.
@@ -103,6 +113,45 @@ impl Report {
     /// Whether it says that something is wrong.
     pub fn alarms(&self) -> bool {
         self.verdict != Verdict::Consistent || !self.findings.is_empty()
+    }
+
+    /// Whether it gives a name.
+    pub fn names(&self) -> bool {
+        self.findings.iter().any(Finding::is_named)
+    }
+
+    /// Sets of names that it gives, each sorted, likeliest first; none where no finding has a name.
+    pub fn sets(&self) -> Vec<Vec<&str>> {
+        if !self.names() {
+            return Vec::new();
+        }
+        let mut sets: Vec<Vec<&str>> = match self.explanations.is_empty() {
+            false => self.explanations.iter().map(Explanation::names).collect(),
+            true => self.sets_of_findings(),
+        };
+        sets.iter_mut().for_each(|set| set.sort_unstable());
+        sets
+    }
+
+    /// The named findings, and the same with one of them replaced by what it cannot be told from.
+    fn sets_of_findings(&self) -> Vec<Vec<&str>> {
+        let named: Vec<&Finding> = self.findings.iter().filter(|finding| finding.is_named()).collect();
+        let first: Vec<&str> = named.iter().map(|finding| finding.mechanism.as_str()).collect();
+        let mut sets = vec![first.clone()];
+        for (i, finding) in named.iter().enumerate() {
+            for other in &finding.indistinguishable_from {
+                let mut set = first.clone();
+                set[i] = other;
+                sets.push(set);
+            }
+        }
+        sets
+    }
+}
+
+impl Explanation {
+    fn names(&self) -> Vec<&str> {
+        self.mechanisms.iter().map(String::as_str).collect()
     }
 }
 

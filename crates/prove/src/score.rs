@@ -26,6 +26,15 @@ pub struct CaseScore {
     pub said: Vec<Vec<String>>,
     /// Whether it said that something is wrong.
     pub alarmed: bool,
+    /// Whether it gave a name.
+    #[serde(default)]
+    pub gave_a_name: bool,
+    /// How many sets of names it gave.
+    #[serde(default)]
+    pub sets: usize,
+    /// Which of them is the true one, from 1.
+    #[serde(default)]
+    pub rank: Option<usize>,
     /// Each effect that acted.
     pub truths: Vec<TruthScore>,
     /// Findings that give a name and answer to no truth.
@@ -49,6 +58,9 @@ pub struct CaseScore {
 pub struct Twin {
     /// Whether it said that something is wrong.
     pub alarmed: bool,
+    /// Whether it gave a name.
+    #[serde(default)]
+    pub gave_a_name: bool,
     /// Why it said nothing.
     pub error: Option<String>,
     /// Held-out error of the robot fitted to it, with what was falsely found if that lowers it [W].
@@ -125,10 +137,12 @@ impl Twin {
                 let fits = [report.baseline, report.corrected];
                 let rmse_w = fits.iter().filter_map(|fit| fit.held_out_rmse_w).reduce(f64::min);
                 let noise_floor_w = report.baseline.noise_floor_w;
-                Twin { alarmed: report.alarms(), error: None, held_out_rmse_w: rmse_w, noise_floor_w }
+                let (alarmed, gave_a_name) = (report.alarms(), report.names());
+                Twin { alarmed, gave_a_name, error: None, held_out_rmse_w: rmse_w, noise_floor_w }
             }
             Outcome::Failed(why) => {
-                Twin { alarmed: false, error: Some(why.clone()), held_out_rmse_w: None, noise_floor_w: None }
+                let error = Some(why.clone());
+                Twin { alarmed: false, gave_a_name: false, error, held_out_rmse_w: None, noise_floor_w: None }
             }
         }
     }
@@ -161,6 +175,9 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
         error,
         said: findings.iter().map(|f| f.set().into_iter().map(str::to_owned).collect()).collect(),
         alarmed,
+        gave_a_name: report.is_some_and(Report::names),
+        sets: report.map_or(0, |report| report.sets().len()),
+        rank: report.and_then(|report| rank(report, &names)),
         truths: key.truths.iter().enumerate().map(truth).collect(),
         wrong_names: findings.iter().enumerate().filter(|finding| wrong(*finding)).count(),
         swapped: is_swapped(key, findings, &matched),
@@ -171,6 +188,13 @@ pub fn score(key: &SealedKey, strengths_z: &[f64], outcome: &Outcome, twin: Opti
         twin,
         peers: Vec::new(),
     }
+}
+
+/// Place of the true set among those that a report gives, from 1.
+fn rank(report: &Report, truths: &[String]) -> Option<usize> {
+    let mut truth: Vec<&str> = truths.iter().map(String::as_str).collect();
+    truth.sort_unstable();
+    report.sets().iter().position(|set| *set == truth).map(|place| place + 1)
 }
 
 fn truth_score(truth: &Truth, z: f64, detected: bool, finding: Option<&Finding>) -> TruthScore {

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use world::{Case, RobotFile, World, simulate};
 
 use crate::{
-    CaseScore, Commitments, Dealt, Diagnosis, Error, Kind, Misled, Outcome, PeerAnswer, PeerScore,
-    Scoreboard, SealedKey, Twin, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
+    Boards, CaseScore, Commitments, Dealt, Diagnosis, Error, Kind, Misled, Outcome, PeerAnswer, PeerScore,
+    SealedKey, Twin, Way, WayBoard, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
 };
 
 /// What a trial is doing.
@@ -40,6 +40,8 @@ pub struct Trial<'a> {
     pub out: &'a Path,
     /// How to diagnose.
     pub diagnosis: Diagnosis,
+    /// What it is given, in the order of [`Way::ALL`].
+    pub ways: &'a [Way],
     /// Other methods, asked about the folder of each case.
     pub peers: &'a (dyn Fn(&Path) -> Vec<PeerAnswer> + Sync),
     /// Cases that are worked on at the same time.
@@ -58,7 +60,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// Files that cannot be written; a key or case that changed between commitment and opening.
-    pub fn run(&self) -> Result<Scoreboard, Error> {
+    pub fn run(&self) -> Result<Boards, Error> {
         let robot = RobotFile::from_json(self.robot_json).map_err(Error::Robot)?;
         let dealt = deal(self.cases, self.seed, self.only, self.share);
         for folder in ["cases", "keys", "twins"] {
@@ -70,16 +72,23 @@ impl Trial<'_> {
         let outcomes = pool.install(|| {
             self.each(Stage::Diagnosing, &dealt, |dealt| {
                 let case = self.case(dealt);
-                Ok((self.diagnosis.run(&case)?, (self.peers)(&case)))
+                let outcomes = self.ways.iter().map(|way| self.diagnosis.run(&case, *way));
+                Ok((outcomes.collect::<Result<_, Error>>()?, (self.peers)(&case)))
             })
         })?;
         let pairs: Vec<(Dealt, Said)> = dealt.into_iter().zip(outcomes).collect();
         let scores = pool.install(|| {
             self.each(Stage::Scoring, &pairs, |(dealt, said)| self.open(dealt, said, &commitments, &robot))
         })?;
-        let board = scoreboard(self.seed, commitment, scores);
-        self.write(&board)?;
-        Ok(board)
+        let board = |way: usize| {
+            let own = scores.iter().filter_map(|of_case| of_case.get(way)).cloned().collect();
+            scoreboard(self.seed, commitment.clone(), own)
+        };
+        let ways: Vec<WayBoard> =
+            self.ways.iter().enumerate().map(|(i, way)| WayBoard { way: *way, board: board(i) }).collect();
+        let boards = Boards { most: board(self.ways.len().saturating_sub(1)), ways };
+        self.write(&boards)?;
+        Ok(boards)
     }
 
     fn each<T: Sync, U: Send>(
@@ -146,26 +155,27 @@ impl Trial<'_> {
     fn open(
         &self,
         dealt: &Dealt,
-        (outcome, answers): &Said,
+        (outcomes, answers): &Said,
         commitments: &Commitments,
         robot: &RobotFile,
-    ) -> Result<CaseScore, Error> {
+    ) -> Result<Vec<CaseScore>, Error> {
         let case = self.case(dealt);
         let key = SealedKey::open(&self.key(dealt), commitments, &case)?;
-        let (strengths_z, twin) =
-            if key.kind.conceals() { self.twin(&key, &case, robot)? } else { (Vec::new(), None) };
-        let mut scored = score(&key, &strengths_z, outcome, twin);
-        scored.peers = answers.iter().map(|answer| PeerScore::new(answer, &key)).collect();
-        Ok(scored)
+        let (strengths_z, twins) =
+            if key.kind.conceals() { self.twin(&key, &case, robot)? } else { (Vec::new(), Vec::new()) };
+        let scored = outcomes.iter().enumerate().map(|(i, outcome)| {
+            let mut scored = score(&key, &strengths_z, outcome, twins.get(i).cloned());
+            // They get what the last way gives.
+            if i + 1 == outcomes.len() {
+                scored.peers = answers.iter().map(|answer| PeerScore::new(answer, &key)).collect();
+            }
+            scored
+        });
+        Ok(scored.collect())
     }
 
     /// The same drive without the effects: how strong each of them is, and what the diagnosis says where there is none.
-    fn twin(
-        &self,
-        key: &SealedKey,
-        case: &Path,
-        robot: &RobotFile,
-    ) -> Result<(Vec<f64>, Option<Twin>), Error> {
+    fn twin(&self, key: &SealedKey, case: &Path, robot: &RobotFile) -> Result<(Vec<f64>, Vec<Twin>), Error> {
         let drive = |world: &World| {
             simulate(world, robot, &key.drive)
                 .map_err(|source| Error::World { case: key.case.clone(), source })
@@ -181,20 +191,22 @@ impl Trial<'_> {
         let folder = self.out.join("twins").join(&key.case);
         files::folder(&folder)?;
         files::write_log(&plain, &folder.join(files::RECORDING))?;
-        for name in [files::ROBOT, files::REFERENCE] {
+        let is_there = |name: &&str| case.join(name).is_file();
+        for name in [files::ROBOT, files::REFERENCE, files::CALIBRATED].into_iter().filter(is_there) {
             files::copy(&case.join(name), &folder.join(name))?;
         }
-        Ok((strengths_z, Some(Twin::new(&self.diagnosis.run(&folder)?))))
+        let twins = self.ways.iter().map(|way| Ok(Twin::new(&self.diagnosis.run(&folder, *way)?)));
+        Ok((strengths_z, twins.collect::<Result<_, Error>>()?))
     }
 
-    fn write(&self, board: &Scoreboard) -> Result<(), Error> {
+    fn write(&self, boards: &Boards) -> Result<(), Error> {
         let path = self.out.join(files::SCOREBOARD);
-        let json = serde_json::to_string_pretty(board)
+        let json = serde_json::to_string_pretty(boards)
             .map_err(|source| Error::Content { path: path.clone(), source })?;
         files::write(&path, &(json + "\n"))?;
-        files::write(&self.out.join("scoreboard.html"), &page(board))
+        files::write(&self.out.join("scoreboard.html"), &page(&boards.most))
     }
 }
 
 /// What the diagnosis and the other methods said of a case.
-type Said = (Outcome, Vec<PeerAnswer>);
+type Said = (Vec<Outcome>, Vec<PeerAnswer>);

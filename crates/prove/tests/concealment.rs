@@ -10,16 +10,20 @@ use std::{
     sync::Mutex,
 };
 
-use prove::{Diagnosis, Error, PeerAnswer, Scoreboard, Stage, Trial};
+use prove::{Boards, Diagnosis, Error, PeerAnswer, Stage, Trial, Way};
 
-/// Reports what it sees and finds nothing wrong.
+/// Calibrates a robot as it was, reports what it sees and finds nothing wrong.
 const SPY: &str = r#"#!/bin/sh
+if [ "$1" = calibrate ]; then
+    [ "$*" = "calibrate --robot robot.json --recording reference.csv --out calibrated.json" ] || exit 2
+    exec cp robot.json calibrated.json
+fi
 seen_environment=$(env | grep -v -e ^PWD= -e ^_= -e ^SHLVL= -e ^OLDPWD= | tr '\n' ' ')
-[ "$1 $2 $3 $4 $5 $6 $7" = "diagnose --robot robot.json --recording recording.csv --reference reference.csv" ] || exit 2
+[ "$1 $2 $3 $4 $5" = "diagnose --robot robot.json --recording recording.csv" ] || exit 2
 seen=$(ls -a | grep -v '^\.*$' | sort | tr '\n' ' ')
-mkdir -p "$9"
-printf '%s|%s|%s' "$seen" "$seen_environment" "$PWD" > "$9/seen.txt"
-printf '{"verdict": "consistent", "baseline": {"held_out_rmse_w": 1.5}, "findings": []}' > "$9/report.json"
+mkdir -p "$7"
+printf '%s|%s|%s|%s' "$seen" "$seen_environment" "$PWD" "${10} ${11}" > "$7/seen.txt"
+printf '{"verdict": "consistent", "baseline": {"held_out_rmse_w": 1.5}, "findings": []}' > "$7/report.json"
 "#;
 
 fn script(folder: &Path, text: &str) -> PathBuf {
@@ -33,11 +37,7 @@ fn robot_json() -> String {
     serde_json::to_string(&world::example_robot()).unwrap()
 }
 
-fn run(
-    out: &Path,
-    program: &Path,
-    progress: &(dyn Fn(Stage, usize, usize) + Sync),
-) -> Result<Scoreboard, Error> {
+fn run(out: &Path, program: &Path, progress: &(dyn Fn(Stage, usize, usize) + Sync)) -> Result<Boards, Error> {
     let robot_json = robot_json();
     let trial = Trial {
         cases: 3,
@@ -47,6 +47,7 @@ fn run(
         robot_json: &robot_json,
         out,
         diagnosis: Diagnosis { program: program.to_owned(), threads: 1, engine: "gates" },
+        ways: &Way::ALL,
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
         progress,
@@ -56,22 +57,32 @@ fn run(
 }
 
 #[test]
-fn the_diagnosis_sees_three_files_and_nothing_of_the_key_and_the_trial_repeats() {
+fn the_diagnosis_sees_what_a_way_gives_and_nothing_of_the_key_and_the_trial_repeats() {
     let room = tempfile::tempdir().unwrap();
     let program = script(room.path(), SPY);
     let [first, again] = ["first", "again"].map(|name| room.path().join(name));
-    let board = run(&first, &program, &|_, _, _| {}).unwrap();
+    let boards = run(&first, &program, &|_, _, _| {}).unwrap();
+    let ways: Vec<Way> = boards.ways.iter().map(|one| one.way).collect();
+    assert_eq!(ways, Way::ALL);
+    assert_eq!(boards.most, boards.ways[2].board, "healthy drives beside are the most to go by");
+    let board = &boards.most;
     assert_eq!((board.cases, board.errors.hits), (3, 0));
     assert_eq!((board.abstained.hits, board.abstained.of), (2, 2));
     for case in fs::read_dir(first.join("cases")).unwrap().map(|entry| entry.unwrap().path()) {
-        let seen = fs::read_to_string(case.join("diagnosis/seen.txt")).unwrap();
-        let [files, environment, place] = seen.split('|').collect::<Vec<_>>().try_into().unwrap();
-        assert_eq!(files, "recording.csv reference.csv robot.json ");
-        assert_eq!(environment, "RAYON_NUM_THREADS=1 ");
-        assert!(!place.contains("case-") && !Path::new(place).starts_with(&first), "{place}");
+        for (folder, expected, reference) in [
+            ("diagnosis", "recording.csv reference.csv robot.json ", "--reference reference.csv"),
+            ("diagnosis-file-alone", "recording.csv robot.json ", " "),
+            ("diagnosis-calibrated-file-alone", "recording.csv robot.json ", " "),
+        ] {
+            let seen = fs::read_to_string(case.join(folder).join("seen.txt")).unwrap();
+            let [files, environment, place, rest] = seen.split('|').collect::<Vec<_>>().try_into().unwrap();
+            assert_eq!((files, rest), (expected, reference));
+            assert_eq!(environment, "RAYON_NUM_THREADS=1 ");
+            assert!(!place.contains("case-") && !Path::new(place).starts_with(&first), "{place}");
+        }
         betrays_nothing(&case, &first.join("keys"));
     }
-    assert_eq!(run(&again, &program, &|_, _, _| {}).unwrap(), board, "the same seed is the same trial");
+    assert_eq!(run(&again, &program, &|_, _, _| {}).unwrap(), boards, "the same seed is the same trial");
     assert!(fs::read_to_string(first.join("scoreboard.html")).unwrap().contains("<h1>0 of "));
 }
 
@@ -127,7 +138,8 @@ fn failing_programs_and_reports_that_are_none_are_errors_on_the_board() {
         for name in [prove::ROBOT, prove::RECORDING, prove::REFERENCE] {
             fs::write(case.join(name), "").unwrap();
         }
-        let outcome = Diagnosis { program, threads: 1, engine: "gates" }.run(&case).unwrap();
+        let outcome =
+            Diagnosis { program, threads: 1, engine: "gates" }.run(&case, Way::HealthyDrives).unwrap();
         assert!(matches!(&outcome, prove::Outcome::Failed(why) if why.contains(said)), "{outcome:?}");
     }
 }

@@ -34,6 +34,7 @@ mod reading;
 mod recording;
 mod report;
 mod room;
+mod sampled;
 mod stream;
 mod suspicion;
 mod table;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use calibration::{Calibration, Method, Options, lift};
 use clap::{Args, ValueEnum};
+use diagnosis::taught;
+use recording::unwatched;
 
 use crate::{
     failure::BadInput,
@@ -50,7 +52,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let options = Options { reference_surface: arguments.reference_surface.clone() };
     let sign = progress::working("fitting");
-    let found = method.calibrate(&robot, &recording, &options);
+    let found = method
+        .calibrate(&robot, &recording, &options)
+        .and_then(|found| taught(&robot, found, &recording, &unwatched()));
     sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;

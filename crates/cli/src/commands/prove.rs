@@ -10,7 +10,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::Robot;
-use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Stage, Trial};
+use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial, Way};
 use recording::read_paths;
 
 use crate::{
@@ -42,12 +42,36 @@ pub(crate) struct Arguments {
     /// Way of diagnosing
     #[arg(long, hide = true, default_value = "gates")]
     engine: EngineName,
+    /// Only what a diagnosis is given this way, instead of all three
+    #[arg(long)]
+    way: Option<WayName>,
     /// Folder for cases, keys and scoreboard; it must be empty or not exist yet
     #[arg(long, required_unless_present = "together")]
     out: Option<PathBuf>,
     /// Folders of trials that were made before: add them up instead of making one
     #[arg(long, value_name = "FOLDER", num_args = 1.., conflicts_with_all = ["robot", "cases", "seed", "only", "share", "out"])]
     together: Vec<PathBuf>,
+}
+
+/// What a diagnosis is given beside the suspect drive.
+#[derive(Clone, Copy, ValueEnum)]
+enum WayName {
+    /// The robot's file alone
+    FileAlone,
+    /// A file that was calibrated on the healthy drives, without these
+    CalibratedFileAlone,
+    /// The robot's file and the healthy drives
+    HealthyDrives,
+}
+
+impl From<WayName> for Way {
+    fn from(name: WayName) -> Self {
+        match name {
+            WayName::FileAlone => Way::FileAlone,
+            WayName::CalibratedFileAlone => Way::CalibratedFileAlone,
+            WayName::HealthyDrives => Way::HealthyDrives,
+        }
+    }
 }
 
 /// A kind of case.
@@ -79,7 +103,7 @@ impl From<Only> for Kind {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else {
-        output::line(summary(&prove::together(&arguments.together)?))?;
+        output::line(summary(&[("", &prove::together(&arguments.together)?)]))?;
         return Ok(());
     };
     check(arguments, out)?;
@@ -93,6 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             bar.set_position(done as u64);
         }
     };
+    let ways: Vec<Way> = arguments.way.map_or_else(|| Way::ALL.to_vec(), |way| vec![way.into()]);
     let trial = Trial {
         cases: arguments.cases,
         seed: arguments.seed,
@@ -102,17 +127,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         out,
         // Cases side by side use the cores better than threads within one.
         diagnosis: Diagnosis { program, threads: 1, engine: arguments.engine.name() },
+        ways: &ways,
         peers: &peers,
         at_once: available_parallelism().map_or(1, usize::from),
         progress: &told,
         // The commitment is in a file too; a reader that left ends the command at the summary.
         published: &|hash| drop(output::line(format_args!("committed to all keys: SHA-256 {hash}"))),
     };
-    let board = trial.run()?;
+    let boards = trial.run()?;
     if let Ok(bar) = bar.lock() {
         bar.finish_and_clear();
     }
-    output::line(summary(&board))?;
+    let columns: Vec<(&str, &Scoreboard)> =
+        boards.ways.iter().map(|one| (one.way.words(), &one.board)).collect();
+    output::line(summary(&columns))?;
     output::line(out.join("scoreboard.html").display())?;
     Ok(())
 }

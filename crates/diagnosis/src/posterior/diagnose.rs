@@ -1,14 +1,17 @@
 //! The posterior diagnosis from recordings to the report.
 
-use calibration::with_powers;
+use calibration::{slopes_note, with_powers};
 use model::mechanism::{self, Mechanism};
-use recording::Watch;
+use recording::{PowerForm, Watch};
 
 use crate::{
     Error, Question, Series, admissible,
+    caveats::BY_CURRENT,
     diagnose::{NEEDED_S, impossible},
+    doubts::{contradictions, doubts, mistakes},
     posterior::{
         engine::find,
+        fit::baseline::Baseline,
         observations::Observations,
         report::document::{Subject, document},
     },
@@ -27,20 +30,44 @@ pub(crate) fn diagnose(
     let Question { robot, suspect, healthy, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
     admissible::check(suspect, healthy)?;
-    let suspect = &with_powers(robot, &suspect.thinned(), watch)?;
-    let healthy = healthy.map(|healthy| with_powers(robot, &healthy.thinned(), watch)).transpose()?;
-    let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?;
+    let contradictions = contradictions(suspect, healthy);
+    let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
+    let as_recorded = suspect.thinned_watched(watch).map_err(calibration::Error::from)?;
+    let suspect = &with_powers(robot, &as_recorded, watch)?;
+    let healthy = match healthy {
+        Some(healthy) => {
+            let thin = healthy.thinned_watched(watch).map_err(calibration::Error::from)?;
+            Some(with_powers(robot, &thin, watch)?)
+        }
+        None => None,
+    };
+    let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
+    let observed = Observations::new(&series, robot);
+    progress("fitting the robot", 0.05);
+    let baseline = Baseline::fit(&observed, robot)?;
+    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &baseline.robot)?;
+    let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
+    doubts.extend(by_current.then(|| BY_CURRENT.to_owned()));
+    doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
     let is_possible = |one: &&'static dyn Mechanism| !excluded.contains(&one.name());
-    let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_possible).collect();
-    let observed = Observations::new(&series, robot);
-    let found = find(&observed, robot, &library, progress)?;
+    // Nothing else is told of what is not what it seems.
+    let is_looked_for = |one: &&'static dyn Mechanism| mistakes.is_empty() && is_possible(one);
+    let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_looked_for).collect();
+    let found = find(&observed, (robot, baseline), &library, progress)?;
     let drives: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
-    let subject = Subject { file: robot, suspect, observed: &observed, drives: &drives };
+    let subject = Subject {
+        file: robot,
+        suspect,
+        observed: &observed,
+        drives: &drives,
+        mistakes: &mistakes,
+        doubts: &doubts,
+    };
     let report = document(&subject, &found)?;
     progress("done", 1.0);
     Ok(report)

@@ -1,5 +1,7 @@
 //! The engine from drives to the posterior.
 
+use std::ops::Range;
+
 use model::{
     Robot,
     mechanism::{Mechanism, Scale},
@@ -22,10 +24,8 @@ use crate::posterior::{
 
 /// Divisor of all log likelihoods: neighbouring seconds of one manoeuvre are no independent witnesses of a form (see the module's table).
 pub(crate) const TEMPERATURE: f64 = 4.0;
-/// Amplitude of the discrepancy of a file that says nothing of it: measured parameters.
-const MODEL_ERROR: f64 = 0.03;
 /// Amplitudes that healthy drives choose from.
-const AMPLITUDES: [f64; 6] = [0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
+const AMPLITUDES: [f64; 8] = [0.003, 0.006, 0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
 /// Residuals beyond so many standard deviations count linearly.
 const LARGE: f64 = 3.5;
 /// By how much wider the discrepancy is in the most flexible fit, from which weights are taken.
@@ -55,7 +55,7 @@ pub(crate) struct Found {
 /// A surface that the robot does not know; a watch that breaks.
 pub(crate) fn find(
     observed: &Observations<'_>,
-    file: &Robot,
+    (file, baseline): (&Robot, Baseline),
     library: &[&'static dyn Mechanism],
     progress: &dyn Fn(&str, f64),
 ) -> Result<Found, Error> {
@@ -63,8 +63,6 @@ pub(crate) fn find(
         progress(name, share);
         observed.go_on()
     };
-    step("fitting the robot", 0.1)?;
-    let baseline = Baseline::fit(observed, file)?;
     let scale = scale(observed, &baseline, file);
     let beside = Beside {
         series: observed.series,
@@ -79,7 +77,11 @@ pub(crate) fn find(
     common.extend(healthy_shares(&effects));
     step("learning what the model misses", 0.3)?;
     let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
-    let model_error = model_error(observed, &baseline, &plain, &common);
+    let model_error = if observed.series.has_healthy() {
+        amplitude(observed, &baseline, (&plain, observed.test_rows..observed.rows()), &common)
+    } else {
+        file.model_error_fraction()
+    };
     let mut others = baseline.discrepancy(observed, model_error);
     others.extend(common);
     let whitening = weighted(observed, (&baseline, file), &others, &plain);
@@ -110,7 +112,7 @@ fn held_out(joint: &Joint<'_>, explanations: &[Explanation]) -> [f64; 2] {
 }
 
 /// Noise of the power of the test drives, root mean square [W].
-fn noise_floor_w(observed: &Observations<'_>, baseline: &Baseline) -> f64 {
+pub(crate) fn noise_floor_w(observed: &Observations<'_>, baseline: &Baseline) -> f64 {
     let sigma = |i: usize| baseline.noise.sigma(observed.averages()[i].channel, baseline.predicted[i]);
     observed.power_rms(&(0..observed.test_rows).map(sigma).collect::<Vec<_>>())
 }
@@ -161,18 +163,32 @@ fn healthy_shares(effects: &[Effect]) -> Vec<Vec<f64>> {
     columns
 }
 
-/// The amplitude of the discrepancy: of healthy drives the likeliest, else that of a measured file.
-fn model_error(
+/// Columns of what healthy robots and good logs have of mechanisms, in drives that stand alone.
+pub(crate) fn healthy_columns(
     observed: &Observations<'_>,
     baseline: &Baseline,
-    whitening: &Whitening,
+    file: &Robot,
+    library: &[&'static dyn Mechanism],
+) -> Result<Vec<Vec<f64>>, Error> {
+    let beside = Beside {
+        series: observed.series,
+        robot: &baseline.robot,
+        applied: &[],
+        predicted: &baseline.predicted,
+        everywhere: false,
+    };
+    let shared: Vec<_> = library.iter().copied().filter(|one| one.healthy_share() > 0.0).collect();
+    Ok(healthy_shares(&effects(&shared, &scale(observed, baseline, file), &beside)?))
+}
+
+/// The likeliest amplitude of the discrepancy in some rows of healthy drives.
+pub(crate) fn amplitude(
+    observed: &Observations<'_>,
+    baseline: &Baseline,
+    (whitening, rows): (&Whitening, Range<usize>),
     common: &[Vec<f64>],
 ) -> f64 {
-    if !observed.series.has_healthy() {
-        return MODEL_ERROR;
-    }
     let log = |share: &f64| {
-        let rows = observed.test_rows..observed.rows();
         let discrepancy = baseline.discrepancy(observed, *share);
         let columns: Vec<DVector<f64>> = baseline
             .sensitivities
@@ -191,7 +207,7 @@ fn model_error(
     };
     let logs: Vec<f64> = AMPLITUDES.iter().map(log).collect();
     let best = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b]));
-    best.map_or(MODEL_ERROR, |best| AMPLITUDES[best])
+    best.map_or(AMPLITUDES[0], |best| AMPLITUDES[best])
 }
 
 /// Whitening with weights from what the most flexible fit leaves, and with the temperature.

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! diagnose     recordings -> rows -> posterior -> report
+//! learn        healthy drives -> what the robot's file knows of itself
 //! engine       rows -> posterior
 //! report       verdict, findings, sentence, held-out errors, detectable sizes
 //! search       screening, refits, explanations
@@ -32,6 +33,7 @@ pub(crate) mod engine;
 pub(crate) mod evidence;
 pub(crate) mod fit;
 pub(crate) mod hypothesis;
+pub(crate) mod learn;
 pub(crate) mod observations;
 pub(crate) mod report;
 pub(crate) mod search;

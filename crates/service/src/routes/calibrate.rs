@@ -10,6 +10,7 @@ use std::{
 
 use axum::extract::State;
 use calibration::{Method, Options, lift};
+use diagnosis::taught;
 use model::Robot;
 use recording::{Map, Recording, Room, Watch};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -140,7 +141,10 @@ impl job_run::Work for Work {
     fn run(self: Box<Self>, engine: &Engine, job: &Arc<Job>) -> Result<Value, Problem> {
         let recording = read(engine, job, &self.notes, self.map.as_ref(), "/recordings")?;
         job.tell("fitting", None);
-        let found = self.method.calibrate_watched(&self.robot, &recording, &self.options, &job.watch());
+        let found = self
+            .method
+            .calibrate_watched(&self.robot, &recording, &self.options, &job.watch())
+            .and_then(|found| taught(&self.robot, found, &recording, &job.watch()));
         let found = found.map_err(|error| Problem::no_calibration(&error))?;
         to_value(&found)
     }

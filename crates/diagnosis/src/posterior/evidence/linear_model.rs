@@ -112,6 +112,15 @@ impl LinearModel {
         Group { columns, halves }
     }
 
+    /// Posterior covariance of the first columns of the basis where the noise is as it was identified.
+    pub(crate) fn covariance_of_first(&self, count: usize) -> DMatrix<f64> {
+        let gram = &self.transposed * &self.basis;
+        let with_prior = gram + DMatrix::identity(self.basis.ncols(), self.basis.ncols());
+        let first = DMatrix::identity(self.basis.ncols(), count);
+        let solved = with_prior.cholesky().map(|root| root.solve(&first));
+        solved.map_or_else(|| DMatrix::identity(count, count), |all| all.rows(0, count).into_owned())
+    }
+
     /// Columns of groups with the basis taken out; the last of the last group is the residual.
     pub(crate) fn reduce(&self, groups: &[&Group]) -> Reduced {
         let first: Vec<usize> = groups

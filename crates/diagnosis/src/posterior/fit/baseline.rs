@@ -8,7 +8,7 @@ use crate::posterior::{
     evidence::noise::{Noise, Whitening},
     fit::{
         discrepancy::{self, Components},
-        parameter::{Parameter, Shown},
+        parameter::{Parameter, Parameters, Shown},
     },
     observations::{Observations, REST, YAW_RATE},
 };
@@ -28,12 +28,14 @@ pub(crate) struct Baseline {
     /// The robot.
     pub(crate) robot: Robot,
     /// Its free parameters.
-    pub(crate) parameters: Vec<Parameter>,
-    /// Their values, in prior standard deviations from the file.
-    pub(crate) z: DVector<f64>,
+    pub(crate) parameters: Parameters,
+    /// Their values, as the independent numbers that their prior is made of, 0 at the file.
+    pub(crate) u: DVector<f64>,
     /// Predictions, row by row.
     pub(crate) predicted: Vec<f64>,
-    /// Change of predictions with each parameter, per prior standard deviation.
+    /// Change of predictions with each parameter, per its prior standard deviation.
+    per_z: Vec<Vec<f64>>,
+    /// Change of predictions with each of the independent numbers.
     pub(crate) sensitivities: Vec<Vec<f64>>,
     /// Noise of the rows.
     pub(crate) noise: Noise,
@@ -52,21 +54,23 @@ impl Baseline {
             battery: series.channels() == 1 || observed.has_channel(REST),
             yaw_rate: observed.has_channel(YAW_RATE),
         };
-        let parameters = Parameter::of(file, &series.surfaces(), shown);
+        let parameters = Parameters::of(file, &series.surfaces(), shown);
         let first_fitted = if series.has_healthy() { observed.test_rows } else { 0 };
         let mut robot = file.clone();
-        let mut z = DVector::zeros(parameters.len());
+        let mut u = DVector::zeros(parameters.len());
         let mut predicted = series.predict(&robot, &[])?;
-        let mut sensitivities = sensitivities(series, file, &parameters, &z, &predicted)?;
+        let mut per_z = per_z(series, file, &parameters, &u, &predicted)?;
+        let mut sensitivities = parameters.mixed(&per_z);
         for _ in 0..STEPS {
             let errors = differences(&series.recorded, &predicted);
             let noise = Noise::of(&errors, &predicted, &observed.places);
             let white = noise.whitening(&predicted, &observed.places);
-            let step = step(&white, &errors, &sensitivities, &z, first_fitted);
-            z += &step;
-            parameters.iter().zip(z.iter()).for_each(|(parameter, z)| parameter.set(&mut robot, *z));
+            let step = step(&white, &errors, &sensitivities, &u, first_fitted);
+            u += &step;
+            robot = parameters.placed(file, &u);
             predicted = series.predict(&robot, &[])?;
-            sensitivities = self::sensitivities(series, file, &parameters, &z, &predicted)?;
+            per_z = self::per_z(series, file, &parameters, &u, &predicted)?;
+            sensitivities = parameters.mixed(&per_z);
             if step.amax() < SETTLED {
                 break;
             }
@@ -74,18 +78,17 @@ impl Baseline {
         let errors = differences(&series.recorded, &predicted);
         let noise = Noise::of(&errors, &predicted, &observed.places);
         let mut residual = errors;
-        for (column, z) in sensitivities.iter().zip(z.iter()) {
-            residual.iter_mut().zip(column).for_each(|(r, by)| *r += z * by);
+        for (column, u) in sensitivities.iter().zip(u.iter()) {
+            residual.iter_mut().zip(column).for_each(|(r, by)| *r += u * by);
         }
-        Ok(Baseline { robot, parameters, z, predicted, sensitivities, noise, residual })
+        Ok(Baseline { robot, parameters, u, predicted, per_z, sensitivities, noise, residual })
     }
 
     /// Powers that discrepancies multiply.
     pub(crate) fn components(&self, observed: &Observations<'_>) -> Components {
         let sum = |is_own: fn(&Parameter) -> bool| {
             let mut sum = vec![0.0; observed.rows()];
-            for (parameter, column) in
-                self.parameters.iter().zip(&self.sensitivities).filter(|(p, _)| is_own(p))
+            for (parameter, column) in self.parameters.list.iter().zip(&self.per_z).filter(|(p, _)| is_own(p))
             {
                 let per_log = 1.0 / parameter.sigma();
                 sum.iter_mut().zip(column).for_each(|(sum, by)| *sum += per_log * by);
@@ -126,17 +129,18 @@ pub(crate) fn differences(recorded: &[f64], predicted: &[f64]) -> Vec<f64> {
     recorded.iter().zip(predicted).map(|(r, p)| r - p).collect()
 }
 
-/// Change of predictions with each parameter about z, per prior standard deviation.
-fn sensitivities(
+/// Change of predictions with each parameter, per its prior standard deviation.
+fn per_z(
     series: &Series,
     file: &Robot,
-    parameters: &[Parameter],
-    z: &DVector<f64>,
+    parameters: &Parameters,
+    u: &DVector<f64>,
     predicted: &[f64],
 ) -> Result<Vec<Vec<f64>>, Error> {
+    let z = parameters.z(u);
     let column = |i: usize| {
         let mut robot = file.clone();
-        for (j, parameter) in parameters.iter().enumerate() {
+        for (j, parameter) in parameters.list.iter().enumerate() {
             parameter.set(&mut robot, z[j] + if i == j { DIFFERENCE } else { 0.0 });
         }
         let moved = series.predict(&robot, &[])?;

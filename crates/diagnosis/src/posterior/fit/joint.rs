@@ -86,8 +86,8 @@ pub(crate) struct Fitted {
     pub(crate) effect: Vec<f64>,
     /// Fitted predictions of the test drives less those of the baseline, row by row.
     pub(crate) change: Vec<f64>,
-    /// The robot's parameters, in prior standard deviations from the file.
-    pub(crate) z: DVector<f64>,
+    /// The robot's parameters, as the independent numbers that their prior is made of, 0 at the file.
+    pub(crate) u: DVector<f64>,
     /// Change of the test drives with each free size, per prior standard deviation, and the sizes, one member after the other.
     pub(crate) raw_columns: Vec<Vec<f64>>,
     /// See [`Fitted::raw_columns`].
@@ -239,7 +239,7 @@ impl<'a> Joint<'a> {
             log,
             change: self.change(effect, &weights),
             effect: effect.to_vec(),
-            z: weights.rows(0, self.baseline.parameters.len()).into_owned(),
+            u: weights.rows(0, self.baseline.parameters.len()).into_owned(),
             raw_columns: columns.to_vec(),
             sizes,
             columns: group,

@@ -1,6 +1,16 @@
 //! Robot parameters that are free, with their priors.
 
-use model::Robot;
+use model::{Robot, knowledge};
+use nalgebra::{DMatrix, DVector};
+
+/// The free parameters of a robot, whose prior is made of independent standard normal numbers u: z = M u.
+#[derive(Clone, Debug)]
+pub(crate) struct Parameters {
+    /// One by one.
+    pub(crate) list: Vec<Parameter>,
+    /// M: the Cholesky factor of their correlation.
+    mixing: DMatrix<f64>,
+}
 
 /// A free parameter of the robot: z standard deviations of the prior from the file's value.
 #[derive(Clone, Debug)]
@@ -54,10 +64,68 @@ pub(crate) struct Shown {
     pub(crate) yaw_rate: bool,
 }
 
+impl Parameters {
+    /// The free parameters of a robot on some surfaces, as its posterior, its sources and its uncertainty leave them open.
+    pub(crate) fn of(robot: &Robot, surfaces: &[String], shown: Shown) -> Self {
+        let mut list = Parameter::of(robot, surfaces, shown);
+        let mut mixing = DMatrix::identity(list.len(), list.len());
+        let Some(posterior) = &robot.posterior else { return Parameters { list, mixing } };
+        let place = |name: &String| posterior.parameters.iter().position(|other| other == name);
+        let known: Vec<(usize, usize)> = (0..list.len())
+            .filter_map(|i| Some((i, place(&list[i].name).filter(|_| list[i].file > 0.0)?)))
+            .collect();
+        let covariance = posterior.covariance();
+        let own = DMatrix::from_fn(known.len(), known.len(), |a, b| covariance[(known[a].1, known[b].1)]);
+        let Some(root) = knowledge::root(&own) else { return Parameters { list, mixing } };
+        for (a, (i, _)) in known.iter().enumerate() {
+            let sigma = own[(a, a)].sqrt();
+            list[*i].prior = Prior::Log(sigma);
+            known.iter().enumerate().for_each(|(b, (j, _))| mixing[(*i, *j)] = root[(a, b)] / sigma);
+        }
+        Parameters { list, mixing }
+    }
+
+    /// Number of parameters.
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// z of some u.
+    pub(crate) fn z(&self, u: &DVector<f64>) -> DVector<f64> {
+        &self.mixing * u
+    }
+
+    /// A robot with the parameters at some u.
+    pub(crate) fn placed(&self, robot: &Robot, u: &DVector<f64>) -> Robot {
+        let mut robot = robot.clone();
+        self.list.iter().zip(self.z(u).iter()).for_each(|(parameter, z)| parameter.set(&mut robot, *z));
+        robot
+    }
+
+    /// Columns per u, of columns per z.
+    pub(crate) fn mixed(&self, per_z: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let column = |j: usize| {
+            let mut sum = vec![0.0; per_z.first().map_or(0, Vec::len)];
+            for (i, column) in per_z.iter().enumerate().filter(|(i, _)| self.mixing[(*i, j)] != 0.0) {
+                sum.iter_mut().zip(column).for_each(|(sum, by)| *sum += self.mixing[(i, j)] * by);
+            }
+            sum
+        };
+        (0..self.len()).map(column).collect()
+    }
+
+    /// Covariance of z of that of u.
+    pub(crate) fn covariance_of_z(&self, of_u: &DMatrix<f64>) -> DMatrix<f64> {
+        &self.mixing * of_u * self.mixing.transpose()
+    }
+}
+
 impl Parameter {
-    /// The free parameters of a robot on some surfaces.
-    pub(crate) fn of(robot: &Robot, surfaces: &[String], shown: Shown) -> Vec<Parameter> {
+    fn of(robot: &Robot, surfaces: &[String], shown: Shown) -> Vec<Parameter> {
         let u = robot.uncertainty;
+        let sigma = |name: &str, stated: f64| {
+            robot.provenance_of(name).and_then(knowledge::Provenance::relative_sigma).unwrap_or(stated)
+        };
         let mut list = Vec::new();
         let mut add = |name: &str, field: Field, prior: Prior| {
             let mut parameter = Parameter { name: name.to_owned(), field, file: 0.0, prior };
@@ -72,15 +140,20 @@ impl Parameter {
         };
         for name in surfaces.iter().filter(|name| robot.surfaces.contains_key(*name)) {
             let at = |field: &str| format!("surfaces.{name}.{field}");
-            add(&at("mu_roll"), Field::MuRoll(name.clone()), Prior::Log(u.mu_roll));
-            add(&at("mu_skid"), Field::MuSkid(name.clone()), Prior::Log(u.mu_skid));
+            add(&at("mu_roll"), Field::MuRoll(name.clone()), Prior::Log(sigma(&at("mu_roll"), u.mu_roll)));
+            add(&at("mu_skid"), Field::MuSkid(name.clone()), Prior::Log(sigma(&at("mu_skid"), u.mu_skid)));
             add(&at("slip_angle_scale_rad"), Field::SlipScale(name.clone()), Prior::Log(SLIP_SCALE_SIGMA));
         }
-        add("motors.left.k1_w_per_n2", Field::LeftK1, Prior::Log(u.k1));
-        add("motors.left.k2", Field::LeftK2, Prior::Log(u.k2));
-        add("motors.right.k1_w_per_n2", Field::RightK1, Prior::Log(u.k1));
-        add("motors.right.k2", Field::RightK2, Prior::Log(u.k2));
-        add("mass_kg", Field::Mass, Prior::Log(u.mass_kg));
+        let constants = [
+            ("motors.left.k1_w_per_n2", Field::LeftK1, u.k1),
+            ("motors.left.k2", Field::LeftK2, u.k2),
+            ("motors.right.k1_w_per_n2", Field::RightK1, u.k1),
+            ("motors.right.k2", Field::RightK2, u.k2),
+            ("mass_kg", Field::Mass, u.mass_kg),
+        ];
+        for (name, field, stated) in constants {
+            add(name, field, Prior::Log(sigma(name, stated)));
+        }
         let standing =
             |w: f64| Prior::Linear((STANDING_SHARE * w).max(STANDING_SIGMA_W * robot.strength().max(1.0)));
         add("drive_electronics_w", Field::Electronics, standing(robot.drive_electronics_w));
@@ -97,6 +170,20 @@ impl Parameter {
     pub(crate) fn value(&self, robot: &Robot) -> f64 {
         let mut robot = robot.clone();
         self.place(&mut robot).map_or(0.0, |place| *place)
+    }
+
+    /// Its value in the file.
+    pub(crate) fn file(&self) -> f64 {
+        self.file
+    }
+
+    /// Its width relative to its value in the file; none of what may be nothing.
+    pub(crate) fn relative_sigma(&self) -> Option<f64> {
+        let sigma = match self.prior {
+            Prior::Log(sigma) => sigma,
+            Prior::Linear(sigma) => sigma / self.file,
+        };
+        (self.file > 0.0).then_some(sigma)
     }
 
     /// Its width on the scale of z times one: relative for positive numbers, else in its unit.
@@ -157,9 +244,9 @@ mod tests {
     fn every_parameter_is_the_file_at_zero_and_moves_by_its_width() {
         let robot = model::builtin::husky_a200();
         let surfaces = ["marble".to_owned(), "unheard of".to_owned()];
-        let all = Parameter::of(&robot, &surfaces, Shown { battery: true, yaw_rate: true });
+        let all = Parameters::of(&robot, &surfaces, Shown { battery: true, yaw_rate: true });
         assert_eq!(all.len(), 11);
-        for parameter in &all {
+        for parameter in &all.list {
             let mut moved = robot.clone();
             parameter.set(&mut moved, 0.0);
             assert!((parameter.value(&moved) - parameter.value(&robot)).abs() < 1e-12, "{}", parameter.name);
@@ -168,5 +255,32 @@ mod tests {
             parameter.set(&mut moved, 0.0);
             assert!((parameter.value(&moved) - parameter.value(&robot)).abs() < 1e-12, "{}", parameter.name);
         }
+    }
+    #[test]
+    fn a_posterior_goes_before_the_uncertainty_and_keeps_what_hangs_together() {
+        let mut robot = model::builtin::husky_a200();
+        let names = ["motors.left.k2", "surfaces.marble.mu_roll", "unheard of"].map(str::to_owned).to_vec();
+        let covariance = vec![vec![4e-4, -3e-4, 0.0], vec![-3e-4, 9e-4, 0.0], vec![0.0, 0.0, 1.0]];
+        let mean = vec![robot.motors.left.k2.ln(), robot.surfaces["marble"].mu_roll.ln(), 0.0];
+        robot.posterior = Some(knowledge::Posterior { parameters: names, mean, covariance });
+        let all = Parameters::of(&robot, &["marble".to_owned()], Shown { battery: false, yaw_rate: false });
+        let at = |name: &str| all.list.iter().position(|one| one.name == name).unwrap();
+        let (k2, roll) = (at("motors.left.k2"), at("surfaces.marble.mu_roll"));
+        let identity = DMatrix::identity(all.len(), all.len());
+        let covariance = all.covariance_of_z(&identity);
+        let of = |i: usize, j: usize| covariance[(i, j)] * all.list[i].sigma() * all.list[j].sigma();
+        assert!((of(k2, k2) - 4e-4).abs() < 1e-8 && (of(roll, roll) - 9e-4).abs() < 1e-8);
+        assert!((of(k2, roll) + 3e-4).abs() < 1e-8);
+        let moved = all.placed(&robot, &DVector::from_element(all.len(), 0.3));
+        assert!(moved != robot && all.placed(&robot, &DVector::zeros(all.len())).motors == robot.motors);
+    }
+
+    #[test]
+    fn what_is_borrowed_is_known_to_a_factor() {
+        let mut robot = model::builtin::husky_a200();
+        robot.provenance = [("mass_kg".to_owned(), knowledge::Provenance::Borrowed)].into();
+        let all = Parameters::of(&robot, &[], Shown { battery: false, yaw_rate: false });
+        let mass = all.list.iter().find(|one| one.name == "mass_kg").unwrap();
+        assert_eq!(mass.sigma(), 1.0);
     }
 }

@@ -20,6 +20,8 @@ pub(crate) enum Family {
     Place,
     /// Time since it began to move.
     SinceStart,
+    /// How far the wheels have turned, where something repeats with it.
+    Turn,
 }
 
 /// What the functions multiply.
@@ -35,7 +37,7 @@ pub(crate) enum Component {
     Constant,
 }
 
-const FAMILIES: [Family; 4] = [Family::Regime, Family::Time, Family::Place, Family::SinceStart];
+const FAMILIES: [Family; 5] = [Family::Regime, Family::Time, Family::Place, Family::SinceStart, Family::Turn];
 const COMPONENTS: [Component; 4] =
     [Component::Rolling, Component::Skid, Component::Power, Component::Constant];
 /// Amplitudes, as shares of the component.
@@ -134,6 +136,10 @@ fn functions(observed: &Observations<'_>, family: Family) -> Option<Vec<Vec<f64>
         Family::SinceStart => {
             let features = Features::<1>::new(FUNCTIONS, [SINCE_START_LENGTH]);
             Some(of(FUNCTIONS, &|k, i| features.at(k, &[averages[i].input.moving_s.max(0.0).ln_1p()])))
+        }
+        Family::Turn => {
+            let swing = |_, i: usize| 2.0 * averages[i].input.nearness - 1.0;
+            observed.series.turning.is_some().then(|| of(1, &swing))
         }
         Family::Place => {
             let known = |i: &usize| averages[*i].input.position_m.iter().all(|m| m.is_finite());

@@ -1,6 +1,9 @@
 //! The report put together.
 
-use model::Robot;
+use model::{
+    Robot,
+    knowledge::{ModelError, Regimes},
+};
 use recording::Recording;
 
 use crate::discovered::UNKNOWN;
@@ -11,6 +14,7 @@ use crate::{
     posterior::{
         engine::Found,
         fit::joint::Member,
+        learn::regimes,
         observations::Observations,
         report::{
             detectable::detectable,
@@ -22,6 +26,7 @@ use crate::{
         search::explanation::{Explanation, credible},
     },
     report::{BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, Finding, FindingFit, Trace, Verdict},
+    words::mistaken,
 };
 
 /// Standard deviations from which a parameter is worth a note.
@@ -37,6 +42,10 @@ pub(crate) struct Subject<'a> {
     pub(crate) observed: &'a Observations<'a>,
     /// Names of the test drives.
     pub(crate) drives: &'a [String],
+    /// Why these are no drives of this robot as its file has it; nothing else is told of them before that is mended.
+    pub(crate) mistakes: &'a [String],
+    /// What is doubtful about them, the mistakes among it.
+    pub(crate) doubts: &'a [String],
 }
 
 /// The report of what was found.
@@ -47,14 +56,20 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let Subject { file, observed, .. } = *subject;
     let filed = observed.series.predict(file, &[])?;
     let error = file_error::of(observed, &filed);
-    let said = verdict(&found.explanations, circumstances(observed, found));
-    let findings = if said == Verdict::Consistent { Vec::new() } else { findings(subject, found) };
+    let said = match subject.mistakes.is_empty() {
+        true => verdict(&found.explanations, circumstances(observed, found)),
+        false => Verdict::Unexplained,
+    };
+    let is_told = said != Verdict::Consistent && subject.mistakes.is_empty();
+    let findings = if is_told { findings(subject, found) } else { Vec::new() };
     let first = found.explanations.first().filter(|one| !one.names.is_empty() || one.unlisted);
     let first = first.filter(|_| !findings.is_empty());
     let applied: Vec<Applied> = first.map_or(&[][..], members).iter().map(Member::applied).collect();
-    let (corrected_robot, mut notes) =
+    let (corrected_robot, of_corrected) =
         corrected(&fitted_robot(file, found, first), &applied, &observed.series.surfaces(), subject.drives);
-    notes.extend(assumed(observed, found));
+    let mut notes = subject.doubts.to_vec();
+    notes.extend(of_corrected);
+    notes.extend(assumed(file, observed, found));
     let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
     let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
     let (detectable, not_judged) = detectable(&information, &named);
@@ -63,7 +78,10 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let trace = trace(subject, found, &filed, first);
     Ok(Diagnosis {
         verdict: said,
-        sentence: sentence(said, &error, found.noise_floor_w, &findings),
+        sentence: match subject.mistakes.first() {
+            Some(mistake) => mistaken(mistake),
+            None => sentence(said, &error, found.noise_floor_w, &findings),
+        },
         file: Some(error),
         probability: Some(probability(&found.explanations)),
         explanations: credible(&found.explanations).iter().map(figures).collect(),
@@ -82,14 +100,19 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
 }
 
 /// What was assumed of the file, and which of its numbers would have to be far off with nothing missing.
-fn assumed(observed: &Observations<'_>, found: &Found) -> Vec<String> {
-    let source =
-        if observed.series.has_healthy() { "by the healthy drives" } else { "as for measured constants" };
+fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<String> {
+    let source = match (observed.series.has_healthy(), &file.model_error) {
+        (true, _) => "by the healthy drives",
+        (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
+        (false, None) => "by where its constants come from",
+    };
     let share = 100.0 * found.model_error;
     let mut notes = vec![format!("the model is taken to miss {share:.0} % of power smoothly, {source}")];
+    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
-    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| &fitted.z);
-    for (parameter, z) in found.baseline.parameters.iter().zip(z.into_iter().flat_map(|z| z.iter())) {
+    let parameters = &found.baseline.parameters;
+    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
+    for (parameter, z) in parameters.list.iter().zip(z.iter().flat_map(|z| z.iter())) {
         if z.abs() > FAR_OFF_SIGMAS {
             let name = &parameter.name;
             notes.push(format!(
@@ -100,12 +123,37 @@ fn assumed(observed: &Observations<'_>, found: &Found) -> Vec<String> {
     notes
 }
 
+/// What these drives do that those of a calibration did not.
+fn beyond(known: &ModelError, here: &Regimes) -> Option<String> {
+    /// What a smooth curve is good for beyond its ends, as a share of the range that it was fitted in.
+    const REACH: f64 = 0.1;
+    let quantities = [
+        ("speed", "m/s", known.regimes.speed_mps, here.speed_mps),
+        ("difference of the sides' speeds", "m/s", known.regimes.difference_mps, here.difference_mps),
+        ("pitch", "rad", known.regimes.pitch_rad, here.pitch_rad),
+    ];
+    let is_beyond = |[low, high]: [f64; 2], here: [f64; 2]| {
+        let reach = REACH * (high - low);
+        here[0] < low - reach || here[1] > high + reach
+    };
+    let said: Vec<String> = quantities
+        .into_iter()
+        .filter(|(_, _, known, here)| is_beyond(*known, *here))
+        .map(|(name, unit, [low, high], here)| {
+            format!("{name} {:.2} to {:.2} {unit} (calibrated on {low:.2} to {high:.2})", here[0], here[1])
+        })
+        .collect();
+    (!said.is_empty()).then(|| {
+        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", said.join(", "))
+    })
+}
+
 fn circumstances(observed: &Observations<'_>, found: &Found) -> Circumstances {
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
-    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| fitted.z.as_slice().to_vec());
+    let u = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| fitted.u.as_slice().to_vec());
     Circumstances {
         held_out_ratio: found.held_out_rmse_w[0] / found.noise_floor_w.max(1e-9),
-        file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&z.unwrap_or_default()),
+        file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&u.unwrap_or_default()),
     }
 }
 
@@ -125,12 +173,7 @@ fn findings(subject: &Subject<'_>, found: &Found) -> Vec<Finding> {
 fn fitted_robot(file: &Robot, found: &Found, explanation: Option<&Explanation>) -> Robot {
     let nothing = found.explanations.iter().find(|one| one.names.is_empty());
     let fitted = explanation.or(nothing).and_then(|one| one.fitted.as_ref());
-    let mut robot = file.clone();
-    if let Some(fitted) = fitted {
-        let parameters = found.baseline.parameters.iter().zip(fitted.z.iter());
-        parameters.for_each(|(parameter, z)| parameter.set(&mut robot, *z));
-    }
-    robot
+    fitted.map_or_else(|| file.clone(), |fitted| found.baseline.parameters.placed(file, &fitted.u))
 }
 
 fn figures(explanation: &Explanation) -> ExplanationFigures {
@@ -157,11 +200,12 @@ fn trace(subject: &Subject<'_>, found: &Found, filed: &[f64], first: Option<&Exp
     let Subject { suspect, observed, drives, .. } = *subject;
     let nothing = found.explanations.iter().find(|one| one.names.is_empty());
     let change = first.or(nothing).and_then(|one| one.fitted.as_ref()).map(|fitted| &fitted.change);
-    let z: Vec<f64> = found.baseline.z.iter().copied().collect();
     // Fitted predictions are told about those at the file's parameters.
     let corrected = |i: usize| {
-        let moved: f64 = found.baseline.sensitivities.iter().zip(&z).map(|(column, z)| column[i] * z).sum();
-        found.baseline.predicted[i] - moved + change.map_or(0.0, |change| change[i])
+        let baseline = &found.baseline;
+        let moved: f64 =
+            baseline.sensitivities.iter().zip(baseline.u.iter()).map(|(column, u)| column[i] * u).sum();
+        baseline.predicted[i] - moved + change.map_or(0.0, |change| change[i])
     };
     let count = (0..observed.test_rows).filter(|i| observed.averages()[*i].channel == 0).count();
     let all = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {

@@ -201,6 +201,7 @@ fn follows(family: Family) -> &'static str {
         Family::Time => "the time of the drive",
         Family::Place => "the place",
         Family::SinceStart => "the time since the robot began to move",
+        Family::Turn => "how far the wheels have turned",
     }
 }
 

@@ -61,10 +61,10 @@ pub(crate) fn verdict(explanations: &[Explanation], circumstances: Circumstances
     if of_first >= SURE { Verdict::Explained } else { Verdict::Ambiguous }
 }
 
-/// Whether parameters lie farther from the file, in its standard deviations, than its stated uncertainty lets them.
-pub(crate) fn is_beyond_uncertainty(z: &[f64]) -> bool {
-    let count = z.len() as f64;
-    let sum: f64 = z.iter().map(|z| z * z).sum();
+/// Whether parameters lie farther from the file than its stated uncertainty lets them; as independent numbers of standard deviation one.
+pub(crate) fn is_beyond_uncertainty(u: &[f64]) -> bool {
+    let count = u.len() as f64;
+    let sum: f64 = u.iter().map(|u| u * u).sum();
     ChiSquared::new(count).is_ok_and(|law| sum > law.inverse_cdf(1.0 - BEYOND_UNCERTAINTY))
 }
 
