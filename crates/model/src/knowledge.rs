@@ -187,6 +187,12 @@ fn check_posterior(posterior: &Posterior) -> Result<(), Error> {
     let wrong =
         |field: &str, message: String| Err(Error::Knowledge { field: format!("posterior.{field}"), message });
     let count = posterior.parameters.len();
+    if count > MOST_PARAMETERS {
+        return wrong(
+            "parameters",
+            format!("{count} constants are more than the {MOST_PARAMETERS} of any robot"),
+        );
+    }
     let numbers = posterior.mean.iter().chain(posterior.covariance.iter().flatten());
     if !numbers.clone().all(|value| value.is_finite()) {
         return wrong("covariance", "every number must be finite".into());
@@ -219,6 +225,9 @@ fn check_posterior(posterior: &Posterior) -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// Constants of a robot that knows forty kinds of ground, about.
+const MOST_PARAMETERS: usize = 200;
 
 /// Variance of a logarithm of which two standard deviations are a factor of 400.
 const LARGEST_VARIANCE: f64 = 9.0;

@@ -18,7 +18,7 @@ use crate::posterior::{
         window::Grid,
     },
     observations::Observations,
-    report::held_out,
+    report::held_out::{HeldOut, held_out},
     search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
@@ -41,8 +41,8 @@ pub(crate) struct Found {
     pub(crate) baseline: Baseline,
     /// Unlisted blocks.
     pub(crate) blocks: Vec<Block>,
-    /// Held-out error of power with nothing found, and with the likeliest explanation that names anything [W].
-    pub(crate) held_out_rmse_w: [f64; 2],
+    /// Held-out errors of power with nothing found, and with the likeliest explanation that names anything.
+    pub(crate) held_out: [HeldOut; 2],
     /// Noise of power, root mean square over the test drives [W].
     pub(crate) noise_floor_w: f64,
     /// Sizes that would have been noticed.
@@ -91,22 +91,22 @@ pub(crate) fn find(
     let screen = Screen::new(&joint, &grid, effects);
     let blocks = unlisted::blocks(&joint);
     step("refitting the leading sets", 0.5)?;
-    let search = Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks };
+    let search = Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks, missed: model_error };
     let explanations = search.posterior()?;
     step("holding stretches out", 0.9)?;
-    let held_out_rmse_w = held_out(&joint, &explanations);
+    let held_out = held_outs(&joint, &explanations);
     let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
     let noise_floor_w = noise_floor_w(observed, &baseline);
-    Ok(Found { explanations, model_error, held_out_rmse_w, noise_floor_w, detectable, blocks, baseline })
+    Ok(Found { explanations, model_error, held_out, noise_floor_w, detectable, blocks, baseline })
 }
 
-/// Held-out errors of nothing and of the likeliest explanation that names anything [W].
-fn held_out(joint: &Joint<'_>, explanations: &[Explanation]) -> [f64; 2] {
+/// Held-out errors of nothing and of the likeliest explanation that names anything.
+fn held_outs(joint: &Joint<'_>, explanations: &[Explanation]) -> [HeldOut; 2] {
     let fit = |is_own: &dyn Fn(&Explanation) -> bool| {
         let found = explanations.iter().find(|one| is_own(one))?;
-        Some(held_out::rmse_w(joint, found.fitted.as_ref()?))
+        Some(held_out(joint, found.fitted.as_ref()?))
     };
-    let nothing = fit(&|one| one.names.is_empty()).unwrap_or(f64::NAN);
+    let nothing = fit(&|one| one.names.is_empty()).unwrap_or_default();
     let named = fit(&|one| !one.names.is_empty()).unwrap_or(nothing);
     [nothing, named]
 }

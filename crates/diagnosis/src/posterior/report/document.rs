@@ -20,6 +20,7 @@ use crate::{
             detectable::detectable,
             file_error,
             finding::{Reading, members},
+            held_out::{HeldOut, STRAY_SIGMAS},
             sentence::sentence,
             verdict::{Circumstances, is_beyond_uncertainty, probability, verdict},
         },
@@ -73,7 +74,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
     let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
     let (detectable, not_judged) = detectable(&information, &named);
-    let [nothing_w, named_w] = found.held_out_rmse_w;
+    let [nothing_w, named_w] = found.held_out.map(|one| one.rmse_w);
     let held_out_rmse_w = if findings.is_empty() { nothing_w } else { named_w };
     let trace = trace(subject, found, &filed, first);
     Ok(Diagnosis {
@@ -109,6 +110,7 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
     let share = 100.0 * found.model_error;
     let mut notes = vec![format!("the model is taken to miss {share:.0} % of power smoothly, {source}")];
     notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
+    notes.extend(strays(found.held_out[0]));
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
     let parameters = &found.baseline.parameters;
     let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
@@ -121,6 +123,19 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
         }
     }
     notes
+}
+
+/// That more seconds than chance has lie far off.
+fn strays(held_out: HeldOut) -> Option<String> {
+    /// Share beyond [`STRAY_SIGMAS`] standard deviations of a normal distribution, ten times.
+    const MANY: f64 = 0.0047;
+    (held_out.strays > MANY).then(|| {
+        format!(
+            "{:.1} % of seconds lie more than {STRAY_SIGMAS} standard deviations of the noise off, as quick moves and strays of meters do; \
+             they count as that far off",
+            100.0 * held_out.strays
+        )
+    })
 }
 
 /// What these drives do that those of a calibration did not.
@@ -152,13 +167,13 @@ fn circumstances(observed: &Observations<'_>, found: &Found) -> Circumstances {
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
     let u = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| fitted.u.as_slice().to_vec());
     Circumstances {
-        held_out_ratio: found.held_out_rmse_w[0] / found.noise_floor_w.max(1e-9),
+        held_out_ratio: found.held_out[0].over_noise,
         file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&u.unwrap_or_default()),
     }
 }
 
 fn findings(subject: &Subject<'_>, found: &Found) -> Vec<Finding> {
-    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out_rmse_w;
+    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out.map(|one| one.rmse_w);
     let reading = Reading {
         series: subject.observed.series,
         drives: subject.drives,
@@ -190,7 +205,7 @@ fn baseline(observed: &Observations<'_>, filed: &[f64], found: &Found) -> Baseli
     BaselineFit {
         rmse_w: observed.power_rms(&errors),
         bias_w: power.iter().sum::<f64>() / power.len().max(1) as f64,
-        held_out_rmse_w: found.held_out_rmse_w[0],
+        held_out_rmse_w: found.held_out[0].rmse_w,
         noise_floor_w: found.noise_floor_w,
     }
 }

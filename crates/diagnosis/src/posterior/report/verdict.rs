@@ -21,7 +21,7 @@ const BEYOND_UNCERTAINTY: f64 = 0.01;
 /// What a verdict needs besides the posterior.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circumstances {
-    /// Held-out error with nothing found, over the noise floor.
+    /// Held-out error with nothing found, over the noise; see [`crate::posterior::report::held_out::HeldOut::over_noise`].
     pub(crate) held_out_ratio: f64,
     /// Whether the robot's parameters left what its file states, which only counts without healthy drives.
     pub(crate) file_is_off: bool,

@@ -10,10 +10,11 @@ use crate::posterior::{
 /// of twenty mechanisms.
 const MECHANISM_PRIOR: f64 = 0.03;
 const UNLISTED_PRIOR: f64 = 0.03;
-/// Share of the fitted prediction that an added mechanism has to change for its gain to count in full: two that cancel are form error.
-const COUNTED_CHANGE: f64 = 0.02;
-/// Share of the prediction below which a mechanism is discounted, and by what power of its share.
-const NOTED_CHANGE: f64 = 0.015;
+/// By how much an added mechanism has to change the fitted prediction for its gain to count in full, and below what it is discounted, as
+/// shares of what the model misses anyway: two mechanisms that cancel are form error. Two and one and a half per cent of power for a model
+/// that misses three.
+const COUNTED_CHANGE: f64 = 2.0 / 3.0;
+const NOTED_CHANGE: f64 = 0.5;
 /// Least probability of all explanations of a credible set together.
 const CREDIBLE: f64 = 0.95;
 
@@ -68,8 +69,9 @@ pub(crate) fn change_share(
     share(&|i| observed.is_power(i)).max(rest).max(motion)
 }
 
-/// How much of a gain in log evidence counts for a mechanism that changes the fitted prediction by a share.
-pub(crate) fn counted(gain: f64, share: f64) -> f64 {
+/// How much of a gain in log evidence counts for a mechanism that changes the fitted prediction by a share, of a model that misses another.
+pub(crate) fn counted(gain: f64, share: f64, missed: f64) -> f64 {
+    let share = share / missed;
     let scale = (share / COUNTED_CHANGE).min(1.0).powi(2);
     let scale = if share < NOTED_CHANGE { scale * (share / NOTED_CHANGE) } else { scale };
     if gain > 0.0 { gain * scale } else { gain }
@@ -112,9 +114,10 @@ mod tests {
 
     #[test]
     fn a_gain_counts_by_what_it_changes() {
-        assert_eq!(counted(10.0, 0.03), 10.0);
-        assert!((counted(10.0, 0.016) - 6.4).abs() < 1e-9);
-        assert!(counted(10.0, 0.005) < 0.3);
-        assert_eq!(counted(-4.0, 0.001), -4.0, "what explains nothing is not made likelier");
+        assert_eq!(counted(10.0, 0.03, 0.03), 10.0);
+        assert!((counted(10.0, 0.016, 0.03) - 6.4).abs() < 1e-9);
+        assert!(counted(10.0, 0.005, 0.03) < 0.3);
+        assert_eq!(counted(10.0, 0.005, 0.006), 10.0, "what a good model cannot miss counts");
+        assert_eq!(counted(-4.0, 0.001, 0.03), -4.0, "what explains nothing is not made likelier");
     }
 }

@@ -45,6 +45,8 @@ pub(crate) struct Search<'a> {
     pub(crate) grid: &'a Grid,
     /// What lies outside the list.
     pub(crate) blocks: &'a [Block],
+    /// Share of power that the model misses.
+    pub(crate) missed: f64,
 }
 
 impl Search<'_> {
@@ -190,7 +192,8 @@ impl Search<'_> {
                 rest.remove(which);
                 let part = fits.get(&rest)?;
                 let gain = kept.log() - part.log();
-                logs.get(&rest).map(|log| log + counted(gain, self.share(&kept.fitted, &part.fitted)))
+                logs.get(&rest)
+                    .map(|log| log + counted(gain, self.share(&kept.fitted, &part.fitted), self.missed))
             };
             let least = (0..names.len()).filter_map(without).fold(f64::INFINITY, f64::min);
             logs.insert(names.clone(), if names.is_empty() { kept.log() } else { least.min(kept.log()) });
