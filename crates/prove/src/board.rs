@@ -130,9 +130,8 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         set_named: Rate::of(concealing_listed().map(|case| case.rank.is_some_and(|rank| rank <= 2))),
         set_in_three: Rate::of(concealing_listed().map(is_in_three)),
         set_wrong: Rate::of(
-            concealing_listed().map(|case| {
-                case.gave_a_name && !case.rank.is_some_and(|rank| rank <= 2) && !is_in_three(case)
-            }),
+            concealing_listed()
+                .map(|case| case.gave_a_name && case.rank.is_none_or(|rank| rank > 2) && !is_in_three(case)),
         ),
         set_none: Rate::of(concealing_listed().map(|case| !case.gave_a_name)),
         detected: Rate::of(listed(&scores).map(|truth| truth.detected)),

@@ -50,7 +50,7 @@ pub fn taught(
         }
         Err(Error::Calibration(calibration::Error::Stopped)) => return Err(calibration::Error::Stopped),
         Err(error) => {
-            taught.notes.push(format!("what the model misses of these drives is not known: {error}"))
+            taught.notes.push(format!("what the model misses of these drives is not known: {error}"));
         }
     }
     Ok(taught)
