@@ -1,27 +1,27 @@
 //! A diagnosis from beginning to end.
 
-use calibration::with_powers;
 use model::{
     Robot,
     mechanism::{self, Mechanism},
 };
-use recording::{Channel, PowerForm, Recording, Watch, unwatched};
+use recording::{Channel, Recording, Watch, unwatched};
 
 use crate::{
-    Error, admissible,
+    Error,
     alternatives::{Explanation, alternatives, detectable},
     average::Quantity,
     baseline::{Baseline, differences},
     caveats::caveats,
     corrected::corrected,
     discover::{Sure, discover},
-    doubts::{contradictions, doubts, mistakes, moved_far},
+    doubts::{doubts, mistakes, moved_far},
     gates,
     judged::Judged,
     needed::shown_in,
     next_drive::next_drive,
     null::Null,
     posterior,
+    prepared::Prepared,
     report::{Diagnosis, Verdict},
     search::{Search, TOLD, search},
     series::{Applied, Look, Series},
@@ -86,22 +86,11 @@ pub fn diagnose_watched(
     if question.engine == Engine::Posterior {
         return posterior::diagnose::diagnose(question, progress, watch);
     }
-    let Question { robot, suspect, healthy, ruled_out, .. } = *question;
+    let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
-    admissible::check(suspect, healthy)?;
-    // Means over angles in another unit are none.
-    let contradictions = contradictions(suspect, healthy);
-    let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
-    let as_recorded = suspect.thinned_watched(watch).map_err(calibration::Error::from)?;
-    let suspect = &with_powers(robot, &as_recorded, watch)?;
-    let healthy = match healthy {
-        Some(healthy) => {
-            let thin = healthy.thinned_watched(watch).map_err(calibration::Error::from)?;
-            Some(with_powers(robot, &thin, watch)?)
-        }
-        None => None,
-    };
-    let healthy = healthy.as_ref();
+    let Prepared { suspect, healthy, as_recorded, by_current, contradictions } =
+        Prepared::new(question, watch)?;
+    let (suspect, healthy) = (&suspect, healthy.as_ref());
     let series = Series::watched(robot, suspect, healthy, watch)?;
     let mut series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();

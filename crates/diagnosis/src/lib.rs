@@ -67,6 +67,7 @@ mod plain;
 mod plausible;
 mod polish;
 mod posterior;
+mod prepared;
 mod profile;
 mod ranked;
 mod reached;

@@ -49,7 +49,30 @@ impl Provenance {
     }
 }
 
-/// What a fit left open: a normal distribution of the logarithms of constants.
+/// Relative one-sigma uncertainty of the parameters, 0.1 meaning 10 %.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Uncertainty {
+    /// Of every surface's μ_R. Default 0.10.
+    pub mu_roll: f64,
+    /// Of every surface's μ_S. Default 0.10.
+    pub mu_skid: f64,
+    /// Of both sides' k1. Default 0.05.
+    pub k1: f64,
+    /// Of both sides' k2. Default 0.02.
+    pub k2: f64,
+    /// Of the mass. Default 0.02.
+    pub mass_kg: f64,
+}
+
+impl Default for Uncertainty {
+    fn default() -> Self {
+        Uncertainty { mu_roll: 0.10, mu_skid: 0.10, k1: 0.05, k2: 0.02, mass_kg: 0.02 }
+    }
+}
+
+/// What a fit left open: a normal distribution of the logarithms of constants. It holds of constants that still are what was fitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
@@ -112,7 +135,7 @@ impl Posterior {
 }
 
 impl Robot {
-    /// Where a constant comes from, by its field; what a file gives none of counts as measured.
+    /// Where a constant comes from, by its field, where the file says so.
     pub fn provenance_of(&self, field: &str) -> Option<Provenance> {
         self.provenance.get(field).copied()
     }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use crate::battery::Battery;
 use crate::{
     Error, Sides,
     builtin::{HUSKY_KG, HUSKY_TOP_MPS},
@@ -12,6 +11,7 @@ use crate::{
     known::KnownMechanism,
     robot_limits,
 };
+pub use crate::{battery::Battery, knowledge::Uncertainty};
 
 /// A skid-steered robot with one motor a side.
 ///
@@ -193,29 +193,6 @@ pub struct SpeedFriction {
     pub mu_roll: f64,
     /// μ_S fitted there [-].
     pub mu_skid: f64,
-}
-
-/// Relative one-sigma uncertainty of the parameters, 0.1 meaning 10 %.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct Uncertainty {
-    /// Of every surface's μ_R. Default 0.10.
-    pub mu_roll: f64,
-    /// Of every surface's μ_S. Default 0.10.
-    pub mu_skid: f64,
-    /// Of both sides' k1. Default 0.05.
-    pub k1: f64,
-    /// Of both sides' k2. Default 0.02.
-    pub k2: f64,
-    /// Of the mass. Default 0.02.
-    pub mass_kg: f64,
-}
-
-impl Default for Uncertainty {
-    fn default() -> Self {
-        Uncertainty { mu_roll: 0.10, mu_skid: 0.10, k1: 0.05, k2: 0.02, mass_kg: 0.02 }
-    }
 }
 
 impl Surface {

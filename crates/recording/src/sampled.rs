@@ -10,7 +10,7 @@ const STRETCH_S: f64 = 60.0;
 impl Recording {
     /// The same drives, or of more than so many seconds evenly spread stretches of a minute, each a run of its own.
     pub fn sampled(&self, most_s: f64) -> Cow<'_, Recording> {
-        let lasts_s: f64 = self.runs.iter().map(|run| self.duration_s(&run.rows)).sum();
+        let lasts_s = self.duration_s();
         if lasts_s <= most_s {
             return Cow::Borrowed(self);
         }
@@ -25,9 +25,13 @@ impl Recording {
         Cow::Owned(self.only(&runs))
     }
 
-    fn duration_s(&self, rows: &Range<usize>) -> f64 {
-        let end = rows.end.saturating_sub(1);
-        self.t_s.get(end).zip(self.t_s.get(rows.start)).map_or(0.0, |(end, start)| end - start)
+    /// Duration of all runs \[s\].
+    pub fn duration_s(&self) -> f64 {
+        let of_run = |run: &Run| {
+            let end = run.rows.end.saturating_sub(1);
+            self.t_s.get(end).zip(self.t_s.get(run.rows.start)).map_or(0.0, |(end, start)| end - start)
+        };
+        self.runs.iter().map(of_run).sum()
     }
 
     /// All runs cut into stretches.
@@ -93,6 +97,7 @@ mod tests {
         let short = drives(600);
         assert_eq!(*short.sampled(600.0), short);
         let long = drives(6000);
+        assert!((long.duration_s() - 5999.8).abs() < 1e-6, "{}", long.duration_s());
         let part = long.sampled(600.0).into_owned();
         assert!((part.rows() as f64 / 6000.0 - 1.0).abs() < 0.11, "{}", part.rows());
         assert_eq!(part.channel(Channel::Power).unwrap(), part.t_s, "rows stay together");

@@ -1,20 +1,21 @@
 //! The posterior diagnosis from recordings to the report.
 
-use calibration::{slopes_note, with_powers};
+use calibration::slopes_note;
 use model::mechanism::{self, Mechanism};
-use recording::{PowerForm, Watch};
+use recording::Watch;
 
 use crate::{
-    Error, Question, Series, admissible,
+    Error, Question, Series,
     caveats::BY_CURRENT,
     diagnose::{NEEDED_S, impossible},
-    doubts::{contradictions, doubts, mistakes},
+    doubts::{doubts, mistakes},
     posterior::{
         engine::find,
         fit::baseline::Baseline,
         observations::Observations,
         report::document::{Subject, document},
     },
+    prepared::Prepared,
     report::Diagnosis,
 };
 
@@ -27,20 +28,11 @@ pub(crate) fn diagnose(
     progress: &dyn Fn(&str, f64),
     watch: &Watch,
 ) -> Result<Diagnosis, Error> {
-    let Question { robot, suspect, healthy, ruled_out, .. } = *question;
+    let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
-    admissible::check(suspect, healthy)?;
-    let contradictions = contradictions(suspect, healthy);
-    let by_current = suspect.power_form() == Some(PowerForm::MotorCurrents);
-    let as_recorded = suspect.thinned_watched(watch).map_err(calibration::Error::from)?;
-    let suspect = &with_powers(robot, &as_recorded, watch)?;
-    let healthy = match healthy {
-        Some(healthy) => {
-            let thin = healthy.thinned_watched(watch).map_err(calibration::Error::from)?;
-            Some(with_powers(robot, &thin, watch)?)
-        }
-        None => None,
-    };
+    let Prepared { suspect, healthy, as_recorded, by_current, contradictions } =
+        Prepared::new(question, watch)?;
+    let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {

@@ -64,13 +64,7 @@ pub(crate) fn find(
         observed.go_on()
     };
     let scale = scale(observed, &baseline, file);
-    let beside = Beside {
-        series: observed.series,
-        robot: &baseline.robot,
-        applied: &[],
-        predicted: &baseline.predicted,
-        everywhere: false,
-    };
+    let beside = alone(observed, &baseline);
     step("making effects", 0.2)?;
     let effects = effects(library, &scale, &beside)?;
     let mut common = common(library, &scale, &beside)?;
@@ -163,6 +157,17 @@ fn healthy_shares(effects: &[Effect]) -> Vec<Vec<f64>> {
     columns
 }
 
+/// Effects in the test drives with nothing else acting.
+fn alone<'a>(observed: &Observations<'a>, baseline: &'a Baseline) -> Beside<'a> {
+    Beside {
+        series: observed.series,
+        robot: &baseline.robot,
+        applied: &[],
+        predicted: &baseline.predicted,
+        everywhere: false,
+    }
+}
+
 /// Columns of what healthy robots and good logs have of mechanisms, in drives that stand alone.
 pub(crate) fn healthy_columns(
     observed: &Observations<'_>,
@@ -170,13 +175,7 @@ pub(crate) fn healthy_columns(
     file: &Robot,
     library: &[&'static dyn Mechanism],
 ) -> Result<Vec<Vec<f64>>, Error> {
-    let beside = Beside {
-        series: observed.series,
-        robot: &baseline.robot,
-        applied: &[],
-        predicted: &baseline.predicted,
-        everywhere: false,
-    };
+    let beside = alone(observed, baseline);
     let shared: Vec<_> = library.iter().copied().filter(|one| one.healthy_share() > 0.0).collect();
     Ok(healthy_shares(&effects(&shared, &scale(observed, baseline, file), &beside)?))
 }

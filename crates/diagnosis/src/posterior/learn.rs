@@ -10,7 +10,7 @@ use model::{
     robot::Surface,
 };
 use nalgebra::{DMatrix, DVector};
-use recording::{Recording, Watch};
+use recording::{PowerForm, Recording, Watch};
 
 use crate::{
     Error, Series,
@@ -46,7 +46,16 @@ pub fn taught(
     match learn(before, &taught.robot, drives, watch) {
         Ok(learnt) => {
             taught.notes.extend(learnt.errors.map(|errors| errors.to_string()));
-            taught.robot = with_sources(learnt.robot, &taught.parameters);
+            let robot = with_sources(learnt.robot, &taught.parameters);
+            // No file is written that could not be read again.
+            match robot.validate() {
+                Ok(()) => taught.robot = robot,
+                Err(error) => {
+                    taught
+                        .notes
+                        .push(format!("how well the robot is known is left out of its file: {error}"));
+                }
+            }
         }
         Err(Error::Calibration(calibration::Error::Stopped)) => return Err(calibration::Error::Stopped),
         Err(error) => {
@@ -85,6 +94,8 @@ pub struct Errors {
     pub noise_w: f64,
     /// See [`ModelError::fraction`].
     pub model_error: f64,
+    /// Time that was looked at, spread over all drives, where they are longer [s].
+    pub sampled_s: Option<f64>,
 }
 
 impl std::fmt::Display for Errors {
@@ -101,7 +112,11 @@ impl std::fmt::Display for Errors {
             off(&self.after),
             self.noise_w,
             100.0 * self.model_error
-        )
+        )?;
+        match self.sampled_s {
+            Some(sampled_s) => write!(f, " (by {:.0} min, spread over all drives)", sampled_s / 60.0),
+            None => Ok(()),
+        }
     }
 }
 
@@ -121,7 +136,10 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         ..calibrated.clone()
     };
     let thin = drives.thinned_watched(watch).map_err(calibration::Error::from)?;
-    let drives = with_powers(&about, &thin.sampled(MOST_S), watch)?;
+    let sampled = thin.sampled(MOST_S);
+    let is_whole = sampled.rows() == thin.rows();
+    let by_current = thin.power_form() == Some(PowerForm::MotorCurrents);
+    let drives = with_powers(&about, &sampled, watch)?;
     let series = Series::watched(&about, &drives, None, watch)?;
     if series.averages.iter().filter(|a| a.channel == 0).count() < NEEDED_S {
         return Ok(Learnt { robot: calibrated.clone(), errors: None });
@@ -151,12 +169,13 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         after: error(calibrated)?,
         noise_w: engine::noise_floor_w(&observed, &baseline),
         model_error: fraction,
+        sampled_s: (!is_whole).then(|| observed.total_s()),
     };
     let robot = Robot {
-        posterior: posterior(&baseline, &model),
+        posterior: posterior(&baseline, &model, by_current),
         model_error: Some(ModelError {
             fraction,
-            hours: observed.total_s() / 3600.0,
+            hours: thin.duration_s() / 3600.0,
             regimes: regimes(&observed),
         }),
         noise: noise(&observed, &baseline),
@@ -174,12 +193,15 @@ fn with_new(robot: &Robot, other: &Robot) -> BTreeMap<String, Surface> {
 
 /// The covariance of the constants' logarithms beside what the model misses, about the values that were calibrated. Where the drives
 /// would have them elsewhere, it is wider by as much: a calibration weighs rows in another way.
-fn posterior(baseline: &Baseline, model: &LinearModel) -> Option<Posterior> {
+fn posterior(baseline: &Baseline, model: &LinearModel, by_current: bool) -> Option<Posterior> {
     let parameters = &baseline.parameters;
     let count = parameters.len();
     let of_u = model.covariance_of_first(count) + &baseline.u * baseline.u.transpose();
     let of_z = parameters.covariance_of_z(&of_u);
-    let is_known = |(i, relative): &(usize, f64)| relative * of_z[(*i, *i)].sqrt() < LARGEST_SIGMA;
+    // Powers that were made of motor currents by the motors' constants tell nothing of these.
+    let is_told = |i: usize| !(by_current && parameters.list[i].is_of_motors());
+    let is_known =
+        |(i, relative): &(usize, f64)| is_told(*i) && relative * of_z[(*i, *i)].sqrt() < LARGEST_SIGMA;
     let all = (0..count).filter_map(|i| Some((i, parameters.list[i].relative_sigma()?)));
     let known: Vec<(usize, f64)> = all.filter(is_known).collect();
     let covariance: Vec<Vec<f64>> =
@@ -244,6 +266,7 @@ mod tests {
         let calibrated = calibrate(&file, &healthy, &Options::default()).unwrap().robot;
         let Learnt { robot: known, errors } = learn(&file, &calibrated, &healthy, &unwatched()).unwrap();
         let errors = errors.unwrap();
+        assert_eq!(errors.sampled_s, None);
         assert!(errors.before.bias_w > 3.0 && errors.after.bias_w.abs() < 0.5, "{errors}");
         known.validate().unwrap();
         let error = known.model_error.as_ref().unwrap();

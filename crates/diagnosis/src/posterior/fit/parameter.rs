@@ -52,6 +52,8 @@ const SLIP_TRACK_SIGMA: f64 = 0.1;
 /// Width of a standing load of a robot of a Husky's strength, a hundredth of its power, in watts, and at least a tenth of what the file gives.
 const STANDING_SIGMA_W: f64 = 1.0;
 const STANDING_SHARE: f64 = 0.1;
+/// Difference of logarithms that writing and reading a number may make.
+const UNCHANGED: f64 = 1e-9;
 /// z beyond which no fit goes.
 const FARTHEST: f64 = 8.0;
 
@@ -71,8 +73,12 @@ impl Parameters {
         let mut mixing = DMatrix::identity(list.len(), list.len());
         let Some(posterior) = &robot.posterior else { return Parameters { list, mixing } };
         let place = |name: &String| posterior.parameters.iter().position(|other| other == name);
+        // What was changed by hand since is known as its source has it.
+        let is_as_fitted = |i: usize, j: usize| (list[i].file.ln() - posterior.mean[j]).abs() < UNCHANGED;
         let known: Vec<(usize, usize)> = (0..list.len())
-            .filter_map(|i| Some((i, place(&list[i].name).filter(|_| list[i].file > 0.0)?)))
+            .filter(|i| list[*i].file > 0.0)
+            .filter_map(|i| Some((i, place(&list[i].name)?)))
+            .filter(|(i, j)| is_as_fitted(*i, *j))
             .collect();
         let covariance = posterior.covariance();
         let own = DMatrix::from_fn(known.len(), known.len(), |a, b| covariance[(known[a].1, known[b].1)]);
@@ -208,6 +214,12 @@ impl Parameter {
         }
     }
 
+    /// Whether it belongs to the motors or their electronics.
+    pub(crate) fn is_of_motors(&self) -> bool {
+        use Field::{Electronics, LeftK1, LeftK2, RightK1, RightK2};
+        matches!(self.field, LeftK1 | LeftK2 | RightK1 | RightK2 | Electronics)
+    }
+
     /// Whether it is the rolling resistance of a surface.
     pub(crate) fn is_rolling(&self) -> bool {
         matches!(self.field, Field::MuRoll(_))
@@ -271,6 +283,19 @@ mod tests {
         let of = |i: usize, j: usize| covariance[(i, j)] * all.list[i].sigma() * all.list[j].sigma();
         assert!((of(k2, k2) - 4e-4).abs() < 1e-8 && (of(roll, roll) - 9e-4).abs() < 1e-8);
         assert!((of(k2, roll) + 3e-4).abs() < 1e-8);
+        let sigma_at = |name: &str, factor: f64| {
+            let mut changed = robot.clone();
+            changed.motors.left.k2 *= factor;
+            let all =
+                Parameters::of(&changed, &["marble".to_owned()], Shown { battery: false, yaw_rate: false });
+            all.list.iter().find(|one| one.name == name).unwrap().sigma()
+        };
+        assert!((sigma_at("motors.left.k2", 1.0) - 0.02).abs() < 1e-6);
+        assert_eq!(
+            sigma_at("motors.left.k2", 1.3),
+            robot.uncertainty.k2,
+            "a number that was changed by hand"
+        );
         let moved = all.placed(&robot, &DVector::from_element(all.len(), 0.3));
         assert!(moved != robot && all.placed(&robot, &DVector::zeros(all.len())).motors == robot.motors);
     }

@@ -108,7 +108,7 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
         (false, None) => "by where its constants come from",
     };
     let share = 100.0 * found.model_error;
-    let mut notes = vec![format!("the model is taken to miss {share:.0} % of power smoothly, {source}")];
+    let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
     notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
     notes.extend(strays(found.held_out[0]));
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
