@@ -51,9 +51,9 @@ pub struct Question<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Engine {
     /// Candidates one after the other, each through a row of tests.
-    #[default]
     Gates,
     /// The posterior over sets of mechanisms by one Gaussian model.
+    #[default]
     Posterior,
 }
 

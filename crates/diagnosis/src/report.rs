@@ -39,7 +39,7 @@ pub struct Diagnosis {
     pub sentence: String,
     /// The robot's file as it is against the recording; of the posterior engine.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub file: Option<FileError>,
+    pub file: Option<FileReport>,
     /// Probabilities of nothing, of listed and of unlisted effects; of the posterior engine.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probability: Option<Probability>,
@@ -82,6 +82,16 @@ pub struct FileError {
     pub bias_w: f64,
     /// Mean of recorded power [W].
     pub mean_power_w: f64,
+}
+
+/// The robot's file as it is against the recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct FileReport {
+    /// How far its predictions are off.
+    #[serde(flatten)]
+    pub error: FileError,
+    /// Mechanisms that healthy drives need beside the file: what it lacks of this robot. They do not set the verdict.
+    pub findings: Vec<Finding>,
 }
 
 /// Posterior probabilities, which sum to one.

@@ -190,7 +190,7 @@ impl Labels {
     }
 
     /// The same name for every row.
-    pub(crate) fn constant(name: &str, rows: usize) -> Labels {
+    pub fn constant(name: &str, rows: usize) -> Labels {
         Labels { names: vec![name.to_owned()], index: vec![0; rows] }
     }
 

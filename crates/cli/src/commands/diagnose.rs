@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     out: PathBuf,
     /// Way of diagnosing
-    #[arg(long, hide = true, default_value = "gates")]
+    #[arg(long, hide = true, default_value = "posterior")]
     engine: EngineName,
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     share: Option<f64>,
     /// Way of diagnosing
-    #[arg(long, hide = true, default_value = "gates")]
+    #[arg(long, hide = true, default_value = "posterior")]
     engine: EngineName,
     /// Only what a diagnosis is given this way, instead of all three
     #[arg(long)]

@@ -1,8 +1,11 @@
 //! The posterior diagnosis from recordings to the report.
 
 use calibration::slopes_note;
-use model::mechanism::{self, Mechanism};
-use recording::Watch;
+use model::{
+    Robot,
+    mechanism::{self, Mechanism},
+};
+use recording::{Recording, Watch};
 
 use crate::{
     Error, Question, Series,
@@ -12,11 +15,12 @@ use crate::{
     posterior::{
         engine::find,
         fit::baseline::Baseline,
+        hypothesis::window::Windows,
         observations::Observations,
-        report::document::{Subject, document},
+        report::document::{Subject, document, shared_findings},
     },
     prepared::Prepared,
-    report::Diagnosis,
+    report::{Diagnosis, Finding},
 };
 
 /// Diagnoses by the posterior over sets of mechanisms.
@@ -50,7 +54,12 @@ pub(crate) fn diagnose(
     // Nothing else is told of what is not what it seems.
     let is_looked_for = |one: &&'static dyn Mechanism| mistakes.is_empty() && is_possible(one);
     let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_looked_for).collect();
-    let found = find(&observed, (robot, baseline), &library, progress)?;
+    let found = find(&observed, (robot, baseline), &library, Windows::All, progress)?;
+    progress("looking at what all drives share", 0.95);
+    let shared = match &healthy {
+        Some(healthy) if mistakes.is_empty() => shared(robot, healthy, &library, watch)?,
+        _ => Vec::new(),
+    };
     let drives: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
     let subject = Subject {
         file: robot,
@@ -58,11 +67,33 @@ pub(crate) fn diagnose(
         observed: &observed,
         drives: &drives,
         mistakes: &mistakes,
+        shared: &shared,
         doubts: &doubts,
     };
     let report = document(&subject, &found)?;
     progress("done", 1.0);
     Ok(report)
+}
+
+/// Mechanisms that healthy drives need beside the robot's file, by themselves: what the file lacks of this robot.
+fn shared(
+    robot: &Robot,
+    healthy: &Recording,
+    library: &[&'static dyn Mechanism],
+    watch: &Watch,
+) -> Result<Vec<Finding>, Error> {
+    let excluded = impossible(healthy);
+    let is_possible = |one: &&'static dyn Mechanism| !excluded.iter().any(|other| other.name() == one.name());
+    let library: Vec<&'static dyn Mechanism> = library.iter().copied().filter(is_possible).collect();
+    let series = Series::watched(robot, healthy, None, watch)?;
+    if library.is_empty() || series.averages.iter().filter(|a| a.channel == 0).count() < NEEDED_S {
+        return Ok(Vec::new());
+    }
+    let observed = Observations::new(&series, robot);
+    let baseline = Baseline::fit(&observed, robot)?;
+    let found = find(&observed, (robot, baseline), &library, Windows::AlwaysOnly, &|_, _| {})?;
+    let drives: Vec<String> = healthy.runs.iter().map(|run| run.name.clone()).collect();
+    Ok(shared_findings(&observed, &drives, &found))
 }
 
 #[cfg(test)]
@@ -108,7 +139,7 @@ mod tests {
             let probability = found.probability.unwrap();
             let sum = probability.nothing + probability.listed + probability.unlisted;
             assert!((sum - 1.0).abs() < 1e-9 && probability.nothing > 0.5, "{probability:?}");
-            assert!(found.file.unwrap().bias_w.abs() < 0.5);
+            assert!(found.file.unwrap().error.bias_w.abs() < 0.5);
         }
     }
 

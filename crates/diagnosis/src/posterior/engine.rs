@@ -6,26 +6,29 @@ use model::{
     Robot,
     mechanism::{Mechanism, Scale},
 };
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::Error;
 use crate::posterior::{
     evidence::{linear_model::LinearModel, noise::Whitening},
-    fit::{baseline::Baseline, joint::Joint},
+    fit::{baseline::Baseline, joint::Joint, run_variation, temperature},
     hypothesis::{
         effect::{Beside, Effect, effects},
         unlisted::{self, Block},
-        window::Grid,
+        window::{Grid, Windows},
     },
     observations::Observations,
     report::held_out::{HeldOut, held_out},
     search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
-/// Divisor of all log likelihoods: neighbouring seconds of one manoeuvre are no independent witnesses of a form (see the module's table).
-pub(crate) const TEMPERATURE: f64 = 4.0;
 /// Amplitudes that healthy drives choose from.
 const AMPLITUDES: [f64; 8] = [0.003, 0.006, 0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
+/// Standard deviations of ground from run to run that healthy drives choose from, as shares of resistance: none on a floor, a third on soil
+/// that is wet here and dry there (BorealTC: sandy loam).
+const RUN_VARIATIONS: [f64; 5] = [0.0, 0.03, 0.08, 0.18, 0.35];
+/// Amplitude of the discrepancy beside which that is chosen.
+const RUN_MODEL_ERROR: f64 = 0.02;
 /// Residuals beyond so many standard deviations count linearly.
 const LARGE: f64 = 3.5;
 /// By how much wider the discrepancy is in the most flexible fit, from which weights are taken.
@@ -37,6 +40,12 @@ pub(crate) struct Found {
     pub(crate) explanations: Vec<Explanation>,
     /// Amplitude of the discrepancy.
     pub(crate) model_error: f64,
+    /// Standard deviation of ground from run to run, as a share of resistance.
+    pub(crate) run_variation: f64,
+    /// Divisor of log likelihoods.
+    pub(crate) temperature: f64,
+    /// Posterior covariance of the robot's parameters before any effect, as independent numbers.
+    pub(crate) parameter_covariance: DMatrix<f64>,
     /// The robot before any effect.
     pub(crate) baseline: Baseline,
     /// Unlisted blocks.
@@ -57,6 +66,7 @@ pub(crate) fn find(
     observed: &Observations<'_>,
     (file, baseline): (&Robot, Baseline),
     library: &[&'static dyn Mechanism],
+    windows: Windows,
     progress: &dyn Fn(&str, f64),
 ) -> Result<Found, Error> {
     let step = |name: &str, share: f64| {
@@ -67,21 +77,35 @@ pub(crate) fn find(
     let beside = alone(observed, &baseline);
     step("making effects", 0.2)?;
     let effects = effects(library, &scale, &beside)?;
-    let mut common = common(library, &scale, &beside)?;
-    common.extend(healthy_shares(&effects));
+    let common = common(library, &scale, &beside)?;
+    let mut shared: Vec<Vec<f64>> = common.iter().flat_map(|effect| effect.columns.clone()).collect();
+    shared.extend(healthy_shares(&effects));
     step("learning what the model misses", 0.3)?;
     let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
+    let mut run_variation = 0.0;
     let model_error = if observed.series.has_healthy() {
-        amplitude(observed, &baseline, (&plain, observed.test_rows..observed.rows()), &common)
+        let healthy = observed.test_rows..observed.rows();
+        let of_runs;
+        (run_variation, of_runs) = runs_differ(observed, &baseline, (&plain, healthy.clone()), &shared);
+        shared.extend(of_runs);
+        amplitude(observed, &baseline, (&plain, healthy), &shared)
     } else {
         file.model_error_fraction()
     };
     let mut others = baseline.discrepancy(observed, model_error);
-    others.extend(common);
-    let whitening = weighted(observed, (&baseline, file), &others, &plain);
-    let joint = Joint::new(observed, (&baseline, file), others, whitening, TEMPERATURE);
+    others.extend(shared);
+    let weighted = weighted(observed, (&baseline, file), &others, &plain);
+    let temperature = if observed.series.has_healthy() {
+        let basis = [&baseline.sensitivities[..], &others].concat();
+        let columns = temperature::columns(&weighted, &basis, &healthy_shares(&common), &baseline.residual);
+        temperature::temperature(observed, &columns)
+    } else {
+        temperature::UNTOLD
+    };
+    let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
+    let joint = Joint::new(observed, (&baseline, file), others, whitening, temperature);
     step("screening mechanisms", 0.4)?;
-    let grid = Grid::new(observed);
+    let grid = Grid::new(observed, windows);
     let screen = Screen::new(&joint, &grid, effects);
     let blocks = unlisted::blocks(&joint);
     step("refitting the leading sets", 0.5)?;
@@ -91,7 +115,19 @@ pub(crate) fn find(
     let held_out = held_outs(&joint, &explanations);
     let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
     let noise_floor_w = noise_floor_w(observed, &baseline);
-    Ok(Found { explanations, model_error, held_out, noise_floor_w, detectable, blocks, baseline })
+    let parameter_covariance = joint.model.covariance_of_first(baseline.parameters.len());
+    Ok(Found {
+        explanations,
+        model_error,
+        run_variation,
+        temperature,
+        parameter_covariance,
+        held_out,
+        noise_floor_w,
+        detectable,
+        blocks,
+        baseline,
+    })
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
@@ -129,12 +165,11 @@ fn common(
     library: &[&'static dyn Mechanism],
     scale: &Scale<'_>,
     beside: &Beside<'_>,
-) -> Result<Vec<Vec<f64>>, Error> {
+) -> Result<Vec<Effect>, Error> {
     if !beside.series.has_healthy() {
         return Ok(Vec::new());
     }
-    let everywhere = Beside { everywhere: true, ..*beside };
-    Ok(effects(library, scale, &everywhere)?.into_iter().flat_map(|effect| effect.columns).collect())
+    effects(library, scale, &Beside { everywhere: true, ..*beside })
 }
 
 /// Columns of what healthy robots and good logs have of mechanisms: in all drives without healthy ones, in the test drives beside them.
@@ -189,27 +224,61 @@ pub(crate) fn amplitude(
 ) -> f64 {
     let log = |share: &f64| {
         let discrepancy = baseline.discrepancy(observed, *share);
-        let columns: Vec<DVector<f64>> = baseline
-            .sensitivities
-            .iter()
-            .chain(&discrepancy)
-            .chain(common)
-            .map(|column| {
-                DVector::from_vec(whitening.apply(column)[rows.clone()].to_vec()) / TEMPERATURE.sqrt()
-            })
-            .collect();
-        let residual = DVector::from_vec(whitening.apply(&baseline.residual)[rows.clone()].to_vec());
-        let model =
-            LinearModel::new(nalgebra::DMatrix::from_columns(&columns), rows.len() as f64 / TEMPERATURE);
-        let residual = nalgebra::DMatrix::from_columns(&[residual / TEMPERATURE.sqrt()]);
-        model.reduce(&[&model.group(residual)]).evidence(&[]).log
+        let columns: Vec<&Vec<f64>> =
+            baseline.sensitivities.iter().chain(&discrepancy).chain(common).collect();
+        log_evidence(baseline, (whitening, rows.clone()), &columns)
     };
-    let logs: Vec<f64> = AMPLITUDES.iter().map(log).collect();
-    let best = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b]));
-    best.map_or(AMPLITUDES[0], |best| AMPLITUDES[best])
+    likeliest(&AMPLITUDES, log)
 }
 
-/// Whitening with weights from what the most flexible fit leaves, and with the temperature.
+/// The likeliest standard deviation of ground from run to run, as a share of rolling and skid resistance, with its columns.
+fn runs_differ(
+    observed: &Observations<'_>,
+    baseline: &Baseline,
+    (whitening, rows): (&Whitening, Range<usize>),
+    common: &[Vec<f64>],
+) -> (f64, Vec<Vec<f64>>) {
+    let units = run_variation::columns(observed, &baseline.components(observed));
+    if units.is_empty() {
+        return (0.0, units);
+    }
+    let scaled = |share: f64| -> Vec<Vec<f64>> {
+        units.iter().map(|column| column.iter().map(|by| share * by).collect()).collect()
+    };
+    let discrepancy = baseline.discrepancy(observed, RUN_MODEL_ERROR);
+    let log = |share: &f64| {
+        let of_runs = scaled(*share);
+        let columns: Vec<&Vec<f64>> =
+            baseline.sensitivities.iter().chain(&discrepancy).chain(common).chain(&of_runs).collect();
+        log_evidence(baseline, (whitening, rows.clone()), &columns)
+    };
+    let share = likeliest(&RUN_VARIATIONS, log);
+    (share, if share > 0.0 { scaled(share) } else { Vec::new() })
+}
+
+/// Log evidence of some rows under columns, tempered as where no drives tell.
+fn log_evidence(
+    baseline: &Baseline,
+    (whitening, rows): (&Whitening, Range<usize>),
+    columns: &[&Vec<f64>],
+) -> f64 {
+    let divisor = temperature::UNTOLD.sqrt();
+    let white =
+        |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)[rows.clone()].to_vec()) / divisor;
+    let columns: Vec<DVector<f64>> = columns.iter().map(|column| white(column)).collect();
+    let model = LinearModel::new(DMatrix::from_columns(&columns), rows.len() as f64 / temperature::UNTOLD);
+    let residual = DMatrix::from_columns(&[white(&baseline.residual)]);
+    model.reduce(&[&model.group(residual)]).evidence(&[]).log
+}
+
+/// The value of a grid with the highest logarithm.
+fn likeliest(grid: &[f64], log: impl Fn(&f64) -> f64 + Sync) -> f64 {
+    let logs: Vec<f64> = grid.iter().map(log).collect();
+    let best = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b]));
+    best.map_or(grid[0], |best| grid[best])
+}
+
+/// Whitening with weights from what the most flexible fit leaves.
 fn weighted(
     observed: &Observations<'_>,
     (baseline, file): (&Baseline, &Robot),
@@ -221,5 +290,5 @@ fn weighted(
     let joint = Joint::new(observed, (baseline, file), wide, plain.clone(), 1.0);
     let left = unlisted::left_by_all(&joint);
     let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
-    plain.scaled(|i| weight(i) / TEMPERATURE.sqrt())
+    plain.scaled(weight)
 }

@@ -5,3 +5,5 @@ pub(crate) mod discrepancy;
 pub(crate) mod features;
 pub(crate) mod joint;
 pub(crate) mod parameter;
+pub(crate) mod run_variation;
+pub(crate) mod temperature;

@@ -16,9 +16,9 @@ use crate::{
     Error, Series,
     diagnose::{NEEDED_S, impossible},
     posterior::{
-        engine::{self, TEMPERATURE},
+        engine,
         evidence::linear_model::LinearModel,
-        fit::baseline::Baseline,
+        fit::{baseline::Baseline, temperature::UNTOLD},
         observations::Observations,
         report::file_error,
     },
@@ -158,9 +158,9 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let mut columns = baseline.sensitivities.clone();
     columns.extend(baseline.discrepancy(&observed, fraction));
     columns.extend(shares);
-    let white = |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)) / TEMPERATURE.sqrt();
+    let white = |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)) / UNTOLD.sqrt();
     let basis = DMatrix::from_columns(&columns.iter().map(white).collect::<Vec<_>>());
-    let model = LinearModel::new(basis, observed.rows() as f64 / TEMPERATURE);
+    let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD);
     let error = |robot: &Robot| Ok::<_, Error>(file_error::of(&observed, &series.predict(robot, &[])?));
     // Ground that only the calibration knows is as new to the file before as to its reader.
     let with_new_ground = Robot { surfaces: with_new(before, calibrated), ..before.clone() };

@@ -26,7 +26,7 @@ pub(crate) struct Observations<'a> {
     pub(crate) places: Vec<Place>,
     /// Regime of each row, each quantity over its scatter in all drives.
     pub(crate) regimes: Vec<[f64; REGIME]>,
-    /// Test drives: time driven at the middle of each row of the test drives, all drives behind one another [s].
+    /// Time driven at the middle of each row, all test drives behind one another and all healthy ones [s].
     pub(crate) driven_s: Vec<f64>,
     /// When each test drive begins on that scale, and the end of the last [s].
     pub(crate) begins_s: Vec<f64>,
@@ -38,7 +38,11 @@ impl<'a> Observations<'a> {
         let averages = &series.averages;
         let test_rows = averages.iter().filter(|average| average.suspect).count();
         let begins_s = begins_s(&averages[..test_rows]);
-        let driven_s = averages[..test_rows].iter().map(|a| begins_s[a.run] + a.t_s).collect();
+        let healthy_begins_s = self::begins_s(&averages[test_rows..]);
+        let driven_s = averages
+            .iter()
+            .map(|a| if a.suspect { begins_s[a.run] } else { healthy_begins_s[a.run] } + a.t_s)
+            .collect();
         let place = |i: usize| Place {
             channel: averages[i].channel,
             follows: i > 0 && follows(&averages[i - 1], &averages[i]),
@@ -81,6 +85,11 @@ impl<'a> Observations<'a> {
         self.series.averages.iter().any(|average| average.channel == channel)
     }
 
+    /// Number of test drives, or of healthy ones.
+    pub(crate) fn runs(&self, suspect: bool) -> usize {
+        self.averages().iter().filter(|a| a.suspect == suspect).map(|a| a.run + 1).max().unwrap_or(0)
+    }
+
     /// Root mean square of values over rows of power of the test drives.
     pub(crate) fn power_rms(&self, values: &[f64]) -> f64 {
         let squares = (0..self.test_rows).filter(|i| self.is_power(*i)).map(|i| values[i] * values[i]);
@@ -101,10 +110,10 @@ fn follows(before: &Average, after: &Average) -> bool {
         && after.t_s - before.t_s < LONGEST_STEP_S
 }
 
-fn begins_s(test: &[Average]) -> Vec<f64> {
-    let drives = test.iter().map(|a| a.run + 1).max().unwrap_or(0);
+fn begins_s(averages: &[Average]) -> Vec<f64> {
+    let drives = averages.iter().map(|a| a.run + 1).max().unwrap_or(0);
     let mut durations_s = vec![0.0; drives];
-    for average in test {
+    for average in averages {
         durations_s[average.run] = f64::max(durations_s[average.run], average.t_s + 0.5);
     }
     let mut begins_s = vec![0.0];

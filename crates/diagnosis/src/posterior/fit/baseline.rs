@@ -84,6 +84,25 @@ impl Baseline {
         Ok(Baseline { robot, parameters, u, predicted, per_z, sensitivities, noise, residual })
     }
 
+    /// The same robot with the same noise in other drives, of which nothing is recorded yet.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know; a watch that breaks.
+    pub(crate) fn elsewhere(&self, series: &Series, file: &Robot) -> Result<Self, Error> {
+        let predicted = series.predict(&self.robot, &[])?;
+        let per_z = per_z(series, file, &self.parameters, &self.u, &predicted)?;
+        Ok(Baseline {
+            robot: self.robot.clone(),
+            parameters: self.parameters.clone(),
+            u: self.u.clone(),
+            sensitivities: self.parameters.mixed(&per_z),
+            noise: self.noise.clone(),
+            residual: vec![0.0; predicted.len()],
+            predicted,
+            per_z,
+        })
+    }
+
     /// Powers that discrepancies multiply.
     pub(crate) fn components(&self, observed: &Observations<'_>) -> Components {
         let sum = |is_own: fn(&Parameter) -> bool| {

@@ -27,8 +27,19 @@ pub(crate) enum Window {
     Within([usize; 4]),
 }
 
+/// Windows that are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Windows {
+    /// All of them.
+    All,
+    /// All the time only: for what drives have in common.
+    AlwaysOnly,
+}
+
 /// The grid of a set of drives.
 pub(crate) struct Grid {
+    /// Windows that are looked at.
+    looked_at: Windows,
     /// Time driven at which each piece begins, and the end of the last [s].
     pub(crate) borders_s: Vec<f64>,
     /// When each drive begins [s].
@@ -39,7 +50,7 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// The grid of test drives: even pieces, and the beginnings of drives where they are few.
-    pub(crate) fn new(observed: &Observations<'_>) -> Self {
+    pub(crate) fn new(observed: &Observations<'_>, looked_at: Windows) -> Self {
         let total_s = observed.total_s();
         let mut borders_s: Vec<f64> = (0..=PIECES).map(|i| total_s * i as f64 / PIECES as f64).collect();
         let drives = observed.begins_s.len() - 1;
@@ -48,7 +59,7 @@ impl Grid {
             borders_s.sort_by(f64::total_cmp);
             borders_s.dedup_by(|a, b| (*a - *b).abs() < 1.0);
         }
-        Grid { borders_s, begins_s: observed.begins_s.clone(), extent_m: extent_m(observed) }
+        Grid { looked_at, borders_s, begins_s: observed.begins_s.clone(), extent_m: extent_m(observed) }
     }
 
     /// Number of pieces.
@@ -77,7 +88,7 @@ impl Grid {
 
     /// Windows of a mechanism, each with its log prior: half for all the time, half shared by the others.
     pub(crate) fn windows(&self, mechanism: &dyn Mechanism) -> Vec<(Window, f64)> {
-        if !mechanism.is_windowed() {
+        if !mechanism.is_windowed() || self.looked_at == Windows::AlwaysOnly {
             return vec![(Window::Always, 0.0)];
         }
         let inner = 1..self.pieces();
@@ -179,7 +190,7 @@ mod tests {
 
     fn grid(extent_m: Option<[[f64; 2]; 2]>) -> Grid {
         let borders_s = (0..=PIECES).map(|i| 20.0 * i as f64).collect();
-        Grid { borders_s, begins_s: vec![0.0, 130.0, 300.0], extent_m }
+        Grid { looked_at: Windows::All, borders_s, begins_s: vec![0.0, 130.0, 300.0], extent_m }
     }
 
     #[test]

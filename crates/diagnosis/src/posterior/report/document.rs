@@ -13,20 +13,26 @@ use crate::{
     judged::position_m,
     posterior::{
         engine::Found,
-        fit::joint::Member,
+        fit::{joint::Member, temperature::UNTOLD},
         learn::regimes,
         observations::Observations,
         report::{
             detectable::detectable,
             file_error,
             finding::{Reading, members},
+            fitted::Corrected,
             held_out::{HeldOut, STRAY_SIGMAS},
+            next_drive::next_drive,
+            place::places,
             sentence::sentence,
             verdict::{Circumstances, is_beyond_uncertainty, probability, verdict},
         },
         search::explanation::{Explanation, credible},
     },
-    report::{BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, Finding, FindingFit, Trace, Verdict},
+    report::{
+        BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, FileReport, Finding, FindingFit, Trace,
+        Verdict,
+    },
     words::mistaken,
 };
 
@@ -45,6 +51,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) drives: &'a [String],
     /// Why these are no drives of this robot as its file has it; nothing else is told of them before that is mended.
     pub(crate) mistakes: &'a [String],
+    /// What the file lacks of this robot, as all drives show it.
+    pub(crate) shared: &'a [Finding],
     /// What is doubtful about them, the mistakes among it.
     pub(crate) doubts: &'a [String],
 }
@@ -76,21 +84,24 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let (detectable, not_judged) = detectable(&information, &named);
     let [nothing_w, named_w] = found.held_out.map(|one| one.rmse_w);
     let held_out_rmse_w = if findings.is_empty() { nothing_w } else { named_w };
-    let trace = trace(subject, found, &filed, first);
+    let corrected = Corrected::of(observed, found, first);
+    let trace = trace(subject, &filed, &corrected);
+    let is_off = said != Verdict::Consistent && subject.mistakes.is_empty();
+    let next_drive = if is_off { next_drive(file, observed, found)? } else { None };
     Ok(Diagnosis {
         verdict: said,
         sentence: match subject.mistakes.first() {
             Some(mistake) => mistaken(mistake),
             None => sentence(said, &error, found.noise_floor_w, &findings),
         },
-        file: Some(error),
+        file: Some(FileReport { error, findings: subject.shared.to_vec() }),
         probability: Some(probability(&found.explanations)),
         explanations: credible(&found.explanations).iter().map(figures).collect(),
         baseline: baseline(observed, &filed, found),
-        places: Vec::new(),
+        places: if is_off { places(observed, file, found, &corrected) } else { Vec::new() },
         findings,
         corrected: CorrectedFit { rmse_w: rmse_w(&trace), held_out_rmse_w },
-        next_drive: None,
+        next_drive,
         explainable: [0.0; 2],
         detectable,
         not_judged,
@@ -110,6 +121,18 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
     let share = 100.0 * found.model_error;
     let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
     notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
+    if found.run_variation > 0.0 {
+        let share = 100.0 * found.run_variation;
+        notes.push(format!(
+            "the ground of the healthy drives differs from run to run by {share:.0} % of its resistance"
+        ));
+    }
+    if found.temperature > UNTOLD {
+        let times = (found.temperature / UNTOLD).sqrt();
+        notes.push(format!(
+            "healthy drives lie farther from the model than it and its noise allow, so that everything counts as {times:.1} times less sure"
+        ));
+    }
     notes.extend(strays(found.held_out[0]));
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
     let parameters = &found.baseline.parameters;
@@ -184,6 +207,23 @@ fn findings(subject: &Subject<'_>, found: &Found) -> Vec<Finding> {
     reading.findings()
 }
 
+/// Findings of drives that are known to be healthy, where the posterior names any.
+pub(crate) fn shared_findings(observed: &Observations<'_>, drives: &[String], found: &Found) -> Vec<Finding> {
+    let said = verdict(&found.explanations, circumstances(observed, found));
+    if !matches!(said, Verdict::Explained | Verdict::Ambiguous) {
+        return Vec::new();
+    }
+    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out.map(|one| one.rmse_w);
+    let reading = Reading {
+        series: observed.series,
+        drives,
+        explanations: &found.explanations,
+        fit: FindingFit { held_out_rmse_before_w, held_out_rmse_after_w },
+        blocks: &found.blocks,
+    };
+    reading.findings()
+}
+
 /// The robot at its parameters beside an explanation, or beside nothing.
 fn fitted_robot(file: &Robot, found: &Found, explanation: Option<&Explanation>) -> Robot {
     let nothing = found.explanations.iter().find(|one| one.names.is_empty());
@@ -211,17 +251,8 @@ fn baseline(observed: &Observations<'_>, filed: &[f64], found: &Found) -> Baseli
 }
 
 /// Power of the test drives over time, all channels of power together.
-fn trace(subject: &Subject<'_>, found: &Found, filed: &[f64], first: Option<&Explanation>) -> Trace {
+fn trace(subject: &Subject<'_>, filed: &[f64], corrected: &Corrected) -> Trace {
     let Subject { suspect, observed, drives, .. } = *subject;
-    let nothing = found.explanations.iter().find(|one| one.names.is_empty());
-    let change = first.or(nothing).and_then(|one| one.fitted.as_ref()).map(|fitted| &fitted.change);
-    // Fitted predictions are told about those at the file's parameters.
-    let corrected = |i: usize| {
-        let baseline = &found.baseline;
-        let moved: f64 =
-            baseline.sensitivities.iter().zip(baseline.u.iter()).map(|(column, u)| column[i] * u).sum();
-        baseline.predicted[i] - moved + change.map_or(0.0, |change| change[i])
-    };
     let count = (0..observed.test_rows).filter(|i| observed.averages()[*i].channel == 0).count();
     let all = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
         (0..count).map(|i| (0..observed.series.channels()).map(|c| value(i + c * count)).sum()).collect()
@@ -232,7 +263,7 @@ fn trace(subject: &Subject<'_>, found: &Found, filed: &[f64], first: Option<&Exp
         t_s: averages.iter().map(|a| a.t_s).collect(),
         recorded_w: all(&|i| observed.series.recorded[i]),
         filed_w: all(&|i| filed[i]),
-        corrected_w: all(&corrected),
+        corrected_w: all(&|i| corrected.predicted[i]),
         runs: drives.to_vec(),
         position_m: averages.iter().map(|a| position_m(suspect, a.run, a.t_s)).collect(),
     }

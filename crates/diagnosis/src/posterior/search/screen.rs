@@ -253,6 +253,7 @@ mod tests {
         posterior::{
             fit::baseline::Baseline,
             hypothesis::effect::{Beside, effects},
+            hypothesis::window::Windows,
             observations::Observations,
         },
     };
@@ -272,7 +273,7 @@ mod tests {
         let beside =
             Beside { series, robot, applied: &[], predicted: &baseline.predicted, everywhere: false };
         let effects = effects(&library, &scale, &beside).unwrap();
-        let grid = Grid::new(&observed);
+        let grid = Grid::new(&observed, Windows::All);
         let screen = Screen::new(&joint, &grid, effects.clone());
         for window in [Window::Always, Window::From(6), Window::Until(9)] {
             let is_it = |c: &Candidate| c.effect == 1 && c.window == window;
