@@ -52,6 +52,9 @@ pub(crate) fn parameter_label(name: &str) -> String {
     match name {
         "from_s" => "acts from".to_owned(),
         "until_s" => "acts until".to_owned(),
+        "per_mps" => "growth with speed".to_owned(),
+        "per_slope" => "growth with slope".to_owned(),
+        "kg_per_side" => "mass per side".to_owned(),
         other => {
             let unit = UNITS.iter().filter(|unit| other.ends_with(**unit)).max_by_key(|unit| unit.len());
             other.strip_suffix(unit.copied().unwrap_or("")).unwrap_or(other).replace('_', " ")
@@ -71,8 +74,8 @@ mod tests {
 
     #[test]
     fn units_stand_beside_values() {
-        let labels = ["drag_area_m2", "east_mps", "from_s", "roll_change"].map(parameter_label);
-        assert_eq!(labels, ["drag area", "east", "acts from", "roll change"]);
+        let labels = ["drag_area_m2", "east_mps", "from_s", "roll_change", "per_mps"].map(parameter_label);
+        assert_eq!(labels, ["drag area", "east", "acts from", "roll change", "growth with speed"]);
     }
 
     #[test]

@@ -39,8 +39,30 @@ pub(super) fn section(found: &Diagnosis) -> Markup {
         p.quiet {
             "Root mean square error over one-second averages of each power channel. Held out: judged on parts of the drives that were not \
              fitted. Noise: what no model predicts."
+            @if let Some(file) = found.file.filter(|file| is_apart(file.rmse_w, baseline.rmse_w)) {
+                " Each channel counts by itself here; of the whole power the robot file is off by " (watts(file.rmse_w)) "."
+            }
         }
         (power_chart::errors(found))
     };
     document::section("Errors before and after", &inside)
+}
+
+/// Whether two errors read as different numbers.
+fn is_apart(one_w: f64, other_w: f64) -> bool {
+    (one_w - other_w).abs() > 0.05
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::example, *};
+
+    #[test]
+    fn errors_of_channels_and_of_the_whole_power_are_not_mistaken_for_each_other() {
+        let mut found = example::explained();
+        let note = "of the whole power the robot file is off by 35.0\u{a0}W";
+        assert!(section(&found).into_string().contains(note));
+        found.file = None;
+        assert!(!section(&found).into_string().contains("whole power"));
+    }
 }

@@ -102,7 +102,7 @@ fn classes(all: &Probability) -> Markup {
     html! {
         dl.tiles {
             @for (name, class, p) in classes {
-                div { dt { i.dot class=(class) {} (name) } dd { b { (probability(p)) } } }
+                div { dt { i class={ "dot " (class) } {} (name) } dd { b { (probability(p)) } } }
             }
         }
     }

@@ -6,19 +6,10 @@ use maud::{Markup, html};
 use super::power_chart;
 use crate::{document, figures::watts};
 
-/// The section: bias, root mean square error and noise, and recorded power against the file's prediction.
+/// The section: bias, root mean square error and noise in a sentence, and recorded power against the file's prediction.
 pub(super) fn section(found: &Diagnosis) -> Markup {
-    let Error { bias_w, rmse_w, .. } = Error::of(found);
     let inside = html! {
         p.lead { (sentence(found)) }
-        dl.tiles {
-            (tile("Mean error", &watts(bias_w.abs()), way(bias_w)))
-            (tile("RMSE", &watts(rmse_w), "robot file, one-second averages"))
-            (tile("Noise", &watts(found.baseline.noise_floor_w), "no model predicts it"))
-            @if let Some(file) = &found.file {
-                (tile("Mean power", &watts(file.mean_power_w), "recorded"))
-            }
-        }
         (power_chart::recorded_and_file(found))
     };
     document::section("Error of the robot file", &inside)
@@ -44,7 +35,7 @@ impl Error {
 fn sentence(found: &Diagnosis) -> String {
     let Error { bias_w, rmse_w, mean_power_w } = Error::of(found);
     let share = mean_power_w.filter(|mean_w| *mean_w > 0.0).map_or(String::new(), |mean_w| {
-        format!(", {:.1}\u{a0}% of the mean power", 100.0 * bias_w.abs() / mean_w)
+        format!(", {:.1}\u{a0}% of the mean power of {}", 100.0 * bias_w.abs() / mean_w, watts(mean_w))
     });
     format!(
         "The robot file predicts these drives {} {} on average{share} ({} RMSE; noise {}).",
@@ -59,10 +50,6 @@ fn way(bias_w: f64) -> &'static str {
     if bias_w >= 0.0 { "too low" } else { "too high" }
 }
 
-fn tile(name: &str, value: &str, note: &str) -> Markup {
-    html! { div { dt { (name) } dd { b { (value) } " " small { (note) } } } }
-}
-
 #[cfg(test)]
 mod tests {
     use super::{super::example, *};
@@ -73,7 +60,7 @@ mod tests {
         let plain = |found: &Diagnosis| sentence(found).replace('\u{a0}', " ");
         assert_eq!(
             plain(&found),
-            "The robot file predicts these drives 27.0 W too low on average, 27.0 % of the mean power (35.0 W RMSE; noise 1.9 W)."
+            "The robot file predicts these drives 27.0 W too low on average, 27.0 % of the mean power of 100.0 W (35.0 W RMSE; noise 1.9 W)."
         );
         found.file = None;
         assert_eq!(

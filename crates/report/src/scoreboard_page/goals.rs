@@ -107,7 +107,7 @@ fn row(line: &Line) -> Markup {
             td.number { (line.shown) }
             td.number.quiet { (line.interval) }
             td.number { (line.goal) }
-            td.number class=(class) { (outcome) }
+            td class={ "number " (class) } { (outcome) }
         }
     }
 }
