@@ -188,7 +188,8 @@ fn who_comes_back_to_the_events_of_a_job_is_told_the_rest() {
     let mut pipe = OpenOptions::new().write(true).open(pipe).unwrap();
     pipe.write_all(first.as_bytes()).unwrap();
     let of_reading = json!("reading recording 1 of 1");
-    let reading = server.events(&path, None).find(|event| event.data["progress"]["step"] == of_reading).unwrap();
+    let reading =
+        server.events(&path, None).find(|event| event.data["progress"]["step"] == of_reading).unwrap();
     assert_eq!((reading.name.as_str(), &reading.data["state"]), ("progress", &json!("running")));
     let fraction = reading.data["progress"]["fraction"].as_f64().unwrap();
     assert!((0.0..=0.51).contains(&fraction), "{fraction}");
