@@ -97,4 +97,39 @@ mod tests {
         assert!(page.contains("&lt;hash&gt;") && page.contains("no such case"), "{page}");
         assert!(!page.contains("NaN") && !page.contains("<script"), "{page}");
     }
+
+    #[test]
+    fn ratios_of_errors_have_three_decimals() {
+        let mut board = prove::scoreboard(7, "hash".into(), Vec::new());
+        (board.rmse_ratio_listed_median, board.rmse_ratio_unlisted_median) = (Some(1.02), Some(1.55));
+        let page = scoreboard_page(&board);
+        assert!(page.contains(">1.020</td>") && page.contains(">1.550</td>"), "{page}");
+    }
+
+    #[test]
+    fn what_a_failing_program_says_cannot_break_the_page() {
+        let failed = prove::CaseScore {
+            case: "case-0001".into(),
+            kind: Kind::Healthy,
+            share: 0.0,
+            verdict: None,
+            error: Some("<script>alert(1)</script>".into()),
+            said: vec![vec!["<b>".into()]],
+            alarmed: false,
+            gave_a_name: false,
+            sets: 0,
+            rank: None,
+            truths: Vec::new(),
+            wrong_names: 0,
+            swapped: false,
+            rmse_ratio: None,
+            noise_ratio: None,
+            discovered: None,
+            twin: None,
+            peers: Vec::new(),
+        };
+        let page = scoreboard_page(&prove::scoreboard(7, "hash".into(), vec![failed]));
+        assert!(page.contains("&lt;script&gt;") && !page.contains("<script"), "{page}");
+        assert!(page.contains("&lt;b&gt;"), "{page}");
+    }
 }
