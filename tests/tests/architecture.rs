@@ -37,6 +37,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-calibration",
         "joulepath-diagnosis",
         "joulepath-prove",
+        "joulepath-report",
         "joulepath-service",
         "joulepath",
     ];
@@ -103,6 +104,7 @@ fn nothing_below_the_service_is_async_or_speaks_http() {
             "joulepath-calibration",
             "joulepath-diagnosis",
             "joulepath-prove",
+            "joulepath-report",
             "joulepath-bench",
         ]
         .contains(&package.name.as_str());

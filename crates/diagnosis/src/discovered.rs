@@ -7,8 +7,8 @@ use crate::{
     words,
 };
 
-/// The name that a discovery goes by.
-pub(crate) const UNKNOWN: &str = "unknown";
+/// The name of an effect that no mechanism of the list describes.
+pub const UNKNOWN: &str = "unknown";
 
 /// A term that was discovered, with its size.
 pub(crate) struct Discovered {

@@ -10,7 +10,7 @@ use world::{Case, RobotFile, World, simulate};
 
 use crate::{
     Boards, CaseScore, Commitments, Dealt, Diagnosis, Error, Kind, Misled, Outcome, PeerAnswer, PeerScore,
-    SealedKey, Twin, Way, WayBoard, commitment::sha256, deal, files, page, score, scoreboard, strength::z,
+    SealedKey, Twin, Way, WayBoard, commitment::sha256, deal, files, score, scoreboard, strength::z,
 };
 
 /// What a trial is doing.
@@ -203,8 +203,7 @@ impl Trial<'_> {
         let path = self.out.join(files::SCOREBOARD);
         let json = serde_json::to_string_pretty(boards)
             .map_err(|source| Error::Content { path: path.clone(), source })?;
-        files::write(&path, &(json + "\n"))?;
-        files::write(&self.out.join("scoreboard.html"), &page(&boards.most))
+        files::write(&path, &(json + "\n"))
     }
 }
 

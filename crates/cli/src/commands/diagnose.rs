@@ -90,7 +90,7 @@ fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     };
     write("report.json", serde_json::to_string_pretty(&found)? + "\n")?;
-    write("report.html", found.html(&robot.name))?;
+    write("report.html", report::diagnosis_page(&found, &robot.name))?;
     write("corrected-robot.json", serde_json::to_string_pretty(&found.corrected_robot)? + "\n")?;
     if recorded.json {
         output::json(&found)?;

@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     if let Some(path) = &arguments.html {
-        let page = calibration::report::html(&robot, &found);
+        let page = report::prediction_page(&robot, &found);
         std::fs::write(path, page)
             .with_context(|| format!("cannot write the report to {}", path.display()))?;
     }

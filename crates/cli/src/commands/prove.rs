@@ -135,13 +135,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         published: &|hash| drop(output::line(format_args!("committed to all keys: SHA-256 {hash}"))),
     };
     let boards = trial.run()?;
+    let page = out.join("scoreboard.html");
+    std::fs::write(&page, report::scoreboard_page(&boards.most))
+        .with_context(|| format!("cannot write {}", page.display()))?;
     if let Ok(bar) = bar.lock() {
         bar.finish_and_clear();
     }
     let columns: Vec<(&str, &Scoreboard)> =
         boards.ways.iter().map(|one| (one.way.words(), &one.board)).collect();
     output::line(summary(&columns))?;
-    output::line(out.join("scoreboard.html").display())?;
+    output::line(page.display())?;
     Ok(())
 }
 

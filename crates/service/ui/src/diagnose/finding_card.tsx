@@ -1,37 +1,57 @@
 /** One mechanism that was left out: how big, how sure, and what else it could be. */
-import { percent, plain, power, quantity, words } from "../format";
+import { percent, plain, power, quantity } from "../format";
+import { capitalized, mechanismLabel } from "./labels";
+import { probability } from "./odds";
 import { Fact } from "./recordings";
-import type { Finding } from "./report";
+import type { Finding, Scope } from "./report";
 
 export function FindingCard({ finding }: { finding: Finding }) {
-  const { evidence, fit } = finding;
+  const { evidence, fit, scope } = finding;
+  // The window stands under "When" where there is a scope.
+  const sizes = finding.parameters.filter(({ name }) => !scope || (name !== "from_s" && name !== "until_s"));
   return (
-    <section class="card finding" aria-label={words(finding.mechanism)}>
-      <h3>{words(finding.mechanism)}</h3>
-      <p>{finding.statement}.</p>
+    <section class="card finding" aria-label={mechanismLabel(finding.mechanism)}>
+      <h3>
+        {capitalized(mechanismLabel(finding.mechanism))}
+        {finding.probability !== undefined && <span class="badge">{probability(finding.probability)} probable</span>}
+      </h3>
+      <p>{capitalized(finding.statement)}.</p>
       <p class="equation">
         <code>{finding.equation}</code>
       </p>
       <ul class="parameters">
-        {finding.parameters.map((parameter) => (
+        {sizes.map((parameter) => (
           <Parameter key={parameter.name} {...parameter} />
         ))}
       </ul>
       <dl class="facts">
+        {scope && <Fact name="When" value={timeOf(scope)} />}
+        {scope?.region && <Fact name="Where" value={scope.region} />}
         <Fact name="Held out before" value={power(fit.held_out_rmse_before_w)} />
         <Fact name="Held out after" value={power(fit.held_out_rmse_after_w)} />
-        <Fact name="Chance of as much by accident" value={evidence.p_value < 1e-4 ? "below 1 in 10 000" : percent(evidence.p_value, 2)} />
+        {finding.probability === undefined && (
+          <Fact name="Chance of as much by accident" value={evidence.p_value < 1e-4 ? "below 1 in 10 000" : percent(evidence.p_value, 2)} />
+        )}
         <Fact name="Held-out gain" value={percent(evidence.held_out_gain)} />
       </dl>
-      {finding.indistinguishable_from.length > 0 ? (
+      {finding.indistinguishable_from.length > 0 && (
         <p class="else">
-          These drives cannot tell it from <b>{finding.indistinguishable_from.map(words).join(", ")}</b>.
+          These drives cannot distinguish it from <b>{finding.indistinguishable_from.map(mechanismLabel).join(", ")}</b>.
         </p>
-      ) : (
-        <p class="fine">Nothing else that is known looks the same in these drives.</p>
+      )}
+      {finding.indistinguishable_from.length === 0 && finding.mechanism !== "unknown" && (
+        <p class="fine">No other mechanism explains the drives as well.</p>
       )}
     </section>
   );
+}
+
+/** When a finding acts. */
+function timeOf({ from_s, until_s, run }: Scope): string {
+  const drive = run === null ? "of each drive" : `of drive ${run}`;
+  if (from_s !== null && until_s !== null) return `from ${from_s.toFixed()} s to ${until_s.toFixed()} s ${drive}`;
+  if (from_s !== null) return `from ${from_s.toFixed()} s ${drive} on`;
+  return until_s === null ? "all the time, in all test drives" : `until ${until_s.toFixed()} s ${drive}`;
 }
 
 /** A number with its interval, drawn on an axis that holds both and zero. */

@@ -28,6 +28,23 @@ export interface Finding {
   evidence: { p_value: number; delta_bic: number; held_out_gain: number };
   indistinguishable_from: string[];
   fit: { held_out_rmse_before_w: number; held_out_rmse_after_w: number };
+  /** Of its mechanism, summed over explanations. */
+  probability?: number;
+  scope?: Scope;
+}
+
+/** When and where a finding acts; null where it acts always. */
+export interface Scope {
+  from_s: number | null;
+  until_s: number | null;
+  run: string | null;
+  region: string | null;
+}
+
+/** Mechanisms that act together; none where nothing is missing. */
+export interface Explanation {
+  mechanisms: string[];
+  probability: number;
 }
 
 /** Power over the time driven, all channels together. */
@@ -44,6 +61,11 @@ export interface Trace {
 export interface Report {
   verdict: "consistent" | "explained" | "ambiguous" | "unexplained";
   sentence: string;
+  /** The robot's file as it is; the bias is recorded less predicted. */
+  file?: { rmse_w: number; bias_w: number; mean_power_w: number };
+  probability?: { nothing: number; listed: number; unlisted: number };
+  /** The credible set, likeliest first. */
+  explanations?: Explanation[];
   baseline: { rmse_w: number; bias_w: number; held_out_rmse_w: number; noise_floor_w: number };
   where: Difference[];
   findings: Finding[];

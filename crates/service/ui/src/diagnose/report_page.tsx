@@ -1,23 +1,32 @@
-/** A diagnosis as a page: verdict, where, what, how much, how sure, what next. */
-import { percent, plain, power, words } from "../format";
+/** A diagnosis as a page: verdict, error of the robot's file, explanations, findings, errors before and after, places, what next. */
+import { useState } from "preact/hooks";
+import { percent, plain, power } from "../format";
 import { saveFile } from "../plan/downloads";
 import { Bars } from "./bars";
+import { Explanations } from "./explanations";
+import { FileError } from "./file_error";
 import { FindingCard } from "./finding_card";
+import { capitalized, mechanismLabel } from "./labels";
 import type { Difference, Report } from "./report";
 import { accept, again } from "./state";
-import { TimeAxis } from "./time_axis";
+import { ErrorsOverTime } from "./time_axis";
 import { DriveMap } from "./drive_map";
+import { shadedOf } from "./windows";
 
 const VERDICTS: Record<Report["verdict"], { name: string; about: string }> = {
-  consistent: { name: "Consistent", about: "The model describes the drives." },
-  explained: { name: "Explained", about: "What was missing is named, and nothing else that is known explains it as well." },
-  ambiguous: { name: "Ambiguous", about: "It is one of several that these drives cannot tell apart." },
-  unexplained: { name: "Unexplained", about: "Something is missing that no known mechanism describes." },
+  consistent: { name: "Consistent", about: "The model describes these drives." },
+  explained: { name: "Explained", about: "The missing effect is identified." },
+  ambiguous: { name: "Ambiguous", about: "These drives cannot distinguish a few explanations." },
+  unexplained: { name: "Unexplained", about: "The list of mechanisms does not settle what is missing." },
 };
 
 export function ReportPage({ report }: { report: Report }) {
   const { name, about } = VERDICTS[report.verdict];
-  const hasPositions = report.trace?.position_m.some((at) => at !== null) ?? false;
+  const { trace } = report;
+  const [run, showRun] = useState(trace?.run[0] ?? 0);
+  const where = shadedOf(report);
+  const shown = trace ? { trace, where, run, showRun } : null;
+  const hasPositions = trace?.position_m.some((at) => at !== null) ?? false;
   return (
     <article class="report">
       <header class="verdict" data-verdict={report.verdict}>
@@ -26,13 +35,19 @@ export function ReportPage({ report }: { report: Report }) {
         <p>{about}</p>
         <Acts report={report} />
       </header>
-      <section class="card" aria-label="Errors before and after">
-        <h3>How far off, before and after</h3>
+      <FileError report={report} shown={shown} />
+      <Explanations report={report} />
+      {report.findings.map((finding, i) => (
+        <FindingCard key={finding.mechanism + i} finding={finding} />
+      ))}
+      <section class="card time-axis" aria-label="Errors before and after">
+        <h3>Errors before and after</h3>
         <Bars report={report} />
+        {shown && <ErrorsOverTime {...shown} />}
       </section>
       {report.where.length > 0 && (
         <section class="card" aria-label="Where they differ">
-          <h3>Where</h3>
+          <h3>Where they differ</h3>
           <ul class="where">
             {report.where.map((place) => (
               <Where key={place.statement} place={place} />
@@ -40,20 +55,17 @@ export function ReportPage({ report }: { report: Report }) {
           </ul>
         </section>
       )}
-      {report.trace && <TimeAxis trace={report.trace} where={report.where} />}
-      {report.trace && hasPositions && <DriveMap trace={report.trace} where={report.where} />}
-      {report.findings.map((finding) => (
-        <FindingCard key={finding.mechanism} finding={finding} />
-      ))}
+      {trace && hasPositions && <DriveMap trace={trace} where={where} />}
       {report.next_drive && (
         <section class="card next-drive" aria-label="Next drive">
-          <h3>The drive that would tell</h3>
-          <p>{report.next_drive}</p>
+          <h3>Next drive</h3>
+          <p>To decide, {report.next_drive}.</p>
         </section>
       )}
+      <Seen report={report} />
       {report.notes.length > 0 && (
         <section class="card" aria-label="Notes">
-          <h3>Keep in mind</h3>
+          <h3>Notes</h3>
           <ul>
             {report.notes.map((note) => (
               <li key={note}>{note}</li>
@@ -61,7 +73,6 @@ export function ReportPage({ report }: { report: Report }) {
           </ul>
         </section>
       )}
-      <Seen report={report} />
     </article>
   );
 }
@@ -98,19 +109,19 @@ function Where({ place }: { place: Difference }) {
   );
 }
 
-/** What would have been seen, and what could not. */
+/** The sizes that these drives would have shown, and what is not identifiable from them. */
 function Seen({ report }: { report: Report }) {
   if (report.detectable.length + report.not_judged.length === 0) return null;
   return (
-    <details class="card seen">
-      <summary>What else was looked for</summary>
+    <details class="card seen" open={report.verdict === "consistent"}>
+      <summary>Sensitivity of these drives</summary>
       {report.detectable.length > 0 && (
         <>
-          <p>These would have been noticed from the size given; noise alone is {power(report.baseline.noise_floor_w)}.</p>
+          <p>Least size of each other mechanism that would have been noticed; noise is {power(report.baseline.noise_floor_w)}.</p>
           <ul class="detectable">
             {report.detectable.map(({ mechanism, parameter, value, unit }) => (
               <li key={mechanism + parameter}>
-                <span>{words(mechanism)}</span>
+                <span>{capitalized(mechanismLabel(mechanism))}</span>
                 <span class="number">
                   {plain(value)} {unit === "1" ? "" : unit}
                 </span>
@@ -119,7 +130,7 @@ function Seen({ report }: { report: Report }) {
           </ul>
         </>
       )}
-      {report.not_judged.length > 0 && <p>These drives tell nothing of {report.not_judged.map(words).join(", ")}.</p>}
+      {report.not_judged.length > 0 && <p>Not identifiable from these drives: {report.not_judged.map(mechanismLabel).join(", ")}.</p>}
     </details>
   );
 }

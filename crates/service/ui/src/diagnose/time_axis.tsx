@@ -1,5 +1,5 @@
-/** Recorded and predicted power over time; where they differ is shaded. */
-import { useMemo, useState } from "preact/hooks";
+/** Power and its errors over time; where recording and file differ is shaded. */
+import { useMemo } from "preact/hooks";
 import { Chart, type Band } from "../widgets/chart";
 import { Choice } from "../widgets/choice";
 import { pointed } from "./pointed";
@@ -27,75 +27,105 @@ export function bandsOf(where: Difference[], trace: Trace, run: number): Band[] 
   });
 }
 
-export function TimeAxis({ trace, where }: { trace: Trace; where: Difference[] }) {
-  const [run, setRun] = useState(trace.run[0] ?? 0);
+/** The drive that both charts show, and what they shade. */
+export interface Shown {
+  trace: Trace;
+  where: Difference[];
+  run: number;
+  showRun: (run: number) => void;
+}
+
+/** Recorded power and the prediction of the robot's file. */
+export function PowerOverTime(shown: Shown) {
+  const { trace, run, showRun } = shown;
   const data = useMemo(() => {
     const indices = indicesOf(trace, run);
     const pick = (values: (number | null)[]) => indices.map((i) => values[i] ?? null);
-    const errors = (predicted: (number | null)[]) =>
-      indices.map((i) => (trace.recorded_w[i] == null || predicted[i] == null ? null : trace.recorded_w[i] - predicted[i]));
-    const axis = pick(trace.t_s);
-    return {
-      power: [axis, pick(trace.recorded_w), pick(trace.corrected_w)],
-      error: [axis, errors(trace.filed_w), errors(trace.corrected_w)],
-    };
+    return [pick(trace.t_s), pick(trace.recorded_w), pick(trace.filed_w)];
   }, [trace, run]);
-  const bands = bandsOf(where, trace, run);
-  const link = { at: pointed.value?.run === run ? pointed.value.t_s : null, point: (t_s: number) => (pointed.value = { run, t_s }) };
   return (
-    <section class="card time-axis" aria-label="Power over time">
+    <figure>
       <header>
-        <h3>Over time</h3>
+        <h4>
+          Power <small>W</small>
+        </h4>
         {trace.runs.length > 1 && (
           <Choice
             label="Drive"
             value={String(run)}
-            choose={(value) => setRun(Number(value))}
+            choose={(value) => showRun(Number(value))}
             options={trace.runs.map((name, i) => ({ value: String(i), name }))}
           />
         )}
       </header>
       <p class="key">
         <Key color="recorded">recorded</Key>
-        <Key color="after">corrected model</Key>
-        <Key color="before">robot's file</Key>
-        {bands.length > 0 && (
-          <span class="key-band">
-            <i /> where they differ
-          </span>
-        )}
+        <Key color="before">predicted by the robot's file</Key>
+        <Shade shown={shown} />
       </p>
-      <h4>
-        Power <small>W</small>
-      </h4>
       <Chart
-        label="Power over time, recorded and by the corrected model"
-        height={150}
-        data={data.power}
+        label="Power over time, recorded and predicted by the robot's file"
+        height={170}
+        data={data}
         lines={[
           { name: "recorded", color: "recorded", width: 3 },
-          { name: "corrected", color: "after", width: 1 },
+          { name: "robot's file", color: "before", width: 1 },
         ]}
-        bands={bands}
-        hasAxis={false}
-        {...link}
+        bands={bandsOf(shown.where, trace, run)}
+        axisUnit="s"
+        {...linkOf(run)}
       />
+    </figure>
+  );
+}
+
+/** What the robot's file and the corrected model leave of the recorded power. */
+export function ErrorsOverTime(shown: Shown) {
+  const { trace, run } = shown;
+  const data = useMemo(() => {
+    const indices = indicesOf(trace, run);
+    const errors = (predicted: (number | null)[]) =>
+      indices.map((i) => (trace.recorded_w[i] == null || predicted[i] == null ? null : trace.recorded_w[i] - predicted[i]));
+    return [indices.map((i) => trace.t_s[i] ?? null), errors(trace.filed_w), errors(trace.corrected_w)];
+  }, [trace, run]);
+  return (
+    <figure>
       <h4>
-        Recorded less predicted <small>W</small>
+        Recorded less predicted power <small>W</small>
       </h4>
+      <p class="key">
+        <Key color="before">robot's file</Key>
+        <Key color="after">corrected model</Key>
+        <Shade shown={shown} />
+      </p>
       <Chart
         label="Recorded less predicted power over time, by the robot's file and by the corrected model"
         height={170}
-        data={data.error}
+        data={data}
         lines={[
           { name: "robot's file", color: "before", width: 1 },
           { name: "corrected", color: "after", width: 1.25 },
         ]}
-        bands={bands}
+        bands={bandsOf(shown.where, trace, run)}
         axisUnit="s"
-        {...link}
+        {...linkOf(run)}
       />
-    </section>
+    </figure>
+  );
+}
+
+/** Ties a chart to the moment that the others and the map point at. */
+function linkOf(run: number) {
+  const at = pointed.value?.run === run ? pointed.value.t_s : null;
+  return { at, point: (t_s: number) => (pointed.value = { run, t_s }) };
+}
+
+function Shade({ shown: { where, trace, run } }: { shown: Shown }) {
+  if (bandsOf(where, trace, run).length === 0) return null;
+  return (
+    <span class="key-band">
+      <i /> where they differ
+    </span>
   );
 }
 

@@ -1,0 +1,18 @@
+//! HTML pages of a diagnosis, of a trial's scoreboard and of a prediction.
+//!
+//! A page is one self-contained document without scripts or outside resources, for light and dark screens and for narrow ones.
+//! Everything that is written into it passes one escaper, that of `maud`. The crate computes no result: what a page shows stands
+//! in the structures of `diagnosis`, `prove` and `calibration`.
+
+mod axis;
+mod bar;
+mod diagnosis_page;
+mod document;
+mod figures;
+mod labels;
+mod prediction_page;
+mod scoreboard_page;
+
+pub use diagnosis_page::diagnosis_page;
+pub use prediction_page::prediction_page;
+pub use scoreboard_page::scoreboard_page;
