@@ -82,6 +82,8 @@ pub struct FileError {
     pub bias_w: f64,
     /// Mean of recorded power [W].
     pub mean_power_w: f64,
+    /// Noise of the recorded power, root mean square [W].
+    pub noise_w: f64,
 }
 
 /// The robot's file as it is against the recording.

@@ -144,6 +144,19 @@ mod tests {
     }
 
     #[test]
+    fn drives_of_another_robot_get_no_names_and_no_panic() {
+        let robot = model::builtin::husky_a200();
+        let mut suspect = drive(&robot, 0.0, &[]);
+        let [left_w, right_w] = [recording::Channel::LeftPower, recording::Channel::RightPower]
+            .map(|side| suspect.channels.remove(&side).unwrap());
+        suspect.channels.insert(recording::Channel::LeftPower, right_w.iter().map(|w| -w).collect());
+        suspect.channels.insert(recording::Channel::RightPower, left_w.iter().map(|w| -w).collect());
+        let question = Question { engine: Engine::Posterior, ..Question::new(&robot, &suspect, None) };
+        let found = crate::diagnose(&question, &|_, _| {}).unwrap();
+        assert!(found.verdict == Verdict::Unexplained && found.findings.is_empty(), "{}", found.sentence);
+    }
+
+    #[test]
     fn what_is_ruled_out_is_never_named() {
         let robot = model::builtin::husky_a200();
         let suspect = drive(&robot, 0.0, &drag(8.0, 400.0));

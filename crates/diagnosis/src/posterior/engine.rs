@@ -10,7 +10,10 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::Error;
 use crate::posterior::{
-    evidence::{linear_model::LinearModel, noise::Whitening},
+    evidence::{
+        linear_model::{LinearModel, matrix},
+        noise::Whitening,
+    },
     fit::{baseline::Baseline, joint::Joint, run_variation, temperature},
     hypothesis::{
         effect::{Beside, Effect, effects},
@@ -266,7 +269,7 @@ fn log_evidence(
     let white =
         |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)[rows.clone()].to_vec()) / divisor;
     let columns: Vec<DVector<f64>> = columns.iter().map(|column| white(column)).collect();
-    let model = LinearModel::new(DMatrix::from_columns(&columns), rows.len() as f64 / temperature::UNTOLD);
+    let model = LinearModel::new(matrix(rows.len(), &columns), rows.len() as f64 / temperature::UNTOLD);
     let residual = DMatrix::from_columns(&[white(&baseline.residual)]);
     model.reduce(&[&model.group(residual)]).evidence(&[]).log
 }

@@ -9,7 +9,7 @@ use model::{
     mechanism,
     robot::Surface,
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use recording::{PowerForm, Recording, Watch};
 
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
     diagnose::{NEEDED_S, impossible},
     posterior::{
         engine,
-        evidence::linear_model::LinearModel,
+        evidence::linear_model::{LinearModel, matrix},
         fit::{baseline::Baseline, temperature::UNTOLD},
         observations::Observations,
         report::file_error,
@@ -90,8 +90,6 @@ pub struct Errors {
     pub before: FileError,
     /// The calibrated one.
     pub after: FileError,
-    /// Noise of the recorded power, root mean square [W].
-    pub noise_w: f64,
     /// See [`ModelError::fraction`].
     pub model_error: f64,
     /// Time that was looked at, spread over all drives, where they are longer [s].
@@ -110,7 +108,7 @@ impl std::fmt::Display for Errors {
              function of the motion",
             off(&self.before),
             off(&self.after),
-            self.noise_w,
+            self.after.noise_w,
             100.0 * self.model_error
         )?;
         match self.sampled_s {
@@ -159,15 +157,15 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     columns.extend(baseline.discrepancy(&observed, fraction));
     columns.extend(shares);
     let white = |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)) / UNTOLD.sqrt();
-    let basis = DMatrix::from_columns(&columns.iter().map(white).collect::<Vec<_>>());
+    let basis = matrix(observed.rows(), &columns.iter().map(white).collect::<Vec<_>>());
     let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD);
-    let error = |robot: &Robot| Ok::<_, Error>(file_error::of(&observed, &series.predict(robot, &[])?));
+    let error =
+        |robot: &Robot| Ok::<_, Error>(file_error::of(&observed, &baseline, &series.predict(robot, &[])?));
     // Ground that only the calibration knows is as new to the file before as to its reader.
     let with_new_ground = Robot { surfaces: with_new(before, calibrated), ..before.clone() };
     let errors = Errors {
         before: error(&with_new_ground)?,
         after: error(calibrated)?,
-        noise_w: engine::noise_floor_w(&observed, &baseline),
         model_error: fraction,
         sampled_s: (!is_whole).then(|| observed.total_s()),
     };

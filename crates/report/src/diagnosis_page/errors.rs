@@ -39,7 +39,7 @@ pub(super) fn section(found: &Diagnosis) -> Markup {
         p.quiet {
             "Root mean square error over one-second averages of each power channel. Held out: judged on parts of the drives that were not \
              fitted. Noise: what no model predicts."
-            @if let Some(file) = found.file.filter(|file| is_apart(file.rmse_w, baseline.rmse_w)) {
+            @if let Some(file) = found.file.as_ref().map(|file| file.error).filter(|file| is_apart(file.rmse_w, baseline.rmse_w)) {
                 " Each channel counts by itself here; of the whole power the robot file is off by " (watts(file.rmse_w)) "."
             }
         }

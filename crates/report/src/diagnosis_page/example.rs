@@ -3,8 +3,8 @@
 use diagnosis::{
     Diagnosis, Verdict,
     report::{
-        BaselineFit, CorrectedFit, Detectable, EvidenceFigures, ExplanationFigures, FileError, Finding,
-        FindingFit, FoundParameter, Place, Probability, Range, Scope, Trace,
+        BaselineFit, CorrectedFit, Detectable, EvidenceFigures, ExplanationFigures, FileError, FileReport,
+        Finding, FindingFit, FoundParameter, Place, Probability, Range, Scope, Trace,
     },
 };
 
@@ -17,7 +17,10 @@ pub(super) fn explained() -> Diagnosis {
     Diagnosis {
         verdict: Verdict::Explained,
         sentence: "The robot carries 25.3 kg more, from about 400 s on.".into(),
-        file: Some(FileError { rmse_w: 35.0, bias_w: 27.0, mean_power_w: 100.0 }),
+        file: Some(FileReport {
+            error: FileError { rmse_w: 35.0, bias_w: 27.0, mean_power_w: 100.0, noise_w: 1.9 },
+            findings: Vec::new(),
+        }),
         probability: Some(Probability { nothing: 0.02, listed: 0.928, unlisted: 0.052 }),
         explanations: vec![
             explanation(&["payload"], 0.9),

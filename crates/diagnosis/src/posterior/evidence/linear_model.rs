@@ -35,6 +35,11 @@ pub(crate) struct LinearModel {
     scales: Vec<NoiseScale>,
 }
 
+/// A matrix of columns of so many rows; there may be none.
+pub(crate) fn matrix(rows: usize, columns: &[DVector<f64>]) -> DMatrix<f64> {
+    if columns.is_empty() { DMatrix::zeros(rows, 0) } else { DMatrix::from_columns(columns) }
+}
+
 /// What belongs to one scale of the noise.
 struct NoiseScale {
     /// 1/s².

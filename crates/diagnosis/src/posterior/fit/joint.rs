@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::posterior::{
     evidence::{
-        linear_model::{Evidence, Group, Half, LinearModel},
+        linear_model::{Evidence, Group, Half, LinearModel, matrix},
         noise::Whitening,
     },
     fit::{baseline::Baseline, features::Features},
@@ -153,7 +153,7 @@ impl<'a> Joint<'a> {
         temperature: f64,
     ) -> Self {
         let raw_basis: Vec<Vec<f64>> = baseline.sensitivities.iter().cloned().chain(others).collect();
-        let basis = DMatrix::from_columns(&whitened(&whitening, &raw_basis));
+        let basis = matrix(observed.rows(), &whitened(&whitening, &raw_basis));
         let parameters = basis.columns(0, baseline.parameters.len());
         let count = baseline.parameters.len();
         let gram = parameters.transpose() * parameters * temperature + DMatrix::identity(count, count);
@@ -315,11 +315,7 @@ impl<'a> Joint<'a> {
             left.rows_mut(0, column.len()).axpy(*x, column, 1.0);
         }
         white.extend(forms.iter().cloned());
-        let columns = if white.is_empty() {
-            DMatrix::zeros(self.observed.test_rows, 0)
-        } else {
-            DMatrix::from_columns(&white)
-        };
+        let columns = matrix(self.observed.test_rows, &white);
         (self.model.group(columns), self.model.group(DMatrix::from_columns(&[left])))
     }
 

@@ -12,7 +12,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::posterior::{evidence::noise::Whitening, observations::Observations};
+use crate::posterior::{
+    evidence::{linear_model::matrix, noise::Whitening},
+    observations::Observations,
+};
 
 /// Temperature where no drives tell: neighbouring seconds of one manoeuvre are no independent witnesses of a form (128 effects and 30 healthy
 /// drives of a trial: τ = 1 gave eight false alarms, τ = 4 none).
@@ -95,7 +98,7 @@ pub(crate) fn columns(
 ) -> Columns {
     let whitened = |columns: &[Vec<f64>]| {
         let all: Vec<_> = columns.iter().map(|column| DVector::from_vec(whitening.apply(column))).collect();
-        if all.is_empty() { DMatrix::zeros(residual.len(), 0) } else { DMatrix::from_columns(&all) }
+        matrix(residual.len(), &all)
     };
     Columns {
         basis: whitened(basis),

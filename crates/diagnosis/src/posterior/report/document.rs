@@ -64,7 +64,7 @@ pub(crate) struct Subject<'a> {
 pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis, Error> {
     let Subject { file, observed, .. } = *subject;
     let filed = observed.series.predict(file, &[])?;
-    let error = file_error::of(observed, &filed);
+    let error = file_error::of(observed, &found.baseline, &filed);
     let said = match subject.mistakes.is_empty() {
         true => verdict(&found.explanations, circumstances(observed, found)),
         false => Verdict::Unexplained,
@@ -92,7 +92,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         verdict: said,
         sentence: match subject.mistakes.first() {
             Some(mistake) => mistaken(mistake),
-            None => sentence(said, &error, found.noise_floor_w, &findings),
+            None => sentence(said, &error, &findings),
         },
         file: Some(FileReport { error, findings: subject.shared.to_vec() }),
         probability: Some(probability(&found.explanations)),

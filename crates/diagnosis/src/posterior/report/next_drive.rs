@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::posterior::{
     engine::Found,
+    evidence::linear_model::matrix,
     fit::{baseline::Baseline, joint::Member},
     observations::Observations,
     report::planned_drive::{CATALOGUE, PlannedDrive},
@@ -85,7 +86,7 @@ fn gain(
         .iter()
         .map(|column| DVector::from_vec(white.apply(column)) / found.temperature.sqrt())
         .collect();
-    let columns = DMatrix::from_columns(&columns);
+    let columns = matrix(there.rows(), &columns);
     let Some(root) =
         (columns.tr_mul(&columns) + DMatrix::identity(columns.ncols(), columns.ncols())).cholesky()
     else {

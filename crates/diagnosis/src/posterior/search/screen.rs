@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::posterior::{
-    evidence::linear_model::{Half, Reduced, log_sum},
+    evidence::linear_model::{Half, Reduced, log_sum, matrix},
     fit::joint::{Joint, Member},
     hypothesis::{
         atoms::Atoms,
@@ -64,7 +64,7 @@ impl<'a> Screen<'a> {
             offsets.push(columns.len());
             columns.extend(joint.whiten(&effect.columns));
         }
-        let atoms = Atoms::new(joint, grid, &DMatrix::from_columns(&columns));
+        let atoms = Atoms::new(joint, grid, &matrix(joint.observed.test_rows, &columns));
         let mut candidates = Vec::new();
         let (mut with_basis, mut with_residual) = (Vec::new(), Vec::new());
         for (e, effect) in effects.iter().enumerate() {
@@ -78,7 +78,7 @@ impl<'a> Screen<'a> {
                 }
             }
         }
-        let halves = joint.model.halves(&DMatrix::from_columns(&with_basis));
+        let halves = joint.model.halves(&matrix(joint.model.basis().ncols(), &with_basis));
         let by_basis = joint.model.with_basis(&DMatrix::from_columns(std::slice::from_ref(&joint.residual)));
         let residual_halves =
             joint.model.halves(&by_basis).into_iter().map(|half| half.column(0).into_owned()).collect();

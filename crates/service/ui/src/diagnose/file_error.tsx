@@ -20,8 +20,20 @@ export function FileError({ report, shown }: { report: Report; shown: Shown | nu
         <b>
           {size_w} {way}
         </b>{" "}
-        on average{share} ({power(rmse_w)} RMSE; noise {power(baseline.noise_floor_w)}).
+        on average{share} ({power(rmse_w)} RMSE; noise {power(file?.noise_w ?? baseline.noise_floor_w)}).
       </p>
+      {file?.findings && file.findings.length > 0 && (
+        <>
+          <p>
+            The healthy drives need this beside the robot file as well, so that it is a property of this robot and sets no verdict:
+          </p>
+          <ul>
+            {file.findings.map((finding) => (
+              <li key={finding.mechanism}>{finding.statement}.</li>
+            ))}
+          </ul>
+        </>
+      )}
       {shown && <PowerOverTime {...shown} />}
     </section>
   );

@@ -62,7 +62,7 @@ export interface Report {
   verdict: "consistent" | "explained" | "ambiguous" | "unexplained";
   sentence: string;
   /** The robot's file as it is; the bias is recorded less predicted. */
-  file?: { rmse_w: number; bias_w: number; mean_power_w: number };
+  file?: { rmse_w: number; bias_w: number; mean_power_w: number; noise_w: number; findings?: { mechanism: string; statement: string }[] };
   probability?: { nothing: number; listed: number; unlisted: number };
   /** The credible set, likeliest first. */
   explanations?: Explanation[];
