@@ -172,7 +172,10 @@ fn common(
     if !beside.series.has_healthy() {
         return Ok(Vec::new());
     }
-    effects(library, scale, &Beside { everywhere: true, ..*beside })
+    let mut effects = effects(library, scale, &Beside { everywhere: true, ..*beside })?;
+    // Of the same columns the wider ones would say nothing new.
+    effects.retain(|effect| effect.widening <= 1.0);
+    Ok(effects)
 }
 
 /// Columns of what healthy robots and good logs have of mechanisms: in all drives without healthy ones, in the test drives beside them.

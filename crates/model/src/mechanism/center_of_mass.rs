@@ -49,7 +49,7 @@ impl Mechanism for CenterOfMass {
     /// Ahead of the middle, behind it, and to the side alone: power hardly changes with the sign of the distance from the middle.
     fn forms(&self, _: &Robot) -> Vec<Form> {
         [0.0, BEHIND_M]
-            .map(|forward_m| Form { values: vec![forward_m, 0.0], free: vec![0, 1] })
+            .map(|forward_m| Form { values: vec![forward_m, 0.0], free: vec![0, 1], widening: 1.0 })
             .into_iter()
             .chain([Form::one_free(vec![0.0; 2], 1)])
             .collect()

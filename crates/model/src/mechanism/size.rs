@@ -57,16 +57,18 @@ pub struct Form {
     pub values: Vec<f64>,
     /// Parameters whose size is free.
     pub free: Vec<usize>,
+    /// Factor by which sizes are wider than the mechanism's prior has them.
+    pub widening: f64,
 }
 
 impl Form {
     /// All of so many parameters free.
     pub fn all_free(count: usize) -> Self {
-        Form { values: vec![0.0; count], free: (0..count).collect() }
+        Form { values: vec![0.0; count], free: (0..count).collect(), widening: 1.0 }
     }
 
     /// One parameter free beside values that are held.
     pub fn one_free(values: Vec<f64>, free: usize) -> Self {
-        Form { values, free: vec![free] }
+        Form { values, free: vec![free], widening: 1.0 }
     }
 }

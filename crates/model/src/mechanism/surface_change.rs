@@ -2,7 +2,7 @@
 
 use crate::{
     Robot, Sides,
-    mechanism::{Adjustment, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
+    mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
 /// Other ground than the recording says.
@@ -28,6 +28,11 @@ impl Mechanism for SurfaceChange {
     /// BorealTC).
     fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
         [0.5, 0.3].map(SizePrior::either).into()
+    }
+
+    /// Another floor or field, and another kind of ground altogether: asphalt has three to four times the skid resistance of ice (BorealTC).
+    fn forms(&self, _: &Robot) -> Vec<Form> {
+        [1.0, 4.0].map(|widening| Form { widening, ..Form::all_free(2) }).into()
     }
 
     /// Ground that rolls harder skids harder.

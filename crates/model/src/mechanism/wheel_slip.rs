@@ -48,7 +48,7 @@ impl Mechanism for WheelSlip {
 
     /// What spins carries the robot less far and turns it less; what gives way under pull shows in turns; or both.
     fn forms(&self, _: &Robot) -> Vec<Form> {
-        [vec![0], vec![1], vec![0, 1]].map(|free| Form { values: vec![0.0; 2], free }).into()
+        [vec![0], vec![1], vec![0, 1]].map(|free| Form { values: vec![0.0; 2], free, widening: 1.0 }).into()
     }
 
     /// Wheels slip by some hundredths of their way wherever they pull.

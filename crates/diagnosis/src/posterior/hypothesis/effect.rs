@@ -16,6 +16,8 @@ pub(crate) struct Effect {
     pub(crate) mechanism: &'static dyn Mechanism,
     /// Share of the mechanism's prior that is this form's, as a logarithm.
     pub(crate) log_prior: f64,
+    /// See [`Form::widening`].
+    pub(crate) widening: f64,
     /// Values of all parameters; free ones at 0, or where they begin.
     pub(crate) values: Vec<f64>,
     /// Free parameters.
@@ -40,6 +42,7 @@ pub(crate) struct Size {
 impl Size {
     fn of(form: &Form, priors: &[SizePrior], parameter: usize) -> Self {
         let SizePrior { sigma, sign } = priors[parameter];
+        let sigma = form.widening * sigma;
         // A form that begins off zero keeps its sign.
         let begins = form.values[parameter];
         let (unit, half) = match sign {
@@ -77,7 +80,15 @@ pub(crate) fn effects(
             first.iter_mut().zip(&*second).for_each(|(a, b)| *a += correlation * b);
             second.iter_mut().for_each(|b| *b *= (1.0 - correlation * correlation).sqrt());
         }
-        Ok(Effect { mechanism, log_prior, values: form.values, free, correlation, columns })
+        Ok(Effect {
+            mechanism,
+            log_prior,
+            widening: form.widening,
+            values: form.values,
+            free,
+            correlation,
+            columns,
+        })
     };
     all.into_par_iter().map(effect).collect()
 }

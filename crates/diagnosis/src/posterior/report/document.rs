@@ -25,7 +25,7 @@ use crate::{
             next_drive::next_drive,
             place::places,
             sentence::sentence,
-            verdict::{Circumstances, is_beyond_uncertainty, probability, verdict},
+            verdict::{Circumstances, is_beyond_uncertainty, is_named, probability, verdict},
         },
         search::explanation::{Explanation, credible},
     },
@@ -69,7 +69,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         true => verdict(&found.explanations, circumstances(observed, found)),
         false => Verdict::Unexplained,
     };
-    let is_told = said != Verdict::Consistent && subject.mistakes.is_empty();
+    let is_told = is_named(said, &found.explanations) && subject.mistakes.is_empty();
     let findings = if is_told { findings(subject, found) } else { Vec::new() };
     let first = found.explanations.first().filter(|one| !one.names.is_empty() || one.unlisted);
     let first = first.filter(|_| !findings.is_empty());

@@ -61,6 +61,15 @@ pub(crate) fn verdict(explanations: &[Explanation], circumstances: Circumstances
     if of_first >= SURE { Verdict::Explained } else { Verdict::Ambiguous }
 }
 
+/// Whether names are given: not where nothing is missing, nor where that is as plausible as in consistent drives and no answer is sure.
+pub(crate) fn is_named(verdict: Verdict, explanations: &[Explanation]) -> bool {
+    match verdict {
+        Verdict::Consistent => false,
+        Verdict::Explained | Verdict::Ambiguous => true,
+        Verdict::Unexplained => probability(explanations).nothing < LEAST_OF_NOTHING,
+    }
+}
+
 /// Whether parameters lie farther from the file than its stated uncertainty lets them; as independent numbers of standard deviation one.
 pub(crate) fn is_beyond_uncertainty(u: &[f64]) -> bool {
     let count = u.len() as f64;
