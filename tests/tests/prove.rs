@@ -51,7 +51,7 @@ fn a_case_of_each_kind_is_proven_and_the_published_hash_is_that_of_the_keys() {
 fn a_case_is_diagnosed_by_its_file_by_a_calibrated_one_and_with_healthy_drives() {
     let room = tempfile::tempdir().unwrap();
     let out = room.path().join("proof");
-    let asked = ["--cases", "2", "--seed", "5", "--only", "one", "--share", "0.12", "--engine", "posterior"];
+    let asked = ["--cases", "2", "--seed", "5", "--only", "one", "--share", "0.12"];
     let output = prove(&out, &asked);
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

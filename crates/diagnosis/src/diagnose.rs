@@ -1,5 +1,6 @@
-//! A diagnosis from beginning to end.
+//! The posterior diagnosis from recordings to the report.
 
+use calibration::slopes_note;
 use model::{
     Robot,
     mechanism::{self, Mechanism},
@@ -7,30 +8,23 @@ use model::{
 use recording::{Channel, Recording, Watch, unwatched};
 
 use crate::{
-    Error,
-    alternatives::{Explanation, alternatives, detectable},
-    average::Quantity,
-    baseline::{Baseline, differences},
-    caveats::caveats,
-    corrected::corrected,
-    discover::{Sure, discover},
-    doubts::{doubts, mistakes, moved_far},
-    gates,
-    judged::Judged,
-    needed::shown_in,
-    next_drive::next_drive,
-    null::Null,
-    posterior,
-    prepared::Prepared,
-    report::{Diagnosis, Verdict},
-    search::{Search, TOLD, search},
-    series::{Applied, Look, Series},
-    weigh::{BLOCK_S, share},
-    words,
+    Error, Series,
+    fit::baseline::Baseline,
+    hypothesis::window::Windows,
+    observe::{
+        observations::Observations,
+        prepared::Prepared,
+        sanity::{doubts, mistakes},
+    },
+    report::{
+        diagnosis::{Diagnosis, Finding},
+        document::{Subject, document, shared_findings},
+    },
+    search::engine::find,
 };
 
-/// Driving that a diagnosis needs [s]: six blocks, the visits that evidence takes.
-pub(crate) const NEEDED_S: usize = 6 * BLOCK_S as usize;
+/// Driving that a diagnosis needs \[s\]: six stretches of 20 s, so that some can be held out.
+pub(crate) const NEEDED_S: usize = 120;
 
 /// Drives that a robot's model may not describe, and what is known of them.
 #[derive(Clone, Copy)]
@@ -43,24 +37,12 @@ pub struct Question<'a> {
     pub healthy: Option<&'a Recording>,
     /// Mechanisms that are known not to act.
     pub ruled_out: &'a [&'static dyn Mechanism],
-    /// By what it is answered.
-    pub engine: Engine,
-}
-
-/// Ways of diagnosing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Engine {
-    /// Candidates one after the other, each through a row of tests.
-    Gates,
-    /// The posterior over sets of mechanisms by one Gaussian model.
-    #[default]
-    Posterior,
 }
 
 impl<'a> Question<'a> {
     /// A question about drives of which nothing is ruled out.
     pub fn new(robot: &'a Robot, suspect: &'a Recording, healthy: Option<&'a Recording>) -> Self {
-        Question { robot, suspect, healthy, ruled_out: &[], engine: Engine::default() }
+        Question { robot, suspect, healthy, ruled_out: &[] }
     }
 }
 
@@ -83,83 +65,47 @@ pub fn diagnose_watched(
     progress: &dyn Fn(&str, f64),
     watch: &Watch,
 ) -> Result<Diagnosis, Error> {
-    if question.engine == Engine::Posterior {
-        return posterior::diagnose::diagnose(question, progress, watch);
-    }
     let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
     let Prepared { suspect, healthy, as_recorded, by_current, contradictions } =
         Prepared::new(question, watch)?;
-    let (suspect, healthy) = (&suspect, healthy.as_ref());
-    let series = Series::watched(robot, suspect, healthy, watch)?;
-    let mut series = series.without(ruled_out).without(&impossible(suspect)).with_turns(robot)?;
+    let suspect = &suspect;
+    let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
-    let told = |step: &str, share: f64| progress(step, 0.1 + 0.6 * share.min(1.0));
-    let begun = Search::begin(&series, robot, healthy, &told)?;
-    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &begun.before.robot)?;
-    // Nothing else is told of what is not what it seems.
-    let found = if mistakes.is_empty() { search(&series, robot, begun, &told)? } else { begun };
-    progress("judging what is left", 0.7);
-    let mut judged = Judged::new(&series, robot, &found)?;
-    progress("looking outside the list", 0.72);
-    let mut found = found;
-    if mistakes.is_empty() {
-        look_outside(&series, &found, &mut judged)?;
-        let closer =
-            |_: &str, share: f64| progress("looking closer for what is weak", 0.75 + 0.05 * share.min(1.0));
-        if judged.verdict(&found) == Verdict::Consistent
-            && let Some(closer) = look_closer(&mut series, robot, healthy, &closer)?
-        {
-            (found, judged) = closer;
-        }
-    }
-    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    progress("locating the difference", 0.8);
-    let places = if mistakes.is_empty() { judged.places(&series, robot, &found)? } else { Vec::new() };
-    progress("planning the next drive", 0.85);
-    let next_drive = decisive_drive(&series, robot, &found)?;
-    let (corrected_robot, mut notes) =
-        corrected(&found.after.robot, &applied, &series.surfaces(), &series.names);
-    progress("weighing what could have been seen", 0.95);
-    let (detectable, not_judged) = detectable(&series, &found.after, &applied, &found.null)?;
+    let observed = Observations::new(&series, robot);
+    progress("fitting the robot", 0.05);
+    let baseline = Baseline::fit(&observed, robot)?;
+    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
-    let moved = found.after.knobs.iter().map(|knob| &knob.name[..]).zip(found.after.moved.iter().copied());
-    doubts.extend(moved_far(moved));
-    doubts.append(&mut notes);
-    doubts.extend(judged.left_beside_names(&found));
-    let is_outside = !judged.discovered.is_empty();
-    doubts.extend(caveats(suspect, healthy.is_none(), by_current, is_outside).map(str::to_owned));
-    let findings = judged.findings(&series, robot, &found);
-    let mut diagnosis = Diagnosis {
-        verdict: judged.verdict(&found),
-        sentence: String::new(),
-        file: None,
-        probability: None,
-        explanations: Vec::new(),
-        baseline: judged.baseline,
-        places,
-        findings,
-        corrected: judged.corrected,
-        next_drive,
-        explainable: judged.explainable,
-        detectable,
-        not_judged,
-        notes: doubts,
-        corrected_robot,
-        trace: judged.trace(&series, suspect),
+    doubts.extend(by_current.then(|| BY_CURRENT.to_owned()));
+    doubts.extend(slopes_note(suspect).map(str::to_owned));
+    let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
+    let is_possible = |one: &&'static dyn Mechanism| !excluded.contains(&one.name());
+    // Nothing else is told of what is not what it seems.
+    let is_looked_for = |one: &&'static dyn Mechanism| mistakes.is_empty() && is_possible(one);
+    let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_looked_for).collect();
+    let found = find(&observed, (robot, baseline), &library, Windows::All, progress)?;
+    progress("looking at what all drives share", 0.95);
+    let shared = match &healthy {
+        Some(healthy) if mistakes.is_empty() => shared(robot, healthy, &library, watch)?,
+        _ => Vec::new(),
     };
-    diagnosis.sentence = match mistakes.first() {
-        Some(mistake) => {
-            diagnosis.verdict = Verdict::Unexplained;
-            words::mistaken(mistake)
-        }
-        None => words::sentence(&diagnosis, &found.refused, judged.event()),
+    let drives: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
+    let subject = Subject {
+        file: robot,
+        suspect,
+        observed: &observed,
+        drives: &drives,
+        mistakes: &mistakes,
+        shared: &shared,
+        doubts: &doubts,
     };
+    let report = document(&subject, &found)?;
     progress("done", 1.0);
-    Ok(diagnosis)
+    Ok(report)
 }
 
 /// Mechanisms that cannot act in drives: an inclinometer that is askew where none was read.
@@ -168,97 +114,111 @@ pub(crate) fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
     mechanism::by_name("pitch_bias").filter(|_| !is_read).into_iter().collect()
 }
 
-/// Takes up terms outside the list, if what was found leaves it open whether something else acts.
-fn look_outside(series: &Series, found: &Search, judged: &mut Judged) -> Result<(), Error> {
-    // That something comes again and again says nothing of what it would follow.
-    let sure = match judged.verdict_by_inputs(found) {
-        Verdict::Unexplained if series.has_healthy() => Sure::AsUsual,
-        Verdict::Consistent if series.has_healthy() => Sure::Very,
-        _ if series.turning.is_some() => Sure::AsUsual,
-        _ => return Ok(()),
-    };
-    let applied: Vec<Applied> = found.found.iter().map(|f| f.applied.clone()).collect();
-    let terms = discover(series, &found.after, &applied, &found.refused, (&found.null, sure))?;
-    judged.take_up(series, found, terms)
-}
+/// What a diagnosis of motor currents has to say of itself.
+const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
 
-/// What is weak and has a name, where nothing else is missing: beside what models miss of healthy drives, noise is less.
-fn look_closer(
-    series: &mut Series,
+/// Mechanisms that healthy drives need beside the robot's file, by themselves: what the file lacks of this robot.
+fn shared(
     robot: &Robot,
-    healthy: Option<&Recording>,
-    progress: &dyn Fn(&str, f64),
-) -> Result<Option<(Search, Judged)>, Error> {
-    series.look = Look::Closer;
-    let named = if healthy.is_some() && seems_missing(series, robot)? {
-        named(series, robot, healthy, progress)?
-    } else {
-        None
-    };
-    if named.is_none() {
-        series.look = Look::Usual;
+    healthy: &Recording,
+    library: &[&'static dyn Mechanism],
+    watch: &Watch,
+) -> Result<Vec<Finding>, Error> {
+    let excluded = impossible(healthy);
+    let is_possible = |one: &&'static dyn Mechanism| !excluded.iter().any(|other| other.name() == one.name());
+    let library: Vec<&'static dyn Mechanism> = library.iter().copied().filter(is_possible).collect();
+    let series = Series::watched(robot, healthy, None, watch)?;
+    if library.is_empty() || series.averages.iter().filter(|a| a.channel == 0).count() < NEEDED_S {
+        return Ok(Vec::new());
     }
-    Ok(named)
-}
-
-/// Whether any mechanism passes while nothing is discounted for what healthy drives differ by, which takes longest to tell and makes
-/// evidence less only.
-fn seems_missing(series: &Series, robot: &Robot) -> Result<bool, Error> {
-    let base = Baseline::fit(series, robot, &[])?;
-    Ok(gates::best(series, &base, &[], &Null::default())?.is_some())
-}
-
-/// What has a name and changes power by more than a model may miss.
-fn named(
-    series: &Series,
-    robot: &Robot,
-    healthy: Option<&Recording>,
-    progress: &dyn Fn(&str, f64),
-) -> Result<Option<(Search, Judged)>, Error> {
-    let begun = Search::begin(series, robot, healthy, progress)?;
-    let found = search(series, robot, begun, progress)?;
-    let without_w = series.predict(&found.after.robot, &[])?;
-    let effect_w = differences(&found.after.predicted_w, &without_w);
-    let white = found.after.whitening(series);
-    // However surely long drives tell it: that little a model may miss.
-    let is_little = shown_in(series, &white.of(&effect_w)) == Quantity::Power
-        && share(series, &found.after, &effect_w) < TOLD;
-    if found.found.is_empty() || is_little {
-        return Ok(None);
-    }
-    let judged = Judged::new(series, robot, &found)?;
-    let is_named = matches!(judged.verdict(&found), Verdict::Explained | Verdict::Ambiguous);
-    Ok(is_named.then_some((found, judged)))
-}
-
-/// The drive that tells the first ambiguous finding from its alternatives.
-fn decisive_drive(series: &Series, file: &Robot, found: &Search) -> Result<Option<String>, Error> {
-    let ambiguous = found.found.iter().position(|f| !f.indistinguishable_from.is_empty());
-    let Some(which) = ambiguous else { return Ok(None) };
-    let others = alternatives(series, file, &found.found, which)?;
-    let best = Explanation {
-        name: found.found[which].applied.mechanism.name(),
-        applied: found.found.iter().map(|f| f.applied.clone()).collect(),
-        robot: found.after.robot.clone(),
-    };
-    let surfaces = series.surfaces();
-    let surface = surfaces.first().unwrap_or(&file.default_surface);
-    Ok(next_drive(&best, &others, &found.after.noise, surface, series.channels() == 2))
+    let observed = Observations::new(&series, robot);
+    let baseline = Baseline::fit(&observed, robot)?;
+    let found = find(&observed, (robot, baseline), &library, Windows::AlwaysOnly, &|_, _| {})?;
+    let drives: Vec<String> = healthy.runs.iter().map(|run| run.name.clone()).collect();
+    Ok(shared_findings(&observed, &drives, &found))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hills::missed_by;
+    use crate::{Applied, Span, observe::hills::drive, report::diagnosis::Verdict};
+
+    fn drag(left_n: f64, from_s: f64) -> Vec<Applied> {
+        let mechanism = mechanism::by_name("drivetrain_drag").unwrap();
+        vec![Applied { mechanism, values: vec![left_n, 0.0], span: Span::From { run: 0, t_s: from_s } }]
+    }
+
+    fn asked(applied: &[Applied], with_healthy: bool) -> Diagnosis {
+        let robot = model::builtin::husky_a200();
+        let (suspect, healthy) = (drive(&robot, 0.0, applied), drive(&robot, 1.0, &[]));
+        let question = Question::new(&robot, &suspect, with_healthy.then_some(&healthy));
+        crate::diagnose(&question, &|_, _| {}).unwrap()
+    }
 
     #[test]
-    fn what_a_model_may_miss_is_not_missing_however_surely_it_is_told() {
-        let verdict = |size_w: f64| {
-            let [suspect, healthy] = [missed_by(size_w, 0.0, &[]), missed_by(0.0, 1.0, &[])];
-            let robot = model::builtin::husky_a200();
-            diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap().verdict
-        };
-        assert_eq!(verdict(0.15), Verdict::Consistent);
-        assert_eq!(verdict(2.0), Verdict::Unexplained);
+    fn a_drag_that_sets_in_is_named_with_its_side_size_and_onset_with_and_without_healthy_drives() {
+        for with_healthy in [false, true] {
+            let found = asked(&drag(8.0, 400.0), with_healthy);
+            assert_eq!(found.verdict, Verdict::Explained, "{}", found.sentence);
+            let [finding] = &found.findings[..] else { panic!("{}", found.sentence) };
+            assert_eq!(finding.mechanism, "drivetrain_drag");
+            assert!(finding.probability.unwrap() > 0.9);
+            let left = &finding.parameters[0];
+            let [low, high] = left.interval_95.unwrap();
+            assert!(low <= 8.0 && 8.0 <= high && (left.value - 8.0).abs() < 1.0, "{left:?}");
+            let scope = finding.scope.as_ref().unwrap();
+            assert!((scope.from_s.unwrap() - 400.0).abs() < 20.0, "{scope:?}");
+            assert!(found.corrected.held_out_rmse_w < found.baseline.held_out_rmse_w);
+        }
+    }
+
+    #[test]
+    fn a_healthy_robot_is_consistent_with_and_without_healthy_drives() {
+        for with_healthy in [false, true] {
+            let found = asked(&[], with_healthy);
+            assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+            let probability = found.probability.unwrap();
+            let sum = probability.nothing + probability.listed + probability.unlisted;
+            assert!((sum - 1.0).abs() < 1e-9 && probability.nothing > 0.5, "{probability:?}");
+            assert!(found.file.unwrap().error.bias_w.abs() < 0.5);
+        }
+    }
+
+    #[test]
+    fn drives_of_another_robot_get_no_names_and_no_panic() {
+        let robot = model::builtin::husky_a200();
+        let mut suspect = drive(&robot, 0.0, &[]);
+        let [left_w, right_w] = [recording::Channel::LeftPower, recording::Channel::RightPower]
+            .map(|side| suspect.channels.remove(&side).unwrap());
+        suspect.channels.insert(recording::Channel::LeftPower, right_w.iter().map(|w| -w).collect());
+        suspect.channels.insert(recording::Channel::RightPower, left_w.iter().map(|w| -w).collect());
+        let question = Question::new(&robot, &suspect, None);
+        let found = crate::diagnose(&question, &|_, _| {}).unwrap();
+        assert!(found.verdict == Verdict::Unexplained && found.findings.is_empty(), "{}", found.sentence);
+    }
+
+    #[test]
+    fn what_is_ruled_out_is_never_named() {
+        let robot = model::builtin::husky_a200();
+        let suspect = drive(&robot, 0.0, &drag(8.0, 400.0));
+        let drags = [mechanism::by_name("drivetrain_drag").unwrap()];
+        let question = Question { ruled_out: &drags, ..Question::new(&robot, &suspect, None) };
+        let found = crate::diagnose(&question, &|_, _| {}).unwrap();
+        let names: Vec<&String> = found.explanations.iter().flat_map(|one| &one.mechanisms).collect();
+        assert!(!names.iter().any(|name| *name == "drivetrain_drag") && found.verdict != Verdict::Consistent);
+    }
+
+    #[test]
+    fn a_watch_that_breaks_ends_the_search() {
+        let robot = model::builtin::husky_a200();
+        let suspect = drive(&robot, 0.0, &[]);
+        let question = Question::new(&robot, &suspect, None);
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let watch: Watch = std::sync::Arc::new(move |_| {
+            let so_often = asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            if so_often < 40 { std::ops::ControlFlow::Continue(()) } else { std::ops::ControlFlow::Break(()) }
+        });
+        let stopped = crate::diagnose_watched(&question, &|_, _| {}, &watch);
+        assert!(matches!(stopped, Err(Error::Calibration(calibration::Error::Stopped))));
     }
 }

@@ -1,111 +1,109 @@
 //! Where model and recording differ, which physics was left out, how big it is, and how sure that is.
 //!
-//! Suspect drives are fitted together with healthy ones, if there are any: what both share is the robot or the model, what only
-//! the suspect ones have is looked for among the mechanisms of `model::mechanism`. A mechanism is never judged by whether it
-//! lowers the error, which with thousands of correlated rows every term does, but by what it explains beside everything else,
-//! by blocks of time, and on drives that were held out.
+//! One Gaussian model: the robot file as prior, a smooth discrepancy that all drives share, mechanisms of `model::mechanism` with
+//! physical priors, and an unlisted class. What the report says is read off its posterior over sets of mechanisms. Healthy drives of
+//! the same robot, if there are any, only add rows.
+//!
+//! Arrows point downwards only:
+//!
+//! ```text
+//! diagnose     recordings -> rows -> posterior -> report
+//! learn        healthy drives -> what the robot's file knows of itself
+//! report       verdict, findings, sentence, held-out errors, detectable sizes
+//! search       screening, refits, explanations
+//! hypothesis   windows, effects, products by piece, unlisted class
+//! fit          baseline robot, discrepancy, joint fit
+//! observe      rows of all drives; what a robot would have shown
+//! evidence     noise, linear model; knows no robot
+//! ```
 
-mod admissible;
-mod alternatives;
-mod as_hard;
-mod average;
-mod baseline;
-mod candidates;
-mod caveats;
-mod channel;
-mod climb;
-mod constancy;
-mod corrected;
 mod diagnose;
-mod discover;
-mod discovered;
-mod discrepancy;
-mod doubts;
-mod driven;
-mod edges;
 mod error;
-mod event;
-mod everywhere;
-mod evidence;
-mod explainable;
-mod faint;
-mod foremost;
-mod form;
-mod gates;
-mod ground;
-mod group;
-#[cfg(test)]
-mod hills;
-mod history;
-mod imitate;
-mod judged;
-mod kept;
-mod knobs;
-mod learnt;
-mod limit;
-mod linear;
-mod locate;
-mod manner;
-mod meter;
-mod misfit;
-mod missed;
-mod names;
-mod needed;
-mod next_drive;
-mod noise;
-mod nuisance;
-mod null;
-mod off_middle;
-mod onset;
-mod outside;
-mod pairs;
-mod part;
-mod parts;
+mod learn;
 mod plain;
-mod plausible;
-mod polish;
-mod posterior;
-mod prepared;
-mod profile;
-mod ranked;
-mod reached;
-mod refitted;
-mod refused;
-mod regime;
-mod region;
-pub mod report;
-mod ridge;
-mod sag;
-mod search;
-mod secant;
-mod second_ground;
-mod sensitivities;
-mod series;
-mod shapes;
-mod shared;
-mod span;
-mod stretches;
-mod tables;
-mod term;
-mod turning;
-mod undoing;
-mod unshown;
-mod usual;
-mod visits;
-mod weigh;
-mod widths;
-mod words;
 
-pub use average::{Average, Input};
-pub use diagnose::{Engine, Question, diagnose, diagnose_watched};
-pub use discovered::UNKNOWN;
+/// Gaussian evidence: noise and linear model.
+mod evidence {
+    pub(crate) mod linear_model;
+    pub(crate) mod noise;
+}
+
+/// Drives as the model sees them, second by second, and what a robot would have shown.
+mod observe {
+    pub(crate) mod admissible;
+    pub(crate) mod average;
+    pub(crate) mod climb;
+    pub(crate) mod ground;
+    #[cfg(test)]
+    pub(crate) mod hills;
+    pub(crate) mod imitate;
+    pub(crate) mod kept;
+    pub(crate) mod observations;
+    pub(crate) mod part;
+    pub(crate) mod prepared;
+    pub(crate) mod region;
+    pub(crate) mod sag;
+    pub(crate) mod sanity;
+    pub(crate) mod series;
+    pub(crate) mod span;
+    pub(crate) mod turning;
+}
+
+/// The robot fitted to the drives: parameters with their priors, what its model misses, and effects beside both.
+mod fit {
+    pub(crate) mod baseline;
+    pub(crate) mod discrepancy;
+    pub(crate) mod features;
+    pub(crate) mod held_out;
+    pub(crate) mod joint;
+    pub(crate) mod parameter;
+    pub(crate) mod temperature;
+}
+
+/// Mechanisms with their forms, windows in which they act, and effects outside the list.
+mod hypothesis {
+    pub(crate) mod atoms;
+    pub(crate) mod effect;
+    pub(crate) mod unlisted;
+    pub(crate) mod window;
+}
+
+/// The posterior over sets of mechanisms: screening on linear columns, refits in full, explanations.
+mod search {
+    pub(crate) mod engine;
+    pub(crate) mod explanation;
+    pub(crate) mod fits;
+    pub(crate) mod refine;
+    pub(crate) mod screen;
+}
+
+/// What the posterior says, as a report.
+pub mod report {
+    pub(crate) mod corrected;
+    pub(crate) mod detectable;
+    pub(crate) mod diagnosis;
+    pub(crate) mod document;
+    pub(crate) mod finding;
+    pub(crate) mod next_drive;
+    pub(crate) mod place;
+    pub(crate) mod planned_drive;
+    pub(crate) mod predictions;
+    pub(crate) mod sentence;
+    pub(crate) mod verdict;
+
+    pub use diagnosis::*;
+    pub use finding::UNKNOWN;
+}
+
+pub use diagnose::{Question, diagnose, diagnose_watched};
 pub use error::Error;
-pub use imitate::imitate;
+pub use learn::{Errors, Learnt, learn, taught};
+pub use observe::{
+    average::{Average, Input},
+    imitate::imitate,
+    region::Region,
+    series::Series,
+    span::{Applied, Span},
+};
 pub use plain::Plain;
-pub use posterior::learn::{Errors, Learnt, learn, taught};
-pub use refused::Refused;
-pub use region::Region;
-pub use report::{Diagnosis, Finding, Verdict};
-pub use search::{Found, Search, search};
-pub use series::{Applied, Series};
-pub use span::Span;
+pub use report::{Diagnosis, Finding, UNKNOWN, Verdict};

@@ -1,15 +1,18 @@
 //! What simpler methods would say of the same drives: the Bayesian information criterion on errors taken as independent, and a
 //! sparse regression. They are there to be compared with, and decide nothing.
 
-use model::Robot;
+use model::{Robot, mechanism};
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    Error,
-    baseline::{Baseline, differences},
-    candidates::{self, Candidate},
-    nuisance,
-    series::Series,
+    Error, Series,
+    fit::baseline::{Baseline, differences},
+    hypothesis::{
+        effect::effects,
+        window::{Grid, Windows},
+    },
+    observe::observations::Observations,
+    search::engine::{alone, scale},
 };
 
 /// Mechanisms that are taken up at most, as many as the diagnosis takes.
@@ -29,30 +32,45 @@ pub struct Plain {
     mean_w: f64,
 }
 
+/// A mechanism in one window, with the power of each of its free parameters.
+struct Candidate {
+    mechanism: &'static str,
+    columns: Vec<Vec<f64>>,
+}
+
 impl Plain {
-    /// Fits the robot and works out what every mechanism would change.
+    /// Fits the robot and works out what every mechanism would change in every window.
     ///
     /// # Errors
     /// A surface that the robot does not know.
     pub fn new(series: &Series, robot: &Robot) -> Result<Self, Error> {
-        let base = Baseline::fit(series, robot, &[])?;
-        let families = candidates::all(series, &base.robot, &[], &base.predicted_w)?;
-        let mut candidates: Vec<Candidate> =
-            families.iter().flat_map(|family| family.candidates(series)).collect();
-        let mut always = base.sensitivities.columns.clone();
-        always.extend(nuisance::columns(&series.averages, &base.predicted_w));
+        let observed = Observations::new(series, robot);
+        let baseline = Baseline::fit(&observed, robot)?;
+        let grid = Grid::new(&observed, Windows::All);
+        let effects =
+            effects(&mechanism::ALL, &scale(&observed, &baseline, robot), &alone(&observed, &baseline))?;
         // Errors taken as alike are all of power.
-        let power = |values: &[f64]| -> Vec<f64> {
-            (0..values.len()).filter(|i| series.is_power(*i)).map(|i| values[i]).collect()
-        };
-        always.iter_mut().for_each(|column| *column = power(column));
-        for candidate in &mut candidates {
-            candidate.columns.iter_mut().for_each(|column| *column = power(column));
+        let rows: Vec<usize> = (0..observed.rows()).filter(|i| observed.is_power(*i)).collect();
+        let power = |values: &[f64]| -> Vec<f64> { rows.iter().map(|i| values[*i]).collect() };
+        let mut candidates = Vec::new();
+        // Wider priors change no column.
+        for effect in effects.iter().filter(|effect| effect.widening <= 1.0) {
+            for (window, _) in grid.windows(effect.mechanism) {
+                let holds = |i: usize| {
+                    let average = &observed.averages()[i];
+                    window.holds(grid.piece(observed.driven_s[i]), grid.part(average.input.position_m))
+                };
+                let masked = |column: &Vec<f64>| -> Vec<f64> {
+                    rows.iter().map(|i| if holds(*i) { column[*i] } else { 0.0 }).collect()
+                };
+                let columns = effect.columns.iter().map(masked).collect();
+                candidates.push(Candidate { mechanism: effect.mechanism.name(), columns });
+            }
         }
-        let predicted_w = power(&base.predicted_w);
+        let predicted_w = power(&baseline.predicted);
         Ok(Plain {
             errors_w: DVector::from_vec(differences(&power(&series.recorded), &predicted_w)),
-            always,
+            always: baseline.sensitivities.iter().map(|column| power(column)).collect(),
             candidates,
             mean_w: predicted_w.iter().map(|w| w.abs()).sum::<f64>() / predicted_w.len().max(1) as f64,
         })
@@ -72,7 +90,7 @@ impl Plain {
                 let drop = n * (before.max(1e-300) / after.max(1e-300)).ln() - own.len() as f64 * n.ln();
                 (drop, own)
             };
-            let new = self.candidates.iter().filter(|c| !found.iter().any(|f| f == name(c)));
+            let new = self.candidates.iter().filter(|c| !found.iter().any(|f| f == c.mechanism));
             let weighed = new.map(|candidate| (gain(candidate), candidate));
             let Some(((drop, own), best)) = weighed.max_by(|a, b| a.0.0.total_cmp(&b.0.0)) else { break };
             if drop <= 0.0 {
@@ -80,7 +98,7 @@ impl Plain {
             }
             left = project(&left, &own);
             basis.extend(own);
-            found.push(name(best).to_owned());
+            found.push(best.mechanism.to_owned());
         }
         found
     }
@@ -116,14 +134,14 @@ impl Plain {
         let mut columns: Vec<(&'static str, DVector<f64>)> = Vec::new();
         for (i, candidate) in self.candidates.iter().enumerate() {
             // The first of a mechanism acts from the beginning, with nothing taken from a grid beyond its first value.
-            if self.candidates[..i].iter().any(|other| name(other) == name(candidate)) {
+            if self.candidates[..i].iter().any(|other| other.mechanism == candidate.mechanism) {
                 continue;
             }
             for column in &candidate.columns {
                 let column = DVector::from_column_slice(column);
                 let left = project(&column, &basis);
                 if left.norm() > LEAST_OWN * column.norm() {
-                    columns.push((name(candidate), left.normalize()));
+                    columns.push((candidate.mechanism, left.normalize()));
                 }
             }
         }
@@ -149,10 +167,6 @@ impl Plain {
 
 /// Share of a column's length that has to be its own, so that dividing by it makes sense.
 const LEAST_OWN: f64 = 1e-3;
-
-fn name(candidate: &Candidate) -> &'static str {
-    candidate.applied.mechanism.name()
-}
 
 /// Directions that columns span.
 fn orthonormal(columns: &[Vec<f64>]) -> Vec<DVector<f64>> {
@@ -196,11 +210,8 @@ mod tests {
             DVector::from_fn(400, |i, _| noise_w * f64::from((i * 7919 % 101) as i32 - 50) / 50.0);
         let mut candidates = Vec::new();
         for (frequency, mechanism, weight) in weights {
-            let mechanism = model::mechanism::by_name(mechanism).unwrap();
-            let values = vec![0.0; mechanism.parameters().len()];
-            let applied = crate::Applied { mechanism, values, span: crate::Span::ALL };
             errors_w.axpy(*weight, &DVector::from_vec(waves(*frequency)), 1.0);
-            candidates.push(Candidate { applied, linear: vec![0], columns: vec![waves(*frequency)] });
+            candidates.push(Candidate { mechanism, columns: vec![waves(*frequency)] });
         }
         Plain { errors_w, always: vec![vec![1.0; 400]], candidates, mean_w: 100.0 }
     }

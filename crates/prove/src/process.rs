@@ -18,13 +18,11 @@ const MOST_CHARACTERS: usize = 300;
 /// How to diagnose.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// The program; it is called with `diagnose --robot .. --recording .. [--reference ..] --out .. --engine ..`, and, for a calibrated
+    /// The program; it is called with `diagnose --robot .. --recording .. [--reference ..] --out ..`, and, for a calibrated
     /// file, with `calibrate --robot .. --recording .. --out ..` before.
     pub program: PathBuf,
     /// Threads that each process may use.
     pub threads: usize,
-    /// What `--engine` is given.
-    pub engine: &'static str,
 }
 
 /// What came of a diagnosis.
@@ -54,7 +52,6 @@ impl Diagnosis {
         };
         let mut given = vec![(robot, ROBOT), (case.join(RECORDING), RECORDING)];
         let mut words = vec!["diagnose", "--robot", ROBOT, "--recording", RECORDING, "--out", RESULT];
-        words.extend(["--engine", self.engine]);
         if way == Way::HealthyDrives {
             given.push((case.join(REFERENCE), REFERENCE));
             words.extend(["--reference", REFERENCE]);

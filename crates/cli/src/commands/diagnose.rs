@@ -7,8 +7,8 @@ use std::{
 };
 
 use anyhow::Context;
-use clap::{Args, ValueEnum, builder::PossibleValuesParser};
-use diagnosis::{Diagnosis, Engine, Question, diagnose, report::Finding};
+use clap::{Args, builder::PossibleValuesParser};
+use diagnosis::{Diagnosis, Question, diagnose, report::Finding};
 use model::mechanism;
 
 use crate::{failure::BadInput, output, progress, recorded::Recorded};
@@ -26,37 +26,6 @@ pub(crate) struct Arguments {
     /// Folder for report.json, report.html and corrected-robot.json; it is made if need be
     #[arg(long)]
     out: PathBuf,
-    /// Way of diagnosing
-    #[arg(long, hide = true, default_value = "posterior")]
-    engine: EngineName,
-}
-
-/// Ways of diagnosing, by name.
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum EngineName {
-    /// Candidates one after the other
-    Gates,
-    /// The posterior over sets of mechanisms
-    Posterior,
-}
-
-impl EngineName {
-    /// As the command line has it.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            EngineName::Gates => "gates",
-            EngineName::Posterior => "posterior",
-        }
-    }
-}
-
-impl From<EngineName> for Engine {
-    fn from(name: EngineName) -> Self {
-        match name {
-            EngineName::Gates => Engine::Gates,
-            EngineName::Posterior => Engine::Posterior,
-        }
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -70,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { recorded, reference, ruled_out, out, engine } = arguments;
+    let Arguments { recorded, reference, ruled_out, out } = arguments;
     let (robot, suspect) = recorded.read()?;
     let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference)?) };
     let bar = progress::steps();
@@ -79,9 +48,7 @@ fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
         bar.set_message(step.to_owned());
     };
     let ruled_out: Vec<_> = ruled_out.iter().filter_map(|name| mechanism::by_name(name)).collect();
-    let engine = Engine::from(*engine);
-    let question =
-        Question { ruled_out: &ruled_out, engine, ..Question::new(&robot, &suspect, healthy.as_ref()) };
+    let question = Question { ruled_out: &ruled_out, ..Question::new(&robot, &suspect, healthy.as_ref()) };
     let found = diagnose(&question, &told);
     bar.finish_and_clear();
     let found = found.map_err(|error| recorded.refuse(&error))?;

@@ -13,9 +13,7 @@ use model::Robot;
 use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial, Way};
 use recording::read_paths;
 
-use crate::{
-    commands::diagnose::EngineName, failure::BadInput, output, progress, recorded::robot, scored::summary,
-};
+use crate::{failure::BadInput, output, progress, recorded::robot, scored::summary};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -39,9 +37,6 @@ pub(crate) struct Arguments {
     /// How strong every effect is, as a share of power; otherwise 1.2, 3, 6 and 12 % take turns
     #[arg(long)]
     share: Option<f64>,
-    /// Way of diagnosing
-    #[arg(long, hide = true, default_value = "posterior")]
-    engine: EngineName,
     /// Only what a diagnosis is given this way, instead of all three
     #[arg(long)]
     way: Option<WayName>,
@@ -126,7 +121,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         robot_json: &robot_json,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program, threads: 1, engine: arguments.engine.name() },
+        diagnosis: Diagnosis { program, threads: 1 },
         ways: &ways,
         peers: &peers,
         at_once: available_parallelism().map_or(1, usize::from),

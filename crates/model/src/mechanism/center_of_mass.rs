@@ -20,6 +20,14 @@ impl Mechanism for CenterOfMass {
         "center_of_mass"
     }
 
+    fn label(&self) -> &'static str {
+        "a shifted center of mass"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], _: &[String]) -> Option<Robot> {
+        self.robot(robot, values)
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -10,6 +10,10 @@ impl Mechanism for ClockOffset {
         "clock_offset"
     }
 
+    fn label(&self) -> &'static str {
+        "power recorded late"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Measurement
     }

@@ -14,6 +14,10 @@ impl Mechanism for DrivetrainDrag {
         "drivetrain_drag"
     }
 
+    fn label(&self) -> &'static str {
+        "drag in one side's drive train"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -13,6 +13,10 @@ impl Mechanism for GradeDependentFriction {
         "grade_dependent_friction"
     }
 
+    fn label(&self) -> &'static str {
+        "friction that grows with the slope"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

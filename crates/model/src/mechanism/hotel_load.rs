@@ -13,6 +13,14 @@ impl Mechanism for HotelLoad {
         "hotel_load"
     }
 
+    fn label(&self) -> &'static str {
+        "other electronics"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], _: &[String]) -> Option<Robot> {
+        Some(Robot { hotel_power_w: robot.hotel_power_w + values[0], ..robot.clone() })
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -17,6 +17,10 @@ impl Mechanism for Inertia {
         "inertia"
     }
 
+    fn label(&self) -> &'static str {
+        "spinning masses in the drive train"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -17,6 +17,17 @@ impl Mechanism for LoadTransfer {
         "load_transfer"
     }
 
+    fn label(&self) -> &'static str {
+        "a high center of mass"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], _: &[String]) -> Option<Robot> {
+        let mut changed = robot.clone();
+        changed.center_of_mass.height_m += values[0];
+        // A file has no heights below the ground.
+        (changed.center_of_mass.height_m >= 0.0).then_some(changed)
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

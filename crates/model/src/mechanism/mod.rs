@@ -162,6 +162,14 @@ pub trait Mechanism: Sync {
     /// Its name in reports.
     fn name(&self) -> &'static str;
 
+    /// What it is in plain words, to go into a sentence.
+    fn label(&self) -> &'static str;
+
+    /// A robot whose file holds it in fields that files have anyway, acting on some surfaces; `None` for what goes into the file's list.
+    fn filed(&self, _robot: &Robot, _values: &[f64], _surfaces: &[String]) -> Option<Robot> {
+        None
+    }
+
     /// Whether it acts on the robot or on the recording.
     fn kind(&self) -> Kind;
 

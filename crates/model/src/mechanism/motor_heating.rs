@@ -20,6 +20,10 @@ impl Mechanism for MotorHeating {
         "motor_heating"
     }
 
+    fn label(&self) -> &'static str {
+        "motors that grow warm"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -16,6 +16,14 @@ impl Mechanism for Payload {
         "payload"
     }
 
+    fn label(&self) -> &'static str {
+        "a load on board"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], _: &[String]) -> Option<Robot> {
+        Some(Robot { mass_kg: robot.mass_kg + values[0], ..robot.clone() })
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

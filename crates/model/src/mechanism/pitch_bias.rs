@@ -10,6 +10,10 @@ impl Mechanism for PitchBias {
         "pitch_bias"
     }
 
+    fn label(&self) -> &'static str {
+        "a pitch sensor mounted askew"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Measurement
     }

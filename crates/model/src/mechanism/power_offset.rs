@@ -19,6 +19,10 @@ impl Mechanism for PowerOffset {
         "power_offset"
     }
 
+    fn label(&self) -> &'static str {
+        "a power meter that is off by a constant"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Measurement
     }

@@ -10,6 +10,10 @@ impl Mechanism for PowerScale {
         "power_scale"
     }
 
+    fn label(&self) -> &'static str {
+        "a power meter that reads in proportion too much or little"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Measurement
     }

@@ -13,6 +13,16 @@ impl Mechanism for Regeneration {
         "regeneration"
     }
 
+    fn label(&self) -> &'static str {
+        "more or less energy returned downhill"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], _: &[String]) -> Option<Robot> {
+        let mut changed = robot.clone();
+        changed.motors.regeneration += values[0];
+        Some(changed)
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

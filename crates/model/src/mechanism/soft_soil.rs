@@ -13,6 +13,10 @@ impl Mechanism for SoftSoil {
         "soft_soil"
     }
 
+    fn label(&self) -> &'static str {
+        "soft soil"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -13,6 +13,10 @@ impl Mechanism for SpeedDependentFriction {
         "speed_dependent_friction"
     }
 
+    fn label(&self) -> &'static str {
+        "friction that grows with speed"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

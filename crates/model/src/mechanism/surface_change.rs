@@ -13,6 +13,18 @@ impl Mechanism for SurfaceChange {
         "surface_change"
     }
 
+    fn label(&self) -> &'static str {
+        "other ground"
+    }
+
+    fn filed(&self, robot: &Robot, values: &[f64], surfaces: &[String]) -> Option<Robot> {
+        let mut changed = robot.clone();
+        for (_, surface) in changed.surfaces.iter_mut().filter(|(name, _)| surfaces.contains(name)) {
+            *surface = surface.scaled(1.0 + values[0], 1.0 + values[1]);
+        }
+        Some(changed)
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -18,6 +18,10 @@ impl Mechanism for TowedLoad {
         "towed_load"
     }
 
+    fn label(&self) -> &'static str {
+        "something towed"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

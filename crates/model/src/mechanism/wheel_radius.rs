@@ -10,6 +10,10 @@ impl Mechanism for WheelRadius {
         "wheel_radius"
     }
 
+    fn label(&self) -> &'static str {
+        "wheels of another size than the encoders assume"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Measurement
     }

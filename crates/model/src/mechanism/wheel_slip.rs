@@ -25,6 +25,10 @@ impl Mechanism for WheelSlip {
         "wheel_slip"
     }
 
+    fn label(&self) -> &'static str {
+        "slipping wheels"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -29,6 +29,10 @@ impl Mechanism for Wind {
         "wind"
     }
 
+    fn label(&self) -> &'static str {
+        "wind"
+    }
+
     fn kind(&self) -> Kind {
         Kind::Physics
     }

@@ -1,0 +1,234 @@
+//! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
+
+use calibration::{Drives, with_powers};
+use model::Robot;
+use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
+
+use crate::{
+    Error,
+    observe::{series::Series, turning::Line},
+};
+
+/// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
+const CLEARLY_BETTER: f64 = 0.5;
+/// And when predictions then follow the recording at least so well (r²).
+const FOLLOWS: f64 = 0.5;
+/// Ratios of recorded to predicted power beyond which the file may be another robot's: friction of any hard ground is within.
+const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
+/// The same beyond which it is, whatever is missing: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as much on loam.
+const NOT_THIS_ROBOT: [f64; 2] = [0.1, 3.0];
+/// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round,
+/// units or robots mistaken. Nothing else is told of them before that is mended. `said` are their [`contradictions`]; `as_recorded` may tell
+/// motor currents where `recording` has the power that they make.
+///
+/// # Errors
+/// As [`Series::new`] and [`Series::predict`].
+pub(crate) fn mistakes(
+    robot: &Robot,
+    (recording, as_recorded, mut said): (&Recording, &Recording, Vec<String>),
+    series: &Series,
+    of_healthy: &Robot,
+) -> Result<Vec<String>, Error> {
+    // Healthy drives tell what this robot takes better than its file.
+    let known = if series.has_healthy() { of_healthy } else { robot };
+    let given = follows(known, series, true)?;
+    let mut mended = Vec::new();
+    let swapped_currents = swapped(as_recorded, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
+        .map(|swapped| with_powers(robot, &swapped, series.watch()))
+        .transpose()?;
+    let of_currents = swapped_currents.map(|changed| (changed, SWAPPED_CURRENTS));
+    let changes = CHANGES.iter().filter_map(|(change, words)| Some((change(recording)?, *words)));
+    for (changed, words) in changes.chain(of_currents) {
+        let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
+        if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
+            mended.push((other.r2, words));
+        }
+    }
+    // Of several that would mend it the best is told.
+    if let Some((r2, words)) = mended.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        said.push(format!(
+            "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
+            100.0 * r2,
+            100.0 * given.r2
+        ));
+    }
+    let kinds = [(true, "recorded power"), (false, "recorded power of the healthy drives")];
+    for (suspect, which) in kinds.into_iter().filter(|(suspect, _)| *suspect || series.has_healthy()) {
+        let ratio = follows(robot, series, suspect)?.ratio;
+        if said.is_empty() && !(NOT_THIS_ROBOT[0]..NOT_THIS_ROBOT[1]).contains(&ratio) {
+            said.push(another(which, ratio));
+        }
+    }
+    Ok(said)
+}
+
+/// What drives as they were recorded contradict whatever the robot, in sentences.
+pub(crate) fn contradictions(suspect: &Recording, healthy: Option<&Recording>) -> Vec<String> {
+    let mut said = of_motion(suspect);
+    let of_healthy = healthy.map_or(Vec::new(), of_motion).into_iter();
+    said.extend(of_healthy.map(|why| format!("of the healthy drives, {why}")));
+    said
+}
+
+/// What channels of motion contradict: the sign of the yaw rate or heading, and sizes that another unit would explain.
+fn of_motion(recording: &Recording) -> Vec<String> {
+    let is_of_motion = |channel: Channel| {
+        use Channel::{Heading, LeftSpeed, Pitch, RightSpeed, Roll, YawRate};
+        matches!(channel, Pitch | Roll | LeftSpeed | RightSpeed | YawRate | Heading)
+    };
+    let all = suspicions(recording).into_iter();
+    let told = all.filter(|one| {
+        one.kind == SuspicionKind::Opposed || one.kind == SuspicionKind::Unit && is_of_motion(one.channel)
+    });
+    let mut said: Vec<String> = Vec::new();
+    for Suspicion { channel, statement, .. } in told {
+        // One channel is told once, however many drives it was wrong in.
+        let name = format!("`{}`", channel.name());
+        if !said.iter().any(|other| other.starts_with(&name)) {
+            said.push(format!("{name}: {statement}"));
+        }
+    }
+    said
+}
+
+/// Ratios of kilowatts to watts, as far as a robot may be off.
+const KILOWATTS: [f64; 2] = [0.4e-3, 2.5e-3];
+
+/// That power is another robot's, or in other units.
+fn another(which: &str, ratio: f64) -> String {
+    let unit = if (KILOWATTS[0]..KILOWATTS[1]).contains(&ratio) { "in kilowatts" } else { "in other units" };
+    let ratio = if ratio.abs() < 0.01 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") };
+    format!(
+        "{which} is {ratio} times what the robot's file predicts: the recording may be another robot's, or {unit}"
+    )
+}
+
+/// What is doubtful about the drives under suspicion, in sentences, the mistakes among them first.
+///
+/// # Errors
+/// As [`Series::new`] and [`Series::predict`].
+pub(crate) fn doubts(
+    robot: &Robot,
+    recording: &Recording,
+    series: &Series,
+    mistakes: &[String],
+) -> Result<Vec<String>, Error> {
+    let mut said = mistakes.to_vec();
+    let given = follows(robot, series, true)?;
+    let [least, most] = OTHER_ROBOT;
+    if mistakes.is_empty() && !(least..most).contains(&given.ratio) {
+        said.push(another("recorded power", given.ratio));
+    }
+    said.extend(stuck(robot, recording, series)?);
+    said.extend(series.turning.as_ref().map(turning));
+    Ok(said)
+}
+
+/// What repeats with every turn of the wheels.
+fn turning(line: &Line) -> String {
+    let side = ["left", "right"][line.side];
+    format!(
+        "what the {side} side takes goes up and down by {:.1} N at the rim once in every turn of its wheels, as it does with a bent \
+         rim or a stone in a tyre (chance of as clear a line {:.0e})",
+        line.force_n, line.p_value
+    )
+}
+
+/// Share of a drive in which wheels that turn alone are told.
+const OFTEN_STUCK: f64 = 0.05;
+
+/// Drives in which the wheels turn against each other and the robot does not, which no mechanism describes.
+fn stuck(robot: &Robot, recording: &Recording, series: &Series) -> Result<Option<String>, Error> {
+    let drives = Drives::watched(robot, recording, series.watch())?;
+    let share = |run: &Run| {
+        let rows = drives.rows.get(run.rows.clone()).unwrap_or_default();
+        rows.iter().filter(|row| row.stuck).count() as f64 / rows.len().max(1) as f64
+    };
+    let often = recording.runs.iter().map(|run| (share(run), run)).filter(|(share, _)| *share > OFTEN_STUCK);
+    let named: Vec<String> =
+        often.map(|(share, run)| format!("{:.0} % of {}", 100.0 * share, run.name)).collect();
+    Ok((!named.is_empty()).then(|| {
+        format!(
+            "the wheels turn against each other and the robot does not, in {}: they slip, and what they draw there goes into the ground",
+            named.join(", ")
+        )
+    }))
+}
+
+/// How predictions of a robot follow what was recorded.
+struct Follows {
+    /// Squared correlation with its sign.
+    r2: f64,
+    /// Recorded over predicted, at best.
+    ratio: f64,
+}
+
+/// How predictions of a robot follow what was recorded in drives under suspicion, or in the healthy ones.
+fn follows(robot: &Robot, series: &Series, suspect: bool) -> Result<Follows, Error> {
+    let predicted = series.predict(robot, &[])?;
+    let pairs = || {
+        let all = series.averages.iter().zip(series.recorded.iter().zip(&predicted));
+        all.filter(|(a, _)| a.suspect == suspect).map(|(_, (r, p))| (*r, *p))
+    };
+    let count = pairs().count().max(1) as f64;
+    let (r0, p0) = pairs().fold((0.0, 0.0), |(r0, p0), (r, p)| (r0 + r / count, p0 + p / count));
+    let mut sums = [0.0; 5];
+    for (r, p) in pairs() {
+        let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
+        sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+    }
+    let r = sums[0] / (sums[1] * sums[2]).sqrt().max(1e-300);
+    Ok(Follows { r2: r * r.abs(), ratio: sums[3] / sums[4].max(1e-300) })
+}
+
+type Change = fn(&Recording) -> Option<Recording>;
+
+const CHANGES: [(Change, &str); 4] = [
+    (swapped_power, "power of the left and the right side seem swapped"),
+    (swapped_speeds, "wheel speeds of the left and the right side seem swapped"),
+    (turned_pitch, "pitch seems to have the wrong sign (nose up must be positive)"),
+    (turned_power, "power seems to have the wrong sign (drawn from the battery must be positive)"),
+];
+
+const SWAPPED_CURRENTS: &str = "motor currents of the left and the right side seem swapped";
+
+fn swapped_power(recording: &Recording) -> Option<Recording> {
+    swapped(recording, Channel::LeftPower, Channel::RightPower)
+}
+
+/// None where how the robot turned tells that they are not.
+fn swapped_speeds(recording: &Recording) -> Option<Recording> {
+    let turns = [Channel::YawRate, Channel::Heading];
+    if turns.iter().any(|turn| recording.channel(*turn).is_some()) && of_motion(recording).is_empty() {
+        return None;
+    }
+    swapped(recording, Channel::LeftSpeed, Channel::RightSpeed)
+}
+
+fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let (a, b) = (changed.channels.remove(&left)?, changed.channels.remove(&right)?);
+    changed.channels.insert(left, b);
+    changed.channels.insert(right, a);
+    Some(changed)
+}
+
+fn turned_pitch(recording: &Recording) -> Option<Recording> {
+    turned(recording, &[Channel::Pitch])
+}
+
+fn turned_power(recording: &Recording) -> Option<Recording> {
+    turned(recording, &[Channel::LeftPower, Channel::RightPower, Channel::Power, Channel::Current])
+}
+
+fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let mut any = false;
+    for channel in channels {
+        if let Some(values) = changed.channels.get_mut(channel) {
+            values.iter_mut().for_each(|x| *x = -*x);
+            any = true;
+        }
+    }
+    any.then_some(changed)
+}

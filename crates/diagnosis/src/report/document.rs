@@ -1,0 +1,287 @@
+//! The report put together.
+
+use model::{
+    Robot,
+    knowledge::{ModelError, Regimes},
+};
+use recording::{Channel, Recording};
+
+use crate::{
+    Applied, Error,
+    fit::{
+        held_out::{HeldOut, STRAY_SIGMAS},
+        joint::Member,
+        temperature::UNTOLD,
+    },
+    learn::regimes,
+    observe::observations::Observations,
+    report::{
+        corrected::corrected,
+        detectable::detectable,
+        diagnosis::{
+            BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, FileReport, Finding, FindingFit, Trace,
+            Verdict,
+        },
+        finding::{Reading, UNKNOWN, members},
+        next_drive::next_drive,
+        place::places,
+        predictions::{Corrected, file_error},
+        sentence::{mistaken, sentence},
+        verdict::{Circumstances, is_beyond_uncertainty, is_named, probability, verdict},
+    },
+    search::{
+        engine::Found,
+        explanation::{Explanation, credible},
+    },
+};
+
+/// Standard deviations from which a parameter is worth a note.
+const FAR_OFF_SIGMAS: f64 = 2.5;
+
+/// What a report is about.
+pub(crate) struct Subject<'a> {
+    /// The robot's file.
+    pub(crate) file: &'a Robot,
+    /// The test drives.
+    pub(crate) suspect: &'a Recording,
+    /// Rows.
+    pub(crate) observed: &'a Observations<'a>,
+    /// Names of the test drives.
+    pub(crate) drives: &'a [String],
+    /// Why these are no drives of this robot as its file has it; nothing else is told of them before that is mended.
+    pub(crate) mistakes: &'a [String],
+    /// What the file lacks of this robot, as all drives show it.
+    pub(crate) shared: &'a [Finding],
+    /// What is doubtful about them, the mistakes among it.
+    pub(crate) doubts: &'a [String],
+}
+
+/// The report of what was found.
+///
+/// # Errors
+/// A surface that the robot does not know; a watch that breaks.
+pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis, Error> {
+    let Subject { file, observed, .. } = *subject;
+    let filed = observed.series.predict(file, &[])?;
+    let error = file_error(observed, &found.baseline, &filed);
+    let said = match subject.mistakes.is_empty() {
+        true => verdict(&found.explanations, circumstances(observed, found)),
+        false => Verdict::Unexplained,
+    };
+    let is_told = is_named(said, &found.explanations) && subject.mistakes.is_empty();
+    let findings = if is_told { findings(subject, found) } else { Vec::new() };
+    let first = found.explanations.first().filter(|one| !one.names.is_empty() || one.unlisted);
+    let first = first.filter(|_| !findings.is_empty());
+    let applied: Vec<Applied> = first.map_or(&[][..], members).iter().map(Member::applied).collect();
+    let (corrected_robot, of_corrected) =
+        corrected(&fitted_robot(file, found, first), &applied, &observed.series.surfaces(), subject.drives);
+    let mut notes = subject.doubts.to_vec();
+    notes.extend(of_corrected);
+    notes.extend(assumed(file, observed, found));
+    let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
+    let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
+    let (detectable, not_judged) = detectable(&information, &named);
+    let [nothing_w, named_w] = found.held_out.map(|one| one.rmse_w);
+    let held_out_rmse_w = if findings.is_empty() { nothing_w } else { named_w };
+    let corrected = Corrected::of(observed, found, first);
+    let trace = trace(subject, &filed, &corrected);
+    let is_off = said != Verdict::Consistent && subject.mistakes.is_empty();
+    let next_drive = if is_off { next_drive(file, observed, found)? } else { None };
+    Ok(Diagnosis {
+        verdict: said,
+        sentence: match subject.mistakes.first() {
+            Some(mistake) => mistaken(mistake),
+            None => sentence(said, &error, &findings),
+        },
+        file: Some(FileReport { error, findings: subject.shared.to_vec() }),
+        probability: Some(probability(&found.explanations)),
+        explanations: credible(&found.explanations).iter().map(figures).collect(),
+        baseline: baseline(observed, &filed, found),
+        places: if is_off { places(observed, file, found, &corrected) } else { Vec::new() },
+        findings,
+        corrected: CorrectedFit { rmse_w: rmse_w(&trace), held_out_rmse_w },
+        next_drive,
+        explainable: [0.0; 2],
+        detectable,
+        not_judged,
+        notes,
+        corrected_robot,
+        trace,
+    })
+}
+
+/// What was assumed of the file, and which of its numbers would have to be far off with nothing missing.
+fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<String> {
+    let source = match (observed.series.has_healthy(), &file.model_error) {
+        (true, _) => "by the healthy drives",
+        (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
+        (false, None) => "by where its constants come from",
+    };
+    let share = 100.0 * found.model_error;
+    let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
+    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
+    if found.run_variation > 0.0 {
+        let share = 100.0 * found.run_variation;
+        notes.push(format!(
+            "the ground of the healthy drives differs from run to run by {share:.0} % of its resistance"
+        ));
+    }
+    if found.temperature > UNTOLD {
+        let times = (found.temperature / UNTOLD).sqrt();
+        notes.push(format!(
+            "healthy drives lie farther from the model than it and its noise allow, so that everything counts as {times:.1} times less sure"
+        ));
+    }
+    notes.extend(strays(found.held_out[0]));
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
+    let parameters = &found.baseline.parameters;
+    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
+    for (parameter, z) in parameters.list.iter().zip(z.iter().flat_map(|z| z.iter())) {
+        if z.abs() > FAR_OFF_SIGMAS {
+            let name = &parameter.name;
+            notes.push(format!(
+                "with nothing missing, `{name}` would lie {z:+.1} standard deviations from its file"
+            ));
+        }
+    }
+    notes
+}
+
+/// That more seconds than chance has lie far off.
+fn strays(held_out: HeldOut) -> Option<String> {
+    /// Share beyond [`STRAY_SIGMAS`] standard deviations of a normal distribution, ten times.
+    const MANY: f64 = 0.0047;
+    (held_out.strays > MANY).then(|| {
+        format!(
+            "{:.1} % of seconds lie more than {STRAY_SIGMAS} standard deviations of the noise off, as quick moves and strays of meters do; \
+             they count as that far off",
+            100.0 * held_out.strays
+        )
+    })
+}
+
+/// What these drives do that those of a calibration did not.
+fn beyond(known: &ModelError, here: &Regimes) -> Option<String> {
+    /// What a smooth curve is good for beyond its ends, as a share of the range that it was fitted in.
+    const REACH: f64 = 0.1;
+    let quantities = [
+        ("speed", "m/s", known.regimes.speed_mps, here.speed_mps),
+        ("difference of the sides' speeds", "m/s", known.regimes.difference_mps, here.difference_mps),
+        ("pitch", "rad", known.regimes.pitch_rad, here.pitch_rad),
+    ];
+    let is_beyond = |[low, high]: [f64; 2], here: [f64; 2]| {
+        let reach = REACH * (high - low);
+        here[0] < low - reach || here[1] > high + reach
+    };
+    let said: Vec<String> = quantities
+        .into_iter()
+        .filter(|(_, _, known, here)| is_beyond(*known, *here))
+        .map(|(name, unit, [low, high], here)| {
+            format!("{name} {:.2} to {:.2} {unit} (calibrated on {low:.2} to {high:.2})", here[0], here[1])
+        })
+        .collect();
+    (!said.is_empty()).then(|| {
+        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", said.join(", "))
+    })
+}
+
+fn circumstances(observed: &Observations<'_>, found: &Found) -> Circumstances {
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
+    let u = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| fitted.u.as_slice().to_vec());
+    Circumstances {
+        held_out_ratio: found.held_out[0].over_noise,
+        file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&u.unwrap_or_default()),
+    }
+}
+
+fn findings(subject: &Subject<'_>, found: &Found) -> Vec<Finding> {
+    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out.map(|one| one.rmse_w);
+    let reading = Reading {
+        series: subject.observed.series,
+        drives: subject.drives,
+        explanations: &found.explanations,
+        fit: FindingFit { held_out_rmse_before_w, held_out_rmse_after_w },
+        blocks: &found.blocks,
+    };
+    reading.findings()
+}
+
+/// Findings of drives that are known to be healthy, where the posterior names any.
+pub(crate) fn shared_findings(observed: &Observations<'_>, drives: &[String], found: &Found) -> Vec<Finding> {
+    let said = verdict(&found.explanations, circumstances(observed, found));
+    if !matches!(said, Verdict::Explained | Verdict::Ambiguous) {
+        return Vec::new();
+    }
+    let [held_out_rmse_before_w, held_out_rmse_after_w] = found.held_out.map(|one| one.rmse_w);
+    let reading = Reading {
+        series: observed.series,
+        drives,
+        explanations: &found.explanations,
+        fit: FindingFit { held_out_rmse_before_w, held_out_rmse_after_w },
+        blocks: &found.blocks,
+    };
+    reading.findings()
+}
+
+/// The robot at its parameters beside an explanation, or beside nothing.
+fn fitted_robot(file: &Robot, found: &Found, explanation: Option<&Explanation>) -> Robot {
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty());
+    let fitted = explanation.or(nothing).and_then(|one| one.fitted.as_ref());
+    fitted.map_or_else(|| file.clone(), |fitted| found.baseline.parameters.placed(file, &fitted.u))
+}
+
+fn figures(explanation: &Explanation) -> ExplanationFigures {
+    let mut mechanisms: Vec<String> = explanation.names.iter().map(|name| (*name).to_owned()).collect();
+    if explanation.unlisted {
+        mechanisms.push(UNKNOWN.to_owned());
+    }
+    ExplanationFigures { mechanisms, probability: explanation.probability }
+}
+
+fn baseline(observed: &Observations<'_>, filed: &[f64], found: &Found) -> BaselineFit {
+    let errors: Vec<f64> = (0..observed.test_rows).map(|i| observed.series.recorded[i] - filed[i]).collect();
+    let power: Vec<f64> = (0..errors.len()).filter(|i| observed.is_power(*i)).map(|i| errors[i]).collect();
+    BaselineFit {
+        rmse_w: observed.power_rms(&errors),
+        bias_w: power.iter().sum::<f64>() / power.len().max(1) as f64,
+        held_out_rmse_w: found.held_out[0].rmse_w,
+        noise_floor_w: found.noise_floor_w,
+    }
+}
+
+/// Power of the test drives over time, all channels of power together.
+fn trace(subject: &Subject<'_>, filed: &[f64], corrected: &Corrected) -> Trace {
+    let Subject { suspect, observed, drives, .. } = *subject;
+    let count = (0..observed.test_rows).filter(|i| observed.averages()[*i].channel == 0).count();
+    let all = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..count).map(|i| (0..observed.series.channels()).map(|c| value(i + c * count)).sum()).collect()
+    };
+    let averages = &observed.averages()[..count];
+    Trace {
+        run: averages.iter().map(|a| a.run).collect(),
+        t_s: averages.iter().map(|a| a.t_s).collect(),
+        recorded_w: all(&|i| observed.series.recorded[i]),
+        filed_w: all(&|i| filed[i]),
+        corrected_w: all(&|i| corrected.predicted[i]),
+        runs: drives.to_vec(),
+        position_m: averages.iter().map(|a| position_m(suspect, a.run, a.t_s)).collect(),
+    }
+}
+
+fn rmse_w(trace: &Trace) -> f64 {
+    let squares = trace.recorded_w.iter().zip(&trace.corrected_w).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / trace.recorded_w.len().max(1) as f64).sqrt()
+}
+
+/// Where the robot was so long after a drive began.
+fn position_m(recording: &Recording, run: usize, t_s: f64) -> Option<[f64; 2]> {
+    let rows = recording.runs.get(run)?.rows.clone();
+    let times = recording.t_s.get(rows.clone())?;
+    let wanted_s = times.first()? + t_s;
+    let row = rows.start + times.partition_point(|t| *t < wanted_s).min(times.len() - 1);
+    let at = [Channel::X, Channel::Y].map(|channel| recording.channel(channel).map(|values| values[row]));
+    match at {
+        [Some(x), Some(y)] if x.is_finite() && y.is_finite() => Some([x, y]),
+        _ => None,
+    }
+}

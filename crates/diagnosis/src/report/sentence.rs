@@ -1,0 +1,86 @@
+//! The sentence of a report: the file's error first, then what was found.
+
+use model::mechanism;
+
+use crate::report::{
+    diagnosis::{FileError, Finding, Verdict},
+    finding::UNKNOWN,
+};
+
+/// The sentence.
+pub(crate) fn sentence(verdict: Verdict, file: &FileError, findings: &[Finding]) -> String {
+    let way = if file.bias_w >= 0.0 { "low" } else { "high" };
+    let about = format!(
+        "The robot file predicts these drives {:.1} W too {way} on average ({:.1} W RMSE; noise {:.1} W).",
+        file.bias_w.abs(),
+        file.rmse_w,
+        file.noise_w
+    );
+    format!("{about} {}", found(verdict, findings))
+}
+
+fn found(verdict: Verdict, findings: &[Finding]) -> String {
+    let named: Vec<&Finding> = findings.iter().filter(|finding| finding.mechanism != UNKNOWN).collect();
+    let statements: Vec<String> = named.iter().map(|finding| stated(finding)).collect();
+    match verdict {
+        Verdict::Consistent => "Within its uncertainty nothing is missing.".to_owned(),
+        Verdict::Explained | Verdict::Ambiguous => capital(&format!("{}.", statements.join("; "))),
+        Verdict::Unexplained if findings.iter().any(|finding| finding.mechanism == UNKNOWN) => {
+            let all: Vec<String> = findings.iter().map(|finding| finding.statement.clone()).collect();
+            capital(&format!("{}.", all.join("; and ")))
+        }
+        Verdict::Unexplained if statements.is_empty() => {
+            "That is more than its uncertainty and noise allow, and no mechanism of the list explains it."
+                .to_owned()
+        }
+        Verdict::Unexplained => {
+            format!("Several explanations are about as likely, among them: {}.", statements.join("; "))
+        }
+    }
+}
+
+/// That drives are not what they seem.
+pub(crate) fn mistaken(mistake: &str) -> String {
+    format!("The recording is not what it seems: {mistake}. Mend that first; nothing else is told of it.")
+}
+
+fn stated(finding: &Finding) -> String {
+    if finding.indistinguishable_from.is_empty() {
+        return finding.statement.clone();
+    }
+    let others: Vec<String> =
+        finding.indistinguishable_from.iter().map(|name| label(name).to_owned()).collect();
+    format!("{} (or {})", finding.statement, listed(&others))
+}
+
+/// A mechanism in plain words.
+fn label(name: &str) -> &str {
+    mechanism::by_name(name).map_or(name, |one| one.label())
+}
+
+/// Names in a row.
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// The first letter made a capital.
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_listed_as_people_do() {
+        let names = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!([listed(&names), listed(&names[..1])], ["a, b or c", "a"]);
+        assert_eq!(capital("slope"), "Slope");
+    }
+}
