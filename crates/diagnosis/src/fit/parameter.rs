@@ -54,7 +54,7 @@ const STANDING_SIGMA_W: f64 = 1.0;
 const STANDING_SHARE: f64 = 0.1;
 /// Difference of logarithms that writing and reading a number may make.
 const UNCHANGED: f64 = 1e-9;
-/// z beyond which no fit goes.
+/// z beyond which no fit goes: a guard of the exponential, farther off than any verdict of `consistent` allows.
 const FARTHEST: f64 = 8.0;
 
 /// Channels that show certain parameters.
