@@ -41,11 +41,11 @@ pub(crate) fn sizes() -> io::Result<String> {
             };
             let rho = mechanism.size_correlation();
             let correlation = if rho == 0.0 { String::new() } else { figure(rho) };
-            let unit = if parameter.unit == "1" { "" } else { parameter.unit };
+            let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
             let reason = if i == 0 { reason.as_str() } else { "" };
             let _ = writeln!(
                 text,
-                "| `{}` | `{}` | {} {unit} | {sign} | {correlation} | {} | {reason} |",
+                "| `{}` | `{}` | {}{unit} | {sign} | {correlation} | {} | {reason} |",
                 mechanism.name(),
                 parameter.name,
                 figure(*sigma),
