@@ -17,6 +17,7 @@ use crate::{
         sanity::{doubts, mistakes},
     },
     report::{
+        about_simulation::about_simulation,
         diagnosis::{Diagnosis, Finding},
         document::{Subject, document, shared_findings},
     },
@@ -35,6 +36,8 @@ pub struct Question<'a> {
     pub suspect: &'a Recording,
     /// Drives of the same robot known to be in order; what they share with the suspect ones is not looked for.
     pub healthy: Option<&'a Recording>,
+    /// Another simulator's log of the same drives, in the place of what the robot's file predicts.
+    pub simulated: Option<&'a Recording>,
     /// Mechanisms that are known not to act.
     pub ruled_out: &'a [&'static dyn Mechanism],
 }
@@ -42,7 +45,7 @@ pub struct Question<'a> {
 impl<'a> Question<'a> {
     /// A question about drives of which nothing is ruled out.
     pub fn new(robot: &'a Robot, suspect: &'a Recording, healthy: Option<&'a Recording>) -> Self {
-        Question { robot, suspect, healthy, ruled_out: &[] }
+        Question { robot, suspect, healthy, simulated: None, ruled_out: &[] }
     }
 }
 
@@ -67,7 +70,7 @@ pub fn diagnose_watched(
 ) -> Result<Diagnosis, Error> {
     let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
-    let Prepared { suspect, healthy, as_recorded, by_current, contradictions } =
+    let Prepared { suspect, healthy, as_recorded, by_current, contradictions, offset_w } =
         Prepared::new(question, watch)?;
     let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
@@ -102,8 +105,12 @@ pub fn diagnose_watched(
         mistakes: &mistakes,
         shared: &shared,
         doubts: &doubts,
+        predicted_by: if offset_w.is_empty() { "robot file" } else { "simulation" },
     };
-    let report = document(&subject, &found)?;
+    let mut report = document(&subject, &found)?;
+    if !offset_w.is_empty() {
+        about_simulation(&mut report, suspect, &offset_w);
+    }
     progress("done", 1.0);
     Ok(report)
 }

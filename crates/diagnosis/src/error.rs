@@ -45,6 +45,14 @@ pub enum Error {
         /// The same among the healthy ones.
         healthy: String,
     },
+    /// A simulation that is not of the recorded drives.
+    #[error("the simulation cannot stand beside the recording: {0}")]
+    Simulated(String),
+    /// A simulation of some drives beside healthy ones, of which there is none.
+    #[error(
+        "a simulation of the drives cannot be held against healthy drives, which were not simulated: leave out the healthy drives, or the simulation"
+    )]
+    SimulatedBesideHealthy,
     /// Not enough to decide anything.
     #[error(
         "{seconds} s of driving are too little for a diagnosis, which compares at least {needed} s of it"

@@ -7,7 +7,7 @@ use recording::{PowerForm, Recording, Watch};
 
 use crate::{
     Error, Question,
-    observe::{admissible, sanity::contradictions},
+    observe::{admissible, sanity::contradictions, simulated::BesideSimulation},
 };
 
 /// The drives of a question.
@@ -20,6 +20,9 @@ pub(crate) struct Prepared<'a> {
     pub(crate) as_recorded: Cow<'a, Recording>,
     /// Whether power was made of motor currents.
     pub(crate) by_current: bool,
+    /// By row of the drives under suspicion: power of the simulation that stands in the place of the file's prediction, less that
+    /// prediction; empty without one [W].
+    pub(crate) offset_w: Vec<f64>,
     /// What the drives contradict whatever the robot.
     pub(crate) contradictions: Vec<String>,
 }
@@ -43,8 +46,20 @@ impl<'a> Prepared<'a> {
             Some(healthy) => Some(powered(&*thinned(healthy)?)?),
             None => None,
         };
+        let mut suspect_w = powered(&as_recorded)?;
+        let mut offset_w = Vec::new();
+        if let Some(simulated) = question.simulated {
+            if healthy.is_some() {
+                return Err(Error::SimulatedBesideHealthy);
+            }
+            simulated.check_time()?;
+            let simulated = powered(&*thinned(simulated)?)?;
+            let beside = BesideSimulation::new(robot, &suspect_w, &simulated)?;
+            (suspect_w, offset_w) = (beside.recording, beside.offset_w);
+        }
         Ok(Prepared {
-            suspect: powered(&as_recorded)?,
+            suspect: suspect_w,
+            offset_w,
             healthy,
             as_recorded,
             by_current: suspect.power_form() == Some(PowerForm::MotorCurrents),
