@@ -2,7 +2,7 @@
 
 use calibration::slopes_note;
 use model::{
-    Robot,
+    Robot, Sides,
     mechanism::{self, Mechanism},
 };
 use recording::{Channel, Recording, Watch, unwatched};
@@ -70,8 +70,7 @@ pub fn diagnose_watched(
 ) -> Result<Diagnosis, Error> {
     let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
-    let Prepared { suspect, healthy, as_recorded, by_current, contradictions, offset_w } =
-        Prepared::new(question, watch)?;
+    let Prepared { suspect, healthy, contradictions, offset_w } = Prepared::new(question, watch)?;
     let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
@@ -81,9 +80,9 @@ pub fn diagnose_watched(
     let observed = Observations::new(&series, robot);
     progress("fitting the robot", 0.05);
     let baseline = Baseline::fit(&observed, robot)?;
-    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &baseline.robot)?;
+    let mistakes = mistakes(robot, (suspect, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
-    doubts.extend(by_current.then(|| BY_CURRENT.to_owned()));
+    doubts.extend(series.watts_per_a().map(by_current));
     doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
     let is_possible = |one: &&'static dyn Mechanism| !excluded.contains(&one.name());
@@ -122,7 +121,13 @@ pub(crate) fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
 }
 
 /// What a diagnosis of motor currents has to say of itself.
-const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
+fn by_current(watts_per_a: Sides<f64>) -> String {
+    let Sides { left, right } = watts_per_a;
+    format!(
+        "motor currents are compared as currents, by `force_n_per_a` of the robot's file: an ampere counts as the {left:.1} W (left) and {right:.1} W \
+         (right) that it stands for on average in these drives"
+    )
+}
 
 /// Mechanisms that healthy drives need beside the robot's file, by themselves: what the file lacks of this robot.
 fn shared(

@@ -8,10 +8,9 @@ pub enum Error {
     /// They cannot be prepared or fitted.
     #[error(transparent)]
     Calibration(#[from] calibration::Error),
-    /// Motor currents, or drives that tell power in different forms.
+    /// Drives that tell power in different forms.
     #[error(
-        "a diagnosis needs power in watts, by side or of the battery, in the same columns of all recordings; \
-         motor currents are first turned into power by `joulepath calibrate` and `force_n_per_a`"
+        "a diagnosis needs power in the same columns of all recordings: by side, of the battery, or as motor currents of both sides"
     )]
     Form,
     /// Ground that the robot does not know.
