@@ -38,6 +38,8 @@ pub use drives::Drives;
 pub use error::Error;
 pub use field::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};
 pub use method::Method;
-pub use predict::{PredictedDrives, Prediction, RunPrediction, predict, predict_watched, with_powers};
+pub use predict::{
+    PredictedDrives, Prediction, RunPrediction, current_readings_a, predict, predict_watched, with_powers,
+};
 pub use slopes::slopes_note;
 pub use stuck::{SlipTrack, slip_track};

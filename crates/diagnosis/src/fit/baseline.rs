@@ -52,6 +52,7 @@ impl Baseline {
         let series = observed.series;
         let shown = Shown {
             battery: series.channels() == 1 || observed.has_channel(REST),
+            currents: series.watts_per_a().is_some(),
             yaw_rate: observed.has_channel(YAW_RATE),
         };
         let parameters = Parameters::of(file, &series.surfaces(), shown);
