@@ -20,12 +20,14 @@ pub(crate) fn path() -> PathBuf {
 }
 
 /// A page whose tables are as the code has them. A table stands between `<!-- WHAT -->` and `<!-- end -->`, WHAT being `count`, `priors`,
-/// `forms`, `shares`, `sources`, `sets`, or `constants` with the files, or `FILE:NAME`, whose constants it holds.
+/// `forms`, `shares`, `sources`, `sets`, or `constants` with the files, or `FILE:NAME`, whose constants it holds; `rest` are those of no
+/// other table.
 ///
 /// # Errors
 /// An unknown table, and a constant that stands on the page twice or never.
 pub(crate) fn filled(page: &str) -> Result<String, Box<dyn Error>> {
     let all = constants()?;
+    let named: Vec<&str> = page.lines().filter_map(places).flatten().collect();
     let mut shown = BTreeMap::<String, usize>::new();
     let mut text = String::new();
     let mut lines = page.lines();
@@ -35,7 +37,7 @@ pub(crate) fn filled(page: &str) -> Result<String, Box<dyn Error>> {
         let asked = line.strip_prefix("<!-- ").and_then(|rest| rest.strip_suffix(" -->"));
         let Some(asked) = asked else { continue };
         text.push('\n');
-        text += &table(asked, &all, &mut shown)?;
+        text += &table(asked, &all, &named, &mut shown)?;
         text += &format!("\n{END}\n");
         lines.find(|line| *line == END).ok_or_else(|| format!("`{asked}` has no end"))?;
     }
@@ -50,9 +52,15 @@ pub(crate) fn filled(page: &str) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
+/// Files and names of a line that asks for constants.
+fn places(line: &str) -> Option<impl Iterator<Item = &str>> {
+    Some(line.strip_prefix("<!-- constants ")?.strip_suffix(" -->")?.split(' '))
+}
+
 fn table(
     asked: &str,
     all: &[Constant],
+    named: &[&str],
     shown: &mut BTreeMap<String, usize>,
 ) -> Result<String, Box<dyn Error>> {
     match asked {
@@ -66,8 +74,11 @@ fn table(
             let places = asked.strip_prefix("constants ").ok_or_else(|| format!("no table `{asked}`"))?;
             let mut text = String::from("| constant | value | reason |\n| --- | --- | --- |\n");
             for place in places.split(' ') {
-                let own: Vec<&Constant> =
-                    all.iter().filter(|one| one.file == place || name(one) == place).collect();
+                let is_of = |one: &Constant, place: &str| one.file == place || name(one) == place;
+                let is_named = |one: &Constant| named.iter().any(|place| is_of(one, place));
+                let is_own =
+                    |one: &&Constant| if place == "rest" { !is_named(one) } else { is_of(one, place) };
+                let own: Vec<&Constant> = all.iter().filter(is_own).collect();
                 if own.is_empty() {
                     return Err(format!("no constants in `{place}`").into());
                 }
