@@ -114,13 +114,12 @@ fn say(kind: CaseKind, seed: u64, case: &Case, found: &Diagnosis, began: Instant
         })
         .collect();
     println!(
-        "{}{kind:?} {seed} {:?} {:?}: {:?} {} | explainable {:.3?}, floor {:.2} W, {:.2} -> {:.2} W, {:.1} s",
+        "{}{kind:?} {seed} {:?} {:?}: {:?} {} | floor {:.2} W, {:.2} -> {:.2} W, {:.1} s",
         if is_named(kind, found) { "+" } else { "-" },
         case.drive.kind,
         case.world.effects.iter().map(|e| (e.strength, e.onset_s)).collect::<Vec<_>>(),
         found.verdict,
         findings.join("; "),
-        found.explainable,
         found.baseline.noise_floor_w,
         found.baseline.held_out_rmse_w,
         found.corrected.held_out_rmse_w,

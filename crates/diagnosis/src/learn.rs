@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use calibration::{Calibration, FittedParameter};
 use model::{
     Robot,
-    knowledge::{ModelError, Posterior, PowerNoise, Provenance, Regimes},
+    knowledge::{ModelError, Posterior, PowerNoise, Provenance},
     mechanism,
     robot::Surface,
 };
@@ -179,7 +179,7 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         model_error: Some(ModelError {
             fraction,
             hours: thin.duration_s() / 3600.0,
-            regimes: regimes(&observed),
+            regimes: observed.covered(),
         }),
         noise: noise(&observed, &baseline),
         ..calibrated.clone()
@@ -214,24 +214,6 @@ fn posterior(baseline: &Baseline, model: &LinearModel, by_current: bool) -> Opti
         mean: known.iter().map(|(i, _)| parameters.list[*i].file().ln()).collect(),
         covariance,
     })
-}
-
-/// The lowest and highest hundredth of each quantity.
-pub(crate) fn regimes(observed: &Observations<'_>) -> Regimes {
-    let range = |of: fn(&crate::Input) -> f64| {
-        let mut values: Vec<f64> = observed.averages().iter().map(|a| of(&a.input)).collect();
-        values.retain(|value| value.is_finite());
-        values.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            values.get((share * values.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(0.0)
-        };
-        [at(0.01), at(0.99)]
-    };
-    Regimes {
-        speed_mps: range(|i| i.speed_mps),
-        difference_mps: range(|i| i.difference_mps),
-        pitch_rad: range(|i| i.pitch_rad),
-    }
 }
 
 /// Noise of the channels of power, their mean.

@@ -57,6 +57,7 @@ mod fit {
     pub(crate) mod features;
     pub(crate) mod held_out;
     pub(crate) mod joint;
+    pub(crate) mod member;
     pub(crate) mod parameter;
     pub(crate) mod temperature;
 }

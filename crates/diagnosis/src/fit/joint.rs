@@ -1,16 +1,15 @@
 //! Robot, discrepancy and effects fitted together: one linearisation of the robot, effects as they are.
 
-use model::{Robot, mechanism::Mechanism};
+use model::Robot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
-    Applied, Error, Span,
+    Applied, Error,
     evidence::{
         linear_model::{Evidence, Group, Half, LinearModel, matrix},
         noise::Whitening,
     },
-    fit::{baseline::Baseline, features::Features},
-    hypothesis::effect::Size,
+    fit::{baseline::Baseline, features::Features, member::Member},
     observe::observations::{Observations, REGIME},
 };
 
@@ -28,8 +27,6 @@ const STEPS: usize = 4;
 const SETTLED: f64 = 0.1;
 /// Step of differences, as a share of a size and at least in prior standard deviations.
 const DIFFERENCE: f64 = 0.05;
-/// Sizes beyond so many prior standard deviations are not looked at: the prior gives them a chance of 2·10⁻⁹.
-const FARTHEST: f64 = 6.0;
 /// Shares of a step that are tried in turn.
 const SHARES: [f64; 3] = [1.0, 0.4, 0.15];
 
@@ -56,23 +53,6 @@ pub(crate) struct Joint<'a> {
 /// Members, their effect, and the log density that they reach.
 type Reached = (Vec<Member>, Vec<f64>, f64);
 
-/// A mechanism with sizes.
-#[derive(Clone)]
-pub(crate) struct Member {
-    /// Which.
-    pub(crate) mechanism: &'static dyn Mechanism,
-    /// Values of all its parameters.
-    pub(crate) values: Vec<f64>,
-    /// Free parameters.
-    pub(crate) free: Vec<Size>,
-    /// Prior correlation of the first two.
-    pub(crate) correlation: f64,
-    /// When and where it acts.
-    pub(crate) span: Span,
-    /// Log prior of its form and window.
-    pub(crate) log_prior: f64,
-}
-
 /// Members fitted beside the robot.
 #[derive(Clone)]
 pub(crate) struct Fitted {
@@ -98,49 +78,6 @@ pub(crate) struct Fitted {
     pub(crate) left: Group,
     /// Signs of the columns.
     pub(crate) halves: Vec<Half>,
-}
-
-impl Member {
-    /// As the forward model takes it.
-    pub(crate) fn applied(&self) -> Applied {
-        Applied { mechanism: self.mechanism, values: self.values.clone(), span: self.span }
-    }
-
-    /// Its free sizes, independent in their prior.
-    fn sizes(&self) -> Vec<f64> {
-        let mut sizes: Vec<f64> =
-            self.free.iter().map(|size| self.values[size.parameter] / size.unit).collect();
-        if let [first, second, ..] = &mut sizes[..] {
-            *second = (*second - self.correlation * *first) / self.own_share();
-        }
-        sizes
-    }
-
-    /// Puts it at sizes, within what a robot can have.
-    pub(crate) fn set(&mut self, file: &Robot, sizes: &[f64]) {
-        let mut values = sizes.to_vec();
-        if let [first, second, ..] = &mut values[..] {
-            *second = self.correlation * *first + self.own_share() * *second;
-        }
-        for (size, x) in self.free.iter().zip(values) {
-            let least = if size.half == Half::Positive { 0.0 } else { -FARTHEST };
-            let [low, high] = self.mechanism.bounds(file, size.parameter);
-            self.values[size.parameter] = (size.unit * x.clamp(least, FARTHEST)).clamp(low, high);
-        }
-    }
-
-    /// Moves one size, whatever a robot can have.
-    fn step(&mut self, j: usize, by: f64) {
-        let share = if j == 1 { self.own_share() } else { 1.0 };
-        self.values[self.free[j].parameter] += share * by * self.free[j].unit;
-        if let (0, [_, second, ..]) = (j, &self.free[..]) {
-            self.values[second.parameter] += self.correlation * by * second.unit;
-        }
-    }
-
-    fn own_share(&self) -> f64 {
-        (1.0 - self.correlation * self.correlation).sqrt()
-    }
 }
 
 impl<'a> Joint<'a> {

@@ -2,11 +2,11 @@
 
 use model::{
     Robot,
-    mechanism::{Form, Mechanism, Scale, Sign, SizePrior},
+    mechanism::{Form, Mechanism, Scale},
 };
 use rayon::prelude::*;
 
-use crate::{Applied, Error, Series, Span, evidence::linear_model::Half};
+use crate::{Applied, Error, Series, Span, evidence::linear_model::Half, fit::member::Size};
 
 /// One form of a mechanism with a column for each free parameter.
 #[derive(Clone)]
@@ -25,33 +25,6 @@ pub(crate) struct Effect {
     pub(crate) correlation: f64,
     /// Change of predictions with each free parameter at one prior standard deviation, test rows first.
     pub(crate) columns: Vec<Vec<f64>>,
-}
-
-/// Size of one free parameter, in prior standard deviations of a direction that is always possible.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Size {
-    /// Which parameter.
-    pub(crate) parameter: usize,
-    /// Value at size 1; negative where only negative values are possible.
-    pub(crate) unit: f64,
-    /// Possible signs of the size.
-    pub(crate) half: Half,
-}
-
-impl Size {
-    fn of(form: &Form, priors: &[SizePrior], parameter: usize) -> Self {
-        let SizePrior { sigma, sign } = priors[parameter];
-        let sigma = form.widening * sigma;
-        // A form that begins off zero keeps its sign.
-        let begins = form.values[parameter];
-        let (unit, half) = match sign {
-            Sign::Negative => (-sigma, Half::Positive),
-            Sign::Positive => (sigma, Half::Positive),
-            Sign::Either if begins != 0.0 => (sigma.copysign(begins), Half::Positive),
-            Sign::Either => (sigma, Half::Both),
-        };
-        Size { parameter, unit, half }
-    }
 }
 
 /// The forms of mechanisms as effects in the test drives, beside mechanisms that act already; the same in all drives where asked for.

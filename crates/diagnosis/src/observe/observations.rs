@@ -1,6 +1,6 @@
 //! Rows of all drives as the model sees them: regime, place in their series, and what they are of.
 
-use model::Robot;
+use model::{Robot, knowledge::Regimes};
 
 use crate::{Average, Error, Series, evidence::noise::Place};
 
@@ -99,6 +99,24 @@ impl<'a> Observations<'a> {
     /// Time driven in the test drives [s].
     pub(crate) fn total_s(&self) -> f64 {
         self.begins_s.last().copied().unwrap_or(0.0)
+    }
+
+    /// What drives cover: the lowest and highest hundredth of each quantity.
+    pub(crate) fn covered(&self) -> Regimes {
+        let range = |of: fn(&crate::Input) -> f64| {
+            let mut values: Vec<f64> = self.averages().iter().map(|a| of(&a.input)).collect();
+            values.retain(|value| value.is_finite());
+            values.sort_by(f64::total_cmp);
+            let at = |share: f64| {
+                values.get((share * values.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(0.0)
+            };
+            [at(0.01), at(0.99)]
+        };
+        Regimes {
+            speed_mps: range(|i| i.speed_mps),
+            difference_mps: range(|i| i.difference_mps),
+            pitch_rad: range(|i| i.pitch_rad),
+        }
     }
 }
 

@@ -57,8 +57,6 @@ pub struct Diagnosis {
     pub corrected: CorrectedFit,
     /// The drive that would tell apart what stays ambiguous.
     pub next_drive: Option<String>,
-    /// Share of the held-out errors that smooth functions of the inputs explain, before and after the findings.
-    pub explainable: [f64; 2],
     /// Least sizes that would have been noticed.
     pub detectable: Vec<Detectable>,
     /// Mechanisms of which these drives tell nothing.

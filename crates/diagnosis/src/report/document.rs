@@ -10,10 +10,9 @@ use crate::{
     Applied, Error,
     fit::{
         held_out::{HeldOut, STRAY_SIGMAS},
-        joint::Member,
+        member::Member,
         temperature::UNTOLD,
     },
-    learn::regimes,
     observe::observations::Observations,
     report::{
         corrected::corrected,
@@ -103,7 +102,6 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         findings,
         corrected: CorrectedFit { rmse_w: rmse_w(&trace), held_out_rmse_w },
         next_drive,
-        explainable: [0.0; 2],
         detectable,
         not_judged,
         notes,
@@ -121,7 +119,7 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
     };
     let share = 100.0 * found.model_error;
     let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
-    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &regimes(observed))));
+    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &observed.covered())));
     if found.run_variation > 0.0 {
         let share = 100.0 * found.run_variation;
         notes.push(format!(

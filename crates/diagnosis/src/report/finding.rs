@@ -3,11 +3,11 @@
 use crate::{
     Series, Span,
     evidence::linear_model::Half,
-    fit::joint::{Fitted, Member},
-    hypothesis::{
-        effect::Size,
-        unlisted::{Block, Component, Family},
+    fit::{
+        joint::Fitted,
+        member::{Member, Size},
     },
+    hypothesis::unlisted::{Block, Component, Family},
     report::diagnosis::{EvidenceFigures, Finding, FindingFit, FoundParameter, Scope},
     search::explanation::{Explanation, credible},
 };

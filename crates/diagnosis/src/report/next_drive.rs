@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     Applied, Error, Series, Span,
     evidence::linear_model::matrix,
-    fit::{baseline::Baseline, joint::Member},
+    fit::{baseline::Baseline, member::Member},
     observe::observations::Observations,
     report::planned_drive::{CATALOGUE, PlannedDrive},
     search::{

@@ -6,7 +6,10 @@ use rayon::prelude::*;
 
 use crate::{
     Error, Span,
-    fit::joint::{Fitted, Joint, Member},
+    fit::{
+        joint::{Fitted, Joint},
+        member::Member,
+    },
     hypothesis::{
         unlisted::{self, Block},
         window::Grid,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::{
     evidence::linear_model::{Half, Reduced, log_sum, matrix},
-    fit::joint::{Joint, Member},
+    fit::{joint::Joint, member::Member},
     hypothesis::{
         atoms::Atoms,
         effect::Effect,
@@ -267,7 +267,7 @@ mod tests {
         let others = baseline.discrepancy(&observed, 0.03);
         let joint = Joint::new(&observed, (&baseline, &robot), others, white, 4.0);
         let library = ["payload", "surface_change"].map(|name| mechanism::by_name(name).unwrap());
-        let scale = Scale { robot: &robot, mean_power_w: 90.0, mean_loss_w: 9.0 };
+        let scale = Scale { robot: &robot, meter_zero_w: 7.0, mean_power_w: 90.0, mean_loss_w: 9.0 };
         let (series, robot) = (&series, &baseline.robot);
         let beside =
             Beside { series, robot, applied: &[], predicted: &baseline.predicted, everywhere: false };

@@ -21,7 +21,12 @@ const MEAN_LOSS_W: f64 = 10.0;
 /// A mechanism without a source file.
 pub(crate) fn sizes() -> io::Result<String> {
     let robot = husky_a200();
-    let scale = Scale { robot: &robot, mean_power_w: MEAN_POWER_W, mean_loss_w: MEAN_LOSS_W };
+    let scale = Scale {
+        robot: &robot,
+        meter_zero_w: 0.075 * MEAN_POWER_W,
+        mean_power_w: MEAN_POWER_W,
+        mean_loss_w: MEAN_LOSS_W,
+    };
     let mut text = String::from(
         "| mechanism | parameter | one σ | sign | correlation | windows | reason |\n| --- | --- | --- | --- | --- | --- | --- |\n",
     );

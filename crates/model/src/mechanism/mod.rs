@@ -186,11 +186,6 @@ pub trait Mechanism: Sync {
         false
     }
 
-    /// What a parameter usually is, where that is known before any drive, and the factor by which one in three is off by more.
-    fn usual(&self, _robot: &Robot, _parameter: usize) -> Option<[f64; 2]> {
-        None
-    }
-
     /// Prior of each parameter: what a user could plausibly meet, in the robot's own units, with its reason.
     fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior>;
 

@@ -11,10 +11,10 @@ const AIR_KG_PER_M3: f64 = 1.225;
 /// Drag areas that a robot may have, in areas between its wheels: a mast and a tarpaulin on a small robot.
 const MOST_FOOTPRINTS: f64 = 4.0;
 
-/// Drag area that a robot usually has, in areas between its wheels, and the factor by which it may be off: a body seen from ahead is about
+/// Drag area that a robot usually has, in areas between its wheels: a body seen from ahead is about
 /// as large as what lies between its wheels, with the drag coefficient of a cube, 0.8 to 1.05 (Hoerner, Fluid-Dynamic Drag, 1965,
 /// chapter 3), bare or with a mast.
-const USUAL_FOOTPRINTS: [f64; 2] = [1.0, 1.7];
+const USUAL_FOOTPRINTS: f64 = 1.0;
 
 /// Winds that are tried \[m/s\]: a breeze, a strong wind, a gale (Beaufort 2, 4 and 5).
 const WINDS_MPS: [f64; 3] = [3.0, 6.0, 10.0];
@@ -52,16 +52,10 @@ impl Mechanism for Wind {
         if parameter == 0 { [low, high.min(most_m2)] } else { [low, high] }
     }
 
-    /// Drives tell the force of the air, and hardly whether much of it stands against a weak wind or little against a strong one.
-    fn usual(&self, robot: &Robot, parameter: usize) -> Option<[f64; 2]> {
-        let [footprints, factor] = USUAL_FOOTPRINTS;
-        (parameter == 0).then_some([footprints * robot.track_m * robot.wheelbase_m, factor])
-    }
-
     /// A drag area as large as what lies between the wheels, and winds up to a gale.
     fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
         let footprint_m2 = scale.robot.track_m * scale.robot.wheelbase_m;
-        let area = SizePrior::positive(USUAL_FOOTPRINTS[0] * footprint_m2);
+        let area = SizePrior::positive(USUAL_FOOTPRINTS * footprint_m2);
         vec![area, SizePrior::either(WINDS_MPS[1]), SizePrior::either(WINDS_MPS[1])]
     }
 

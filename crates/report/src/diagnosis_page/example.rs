@@ -32,7 +32,6 @@ pub(super) fn explained() -> Diagnosis {
         findings: vec![finding()],
         corrected: CorrectedFit { rmse_w: 2.0, held_out_rmse_w: 2.1 },
         next_drive: Some("drive a slope of 5° up and down".into()),
-        explainable: [0.0; 2],
         detectable: vec![Detectable { mechanism: "wind", parameter: "east_mps", value: 2.0, unit: "m/s" }],
         not_judged: vec!["motor_heating"],
         notes: vec!["`payload` stands in the corrected robot's file".into()],

@@ -1,0 +1,99 @@
+//! A mechanism with sizes, in prior standard deviations of its parameters.
+
+use model::{
+    Robot,
+    mechanism::{Form, Mechanism, Sign, SizePrior},
+};
+
+use crate::{Applied, Span, evidence::linear_model::Half};
+
+/// Sizes beyond so many prior standard deviations are not looked at: the prior gives them a chance of 2·10⁻⁹.
+const FARTHEST: f64 = 6.0;
+
+/// Size of one free parameter, in prior standard deviations of a direction that is always possible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Size {
+    /// Which parameter.
+    pub(crate) parameter: usize,
+    /// Value at size 1; negative where only negative values are possible.
+    pub(crate) unit: f64,
+    /// Possible signs of the size.
+    pub(crate) half: Half,
+}
+
+impl Size {
+    /// Of a parameter that a form leaves free.
+    pub(crate) fn of(form: &Form, priors: &[SizePrior], parameter: usize) -> Self {
+        let SizePrior { sigma, sign } = priors[parameter];
+        let sigma = form.widening * sigma;
+        // A form that begins off zero keeps its sign.
+        let begins = form.values[parameter];
+        let (unit, half) = match sign {
+            Sign::Negative => (-sigma, Half::Positive),
+            Sign::Positive => (sigma, Half::Positive),
+            Sign::Either if begins != 0.0 => (sigma.copysign(begins), Half::Positive),
+            Sign::Either => (sigma, Half::Both),
+        };
+        Size { parameter, unit, half }
+    }
+}
+
+/// A mechanism with sizes.
+#[derive(Clone)]
+pub(crate) struct Member {
+    /// Which.
+    pub(crate) mechanism: &'static dyn Mechanism,
+    /// Values of all its parameters.
+    pub(crate) values: Vec<f64>,
+    /// Free parameters.
+    pub(crate) free: Vec<Size>,
+    /// Prior correlation of the first two.
+    pub(crate) correlation: f64,
+    /// When and where it acts.
+    pub(crate) span: Span,
+    /// Log prior of its form and window.
+    pub(crate) log_prior: f64,
+}
+
+impl Member {
+    /// As the forward model takes it.
+    pub(crate) fn applied(&self) -> Applied {
+        Applied { mechanism: self.mechanism, values: self.values.clone(), span: self.span }
+    }
+
+    /// Its free sizes, independent in their prior.
+    pub(crate) fn sizes(&self) -> Vec<f64> {
+        let mut sizes: Vec<f64> =
+            self.free.iter().map(|size| self.values[size.parameter] / size.unit).collect();
+        if let [first, second, ..] = &mut sizes[..] {
+            *second = (*second - self.correlation * *first) / self.own_share();
+        }
+        sizes
+    }
+
+    /// Puts it at sizes, within what a robot can have.
+    pub(crate) fn set(&mut self, file: &Robot, sizes: &[f64]) {
+        let mut values = sizes.to_vec();
+        if let [first, second, ..] = &mut values[..] {
+            *second = self.correlation * *first + self.own_share() * *second;
+        }
+        for (size, x) in self.free.iter().zip(values) {
+            let least = if size.half == Half::Positive { 0.0 } else { -FARTHEST };
+            let [low, high] = self.mechanism.bounds(file, size.parameter);
+            self.values[size.parameter] = (size.unit * x.clamp(least, FARTHEST)).clamp(low, high);
+        }
+    }
+
+    /// Moves one size, whatever a robot can have.
+    pub(crate) fn step(&mut self, j: usize, by: f64) {
+        let share = if j == 1 { self.own_share() } else { 1.0 };
+        self.values[self.free[j].parameter] += share * by * self.free[j].unit;
+        if let (0, [_, second, ..]) = (j, &self.free[..]) {
+            self.values[second.parameter] += self.correlation * by * second.unit;
+        }
+    }
+
+    fn own_share(&self) -> f64 {
+        (1.0 - self.correlation * self.correlation).sqrt()
+    }
+}
