@@ -89,7 +89,7 @@ fn counts(cases: usize) -> [usize; 5] {
 }
 
 /// Fisher and Yates.
-fn shuffle<T>(cards: &mut [T], random: &mut Pcg64Mcg) {
+pub(crate) fn shuffle<T>(cards: &mut [T], random: &mut Pcg64Mcg) {
     for i in (1..cards.len()).rev() {
         cards.swap(i, random.random_range(0..=i));
     }
