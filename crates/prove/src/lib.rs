@@ -34,7 +34,7 @@ pub use board::{Boards, Scoreboard, WayBoard, scoreboard};
 pub use commitment::{Commitments, sha256};
 pub use deal::{Dealt, SHARES, deal};
 pub use error::Error;
-pub use figures::{Cell, MechanismRow, PeerRow, StrengthRow};
+pub use figures::{Cell, MechanismRow, OnsetRow, PeerRow, ShareRow, StrengthRow};
 pub use files::{RECORDING, REFERENCE, ROBOT};
 pub use key::{Kind, Parameter, SealedKey, Truth};
 pub use peer::{PeerAnswer, PeerScore};

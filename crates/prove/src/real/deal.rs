@@ -75,7 +75,7 @@ pub fn deal(cases: usize, seed: u64, grounds: usize, strengths_z: &[f64]) -> Vec
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let pairs = pairs(grounds);
     let [healthy, changed, spliced] = counts(cases, !pairs.is_empty());
-    let mut deck = Deck::new(grounds, pairs, &mut random);
+    let deck = Deck::new(grounds, pairs, &mut random);
     let blank =
         |kind, ground| RealCase { name: String::new(), kind, ground, wanted: None, onto: None, seed: 0 };
     let mut dealt: Vec<RealCase> = (0..healthy).map(|i| blank(RealKind::Healthy, deck.ground(i))).collect();
@@ -112,7 +112,7 @@ impl Deck {
         Deck { grounds, pairs, changes }
     }
 
-    fn ground(&mut self, i: usize) -> usize {
+    fn ground(&self, i: usize) -> usize {
         self.grounds[i % self.grounds.len()]
     }
 
@@ -130,7 +130,11 @@ impl Deck {
             direction: if down { Direction::Down } else { Direction::Up },
             side: if random.random_bool(0.5) { Side::Left } else { Side::Right },
             // Another one each time that a change comes up again.
-            begins: if (i + round).is_multiple_of(2) { Begins::AtOnce } else { Begins::Later },
+            begins: if (i % self.changes.len() + round).is_multiple_of(2) {
+                Begins::AtOnce
+            } else {
+                Begins::Later
+            },
         }
     }
 }

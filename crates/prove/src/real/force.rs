@@ -47,7 +47,7 @@ fn set(recording: &mut Recording, row: usize, current_a: Sides<f64>) {
     }
 }
 
-/// The same drives with the currents that the robot itself would have shown: no noise, and nothing that its model misses.
+/// The same drives with the currents and yaw rates that the robot itself would have shown: no noise, and nothing that its model misses.
 ///
 /// # Errors
 /// A robot that does not say what an ampere stands for.
@@ -56,6 +56,12 @@ pub(crate) fn imitated(robot: &Robot, recording: &Recording) -> Result<Recording
     let reading = Reading::new(robot, recording)?;
     let mut ideal = recording.clone();
     for row in 0..recording.rows() {
+        let wheels_radps = reading.drives.rows[row].difference_mps() / robot.slip_track_m;
+        if let Some(yaw_rate) =
+            ideal.channels.get_mut(&Channel::YawRate).and_then(|values| values.get_mut(row))
+        {
+            *yaw_rate = wheels_radps;
+        }
         if reading.recorded_n[row].left.is_finite() && reading.recorded_n[row].right.is_finite() {
             set(&mut ideal, row, current_a(robot, &reading, row, reading.needed_n[row]));
         }

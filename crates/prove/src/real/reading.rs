@@ -43,26 +43,40 @@ impl Reading {
         PowerKernel::of_motors(robot, row.rim_mps, row.motor_c).side_w(force_n)
     }
 
-    /// One-second averages of recorded less needed power, and of needed power, by side [W].
-    pub(crate) fn averages_w(&self, robot: &Robot) -> [SideAverages; 2] {
+    /// One-second averages of every meter: power of the left and of the right side \[W\], and yaw rate \[rad/s\].
+    ///
+    /// The yaw rate needed is that of the wheels over the slip track. Powers of currents are made with recorded speeds, so that speeds that are
+    /// off show in it alone.
+    pub(crate) fn averages(&self, robot: &Robot) -> [MeterAverages; METERS] {
         let of_row = |i: usize| {
             let row = &self.drives.rows[i];
-            let [recorded, needed] =
+            let [recorded_w, needed_w] =
                 [self.recorded_n[i], self.needed_n[i]].map(|force_n| Reading::power_w(robot, row, force_n));
-            [recorded.left - needed.left, needed.left, recorded.right - needed.right, needed.right]
+            let wheels_radps = self.drives.rows[i].difference_mps() / robot.slip_track_m;
+            [
+                recorded_w.left - needed_w.left,
+                recorded_w.right - needed_w.right,
+                row.yaw_rate_radps - wheels_radps,
+                needed_w.left,
+                needed_w.right,
+                wheels_radps,
+            ]
         };
         let means = self.drives.means(of_row);
-        [0, 2].map(|side| SideAverages {
-            difference_w: means.iter().map(|mean| mean[side]).collect(),
-            needed_w: means.iter().map(|mean| mean[side + 1]).collect(),
+        std::array::from_fn(|meter| MeterAverages {
+            difference: means.iter().map(|mean| mean[meter]).collect(),
+            needed: means.iter().map(|mean| mean[METERS + meter]).collect(),
         })
     }
 }
 
-/// One-second averages of one side, in the order of the drives' averages.
-pub(crate) struct SideAverages {
-    /// Recorded less needed power [W].
-    pub(crate) difference_w: Vec<f64>,
-    /// Needed power [W].
-    pub(crate) needed_w: Vec<f64>,
+/// Meters whose averages are compared.
+pub(crate) const METERS: usize = 3;
+
+/// One-second averages of one meter, in the order of the drives' averages.
+pub(crate) struct MeterAverages {
+    /// Recorded less needed.
+    pub(crate) difference: Vec<f64>,
+    /// Needed.
+    pub(crate) needed: Vec<f64>,
 }

@@ -10,20 +10,21 @@ use crate::{
     real::{
         Act,
         force::imitated,
-        reading::{Reading, SideAverages},
+        reading::{METERS, MeterAverages, Reading},
     },
 };
 
-/// Noise of the one-second averages of each side's power, told by quick differences, so that what a model misses slowly is no part of it.
+/// Noise of the one-second averages of each side's power and of the yaw rate, told by quick differences, so that what a model misses slowly is
+/// no part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    sides: [SideNoise; 2],
+    meters: [MeterNoise; METERS],
 }
 
-/// Noise of one side: σ² = floor² + (gain · P)², neighbours correlated by ρ.
+/// Noise of one meter: σ² = floor² + (gain · P)², P what is needed; neighbours correlated by ρ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SideNoise {
-    floor_w: f64,
+struct MeterNoise {
+    floor: f64,
     gain: f64,
     correlation: f64,
 }
@@ -34,8 +35,8 @@ const SIGMA_PER_MEDIAN: f64 = 1.4826;
 const MOST_CORRELATION: f64 = 0.9;
 /// The floor is no lower than this share of the noise over all, so that standstill does not decide everything.
 const LEAST_FLOOR: f64 = 0.2;
-/// Noise of a side without any: a current's last digit, 0.01 A, is worth about so much power on a Husky [W].
-const LEAST_NOISE_W: f64 = 0.1;
+/// Noise of a meter without any: a current's last digit, 0.01 A, is worth about 0.1 W on a Husky, and a yaw rate has four decimals.
+const LEAST_NOISE: [f64; METERS] = [0.1, 0.1, 1e-4];
 
 impl Noise {
     /// The noise of recorded drives about what a robot needs.
@@ -45,8 +46,8 @@ impl Noise {
     pub fn of(robot: &Robot, recording: &Recording) -> Result<Self, Error> {
         let reading = Reading::new(robot, recording)?;
         let follows = follows(&reading);
-        let sides = reading.averages_w(robot);
-        Ok(Noise { sides: sides.each_ref().map(|side| SideNoise::of(side, &follows)) })
+        let meters = reading.averages(robot);
+        Ok(Noise { meters: std::array::from_fn(|i| MeterNoise::of(&meters[i], LEAST_NOISE[i], &follows)) })
     }
 
     /// Strength of an act on drives as a robot itself would have recorded them.
@@ -55,7 +56,7 @@ impl Noise {
     /// z = √ Σ (e_t − ρ e_{t−1})² / (1 − ρ²),   e_t = ΔP_t / σ_t
     /// ```
     ///
-    /// over the one-second averages of both sides. ΔP is the power that the changed currents stand for less the power needed at the
+    /// over the one-second averages of both sides and of the yaw rate. ΔP is the power that the changed currents stand for less the power needed at the
     /// changed speeds and slopes. A detector that knows the change sees it at z standard deviations.
     ///
     /// # Errors
@@ -63,9 +64,10 @@ impl Noise {
     pub fn strength(&self, robot: &Robot, drives: &Recording, act: &Act) -> Result<Strength, Error> {
         let ideal = imitated(robot, drives)?;
         let reading = Reading::new(robot, &act.put_into(robot, &ideal)?)?;
-        let (follows, sides) = (follows(&reading), reading.averages_w(robot));
-        let squares = self.sides.iter().zip(&sides).map(|(noise, side)| noise.norm_squared(side, &follows));
-        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change: power_change(&sides) })
+        let (follows, meters) = (follows(&reading), reading.averages(robot));
+        let squares =
+            self.meters.iter().zip(&meters).map(|(noise, meter)| noise.norm_squared(meter, &follows));
+        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change: power_change(&meters) })
     }
 
     /// The act at the size at which it has a strength, or at the largest that it can have; and how strong it is there.
@@ -109,45 +111,42 @@ pub struct Strength {
     pub power_change: f64,
 }
 
-impl SideNoise {
-    fn of(side: &SideAverages, follows: &[bool]) -> Self {
+impl MeterNoise {
+    fn of(meter: &MeterAverages, least: f64, follows: &[bool]) -> Self {
         let differences = |lag: usize| -> Vec<(f64, f64)> {
             let is_joined = |i: &usize| (i + 1 - lag..=*i).all(|j| follows[j]);
             let from = (lag..follows.len()).filter(is_joined);
-            from.map(|i| (side.needed_w[i].abs(), (side.difference_w[i] - side.difference_w[i - lag]).abs()))
-                .filter(|(_, difference_w)| difference_w.is_finite())
+            from.map(|i| (meter.needed[i].abs(), (meter.difference[i] - meter.difference[i - lag]).abs()))
+                .filter(|(_, difference)| difference.is_finite())
                 .collect()
         };
         let quick = differences(1);
         let sigma = |pairs: &[(f64, f64)]| SIGMA_PER_MEDIAN * median(pairs.iter().map(|pair| pair.1));
-        let [one_w, two_w] = [sigma(&quick), sigma(&differences(2))];
+        let [one, two] = [sigma(&quick), sigma(&differences(2))];
         // Var(1 s) = 2 σ² (1 − ρ), Var(2 s) = 2 σ² (1 − ρ²): their ratio is 1 + ρ.
-        let correlation = ((two_w / one_w.max(f64::MIN_POSITIVE)).powi(2) - 1.0).clamp(0.0, MOST_CORRELATION);
-        let level_w = |difference_w: f64| difference_w / (2.0 * (1.0 - correlation)).sqrt();
-        let whole_w = level_w(one_w).max(LEAST_NOISE_W);
+        let correlation = ((two / one.max(f64::MIN_POSITIVE)).powi(2) - 1.0).clamp(0.0, MOST_CORRELATION);
+        let level = |difference: f64| difference / (2.0 * (1.0 - correlation)).sqrt();
+        let whole = level(one).max(least);
         let mut by_power = quick;
         by_power.sort_by(|a, b| a.0.total_cmp(&b.0));
         let third = by_power.len() / 3;
         let end = |pairs: &[(f64, f64)]| {
-            [median(pairs.iter().map(|pair| pair.0)), level_w(sigma(pairs))].map(|value| value * value)
+            [median(pairs.iter().map(|pair| pair.0)), level(sigma(pairs))].map(|value| value * value)
         };
         let (low, high) = (end(&by_power[..third]), end(&by_power[by_power.len() - third..]));
         let gain = if high[0] > low[0] { ((high[1] - low[1]) / (high[0] - low[0])).max(0.0) } else { 0.0 };
         if gain == 0.0 {
-            return SideNoise { floor_w: whole_w, gain, correlation };
+            return MeterNoise { floor: whole, gain, correlation };
         }
-        let floor_w = (low[1] - gain * low[0]).max((LEAST_FLOOR * whole_w).powi(2)).sqrt();
-        SideNoise { floor_w, gain: gain.sqrt(), correlation }
+        let floor = (low[1] - gain * low[0]).max((LEAST_FLOOR * whole).powi(2)).sqrt();
+        MeterNoise { floor, gain: gain.sqrt(), correlation }
     }
 
     /// Squared length of a change of power in standard deviations.
-    fn norm_squared(&self, side: &SideAverages, follows: &[bool]) -> f64 {
-        let sigma_w = |needed_w: f64| self.floor_w.hypot(self.gain * needed_w);
-        let scaled = side
-            .difference_w
-            .iter()
-            .zip(&side.needed_w)
-            .map(|(change_w, needed_w)| change_w / sigma_w(*needed_w));
+    fn norm_squared(&self, meter: &MeterAverages, follows: &[bool]) -> f64 {
+        let sigma = |needed: f64| self.floor.hypot(self.gain * needed);
+        let scaled =
+            side.difference.iter().zip(&meter.needed).map(|(change, needed)| change / sigma(*needed));
         let scaled: Vec<f64> = scaled.map(|e| if e.is_finite() { e } else { 0.0 }).collect();
         let before = once(0.0).chain(scaled.iter().copied());
         let rho = self.correlation;
@@ -171,11 +170,11 @@ fn follows(reading: &Reading) -> Vec<bool> {
 }
 
 /// Root mean square change of the power of both sides where there is any, over their mean.
-fn power_change(sides: &[SideAverages; 2]) -> f64 {
-    let sums = |of: fn(&SideAverages) -> &[f64]| -> Vec<f64> {
-        of(&sides[0]).iter().zip(of(&sides[1])).map(|(left, right)| left + right).collect()
+fn power_change([left, right, _]: &[MeterAverages; METERS]) -> f64 {
+    let sums = |of: fn(&MeterAverages) -> &[f64]| -> Vec<f64> {
+        of(left).iter().zip(of(right)).map(|(left, right)| left + right).collect()
     };
-    let (changes_w, needed_w) = (sums(|side| &side.difference_w), sums(|side| &side.needed_w));
+    let (changes_w, needed_w) = (sums(|side| &side.difference), sums(|side| &side.needed));
     let acting: Vec<f64> = changes_w.into_iter().filter(|change_w| change_w.abs() > 1e-9).collect();
     let square = acting.iter().map(|change_w| change_w * change_w).sum::<f64>() / acting.len().max(1) as f64;
     let mean_w = needed_w.iter().map(|w| w.abs()).sum::<f64>() / needed_w.len().max(1) as f64;
@@ -191,6 +190,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
+    use recording::Channel;
 
     use super::*;
     use crate::real::{
@@ -200,7 +200,7 @@ mod tests {
     };
 
     fn noise() -> Noise {
-        Noise { sides: [SideNoise { floor_w: 5.0, gain: 0.0, correlation: 0.0 }; 2] }
+        Noise { meters: [5.0, 5.0, 0.02].map(|floor| MeterNoise { floor, gain: 0.0, correlation: 0.0 }) }
     }
 
     #[test]
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn an_act_gets_the_strength_that_is_asked_for_or_its_largest_size() {
         let drives = drives(&[1200], 0.02);
-        for change in [Change::Payload, Change::Gain, Change::WheelScale, Change::Tow] {
+        for change in [Change::Payload, Change::Gain, Change::Tow] {
             let (sized, found) = noise().sized(&robot(), &drives, act(change, 0.0), 16.0).unwrap();
             assert!((found.z / 16.0 - 1.0).abs() < 0.03, "{change:?}: {found:?}");
             assert!(sized.size < change.most(&robot()));
@@ -241,18 +241,32 @@ mod tests {
     }
 
     #[test]
+    fn wheels_that_are_off_show_in_how_they_turn_the_robot_and_in_no_power_of_currents() {
+        let straight = drives(&[600], 0.0);
+        let strength =
+            |drives: &Recording| noise().strength(&robot(), drives, &act(Change::WheelScale, 0.05)).unwrap();
+        assert!(strength(&straight).z < 1e-6);
+        // Half a turn in a minute: 0.1 m/s over a track of 0.54 m, of which a twentieth is 0.0093 rad/s in noise of 0.02.
+        let mut turning = straight.clone();
+        turning.channels.insert(Channel::RightSpeed, vec![0.6; 600]);
+        let expected = 0.05 * 0.1 / 0.54 / 0.02 * 60.0_f64.sqrt();
+        let found = strength(&turning);
+        assert!((found.z / expected - 1.0).abs() < 0.02 && found.power_change < 1e-3, "{found:?} {expected}");
+    }
+
+    #[test]
     fn noise_is_told_by_differences_whatever_drifts_beneath_it() {
         let mut random = Pcg64Mcg::seed_from_u64(5);
         let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
-        let (mut level, mut difference_w) = (0.0, Vec::new());
+        let (mut state, mut difference) = (0.0, Vec::new());
         for i in 0..4000 {
-            level = 0.5 * level + 0.75_f64.sqrt() * normal();
-            difference_w.push(3.0 * level + 40.0 * (f64::from(i) / 2000.0).sin());
+            state = 0.5 * state + 0.75_f64.sqrt() * normal();
+            difference.push(3.0 * state + 40.0 * (f64::from(i) / 2000.0).sin());
         }
-        let side = SideAverages { needed_w: vec![50.0; difference_w.len()], difference_w };
+        let meter = MeterAverages { needed: vec![50.0; difference.len()], difference };
         let follows: Vec<bool> = (0..4000).map(|i| i > 0).collect();
-        let found = SideNoise::of(&side, &follows);
-        assert!((found.floor_w / 3.0 - 1.0).abs() < 0.1, "{found:?}");
+        let found = MeterNoise::of(&meter, 0.1, &follows);
+        assert!((found.floor / 3.0 - 1.0).abs() < 0.1, "{found:?}");
         assert!((found.correlation - 0.5).abs() < 0.1, "{found:?}");
     }
 }
