@@ -146,7 +146,7 @@ impl MeterNoise {
     fn norm_squared(&self, meter: &MeterAverages, follows: &[bool]) -> f64 {
         let sigma = |needed: f64| self.floor.hypot(self.gain * needed);
         let scaled =
-            side.difference.iter().zip(&meter.needed).map(|(change, needed)| change / sigma(*needed));
+            meter.difference.iter().zip(&meter.needed).map(|(change, needed)| change / sigma(*needed));
         let scaled: Vec<f64> = scaled.map(|e| if e.is_finite() { e } else { 0.0 }).collect();
         let before = once(0.0).chain(scaled.iter().copied());
         let rho = self.correlation;
