@@ -222,6 +222,11 @@ fn fitted_robot(robot: &Robot, found: &CurrentCalibration, parameters: &[FittedP
         fitted.motors.left.force_n_per_a = Some(force.value);
         fitted.motors.right.force_n_per_a = Some(force.value);
     }
+    if let Some(surface) = found.surfaces.first() {
+        let idle_a = Some(surface.fit.idle_a).filter(|idle_a| *idle_a > 0.0);
+        fitted.motors.left.idle_current_a = idle_a;
+        fitted.motors.right.idle_current_a = idle_a;
+    }
     let (mut roll_share, mut skid_share) = (0.0f64, 0.0f64);
     for surface in &found.surfaces {
         let field = |field: &str| of(&format!("surfaces.{}.{field}", surface.surface));

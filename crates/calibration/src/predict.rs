@@ -165,6 +165,19 @@ pub fn force_n_per_a(robot: &Robot) -> Result<Sides<f64>, Error> {
     }
 }
 
+/// What the current meters of both sides read of a row in which the model needs some power: the idle current of the robot's file where the
+/// robot stands, else the force over `force_n_per_a`, less by k2² where the ground drives a side \[A\].
+///
+/// # Errors
+/// [`Error::NoForcePerAmpere`].
+pub fn current_readings_a(robot: &Robot, row: &Row, power: &Power) -> Result<Sides<f64>, Error> {
+    if row.stands() {
+        return Ok(robot.motor_sides().map(|motor| motor.idle_current_a.unwrap_or(0.0)));
+    }
+    let per_a = signed_n_per_a(robot, force_n_per_a(robot)?, row, power.force_n);
+    Ok(power.force_n.zip(per_a).map(|(force_n, per_a)| force_n / per_a))
+}
+
 /// Signed newtons that an ampere of each side's reading stands for while that side exerts a force \[N/A\]: c where the motor drives,
 /// c k2² where the ground drives it, with the sign of the force.
 pub fn signed_n_per_a(

@@ -2,7 +2,7 @@
 
 use calibration::slopes_note;
 use model::{
-    Robot,
+    Robot, Sides,
     mechanism::{self, Mechanism},
 };
 use recording::{Channel, Recording, Watch, unwatched};
@@ -17,6 +17,7 @@ use crate::{
         sanity::{doubts, mistakes},
     },
     report::{
+        about_simulation::about_simulation,
         diagnosis::{Diagnosis, Finding},
         document::{Subject, document, shared_findings},
     },
@@ -35,6 +36,8 @@ pub struct Question<'a> {
     pub suspect: &'a Recording,
     /// Drives of the same robot known to be in order; what they share with the suspect ones is not looked for.
     pub healthy: Option<&'a Recording>,
+    /// Another simulator's log of the same drives, in the place of what the robot's file predicts.
+    pub simulated: Option<&'a Recording>,
     /// Mechanisms that are known not to act.
     pub ruled_out: &'a [&'static dyn Mechanism],
 }
@@ -42,7 +45,7 @@ pub struct Question<'a> {
 impl<'a> Question<'a> {
     /// A question about drives of which nothing is ruled out.
     pub fn new(robot: &'a Robot, suspect: &'a Recording, healthy: Option<&'a Recording>) -> Self {
-        Question { robot, suspect, healthy, ruled_out: &[] }
+        Question { robot, suspect, healthy, simulated: None, ruled_out: &[] }
     }
 }
 
@@ -67,8 +70,7 @@ pub fn diagnose_watched(
 ) -> Result<Diagnosis, Error> {
     let Question { robot, ruled_out, .. } = *question;
     progress("preparing the drives", 0.0);
-    let Prepared { suspect, healthy, as_recorded, by_current, contradictions } =
-        Prepared::new(question, watch)?;
+    let Prepared { suspect, healthy, contradictions, offset_w } = Prepared::new(question, watch)?;
     let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
     let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
@@ -78,9 +80,9 @@ pub fn diagnose_watched(
     let observed = Observations::new(&series, robot);
     progress("fitting the robot", 0.05);
     let baseline = Baseline::fit(&observed, robot)?;
-    let mistakes = mistakes(robot, (suspect, &as_recorded, contradictions), &series, &baseline.robot)?;
+    let mistakes = mistakes(robot, (suspect, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
-    doubts.extend(by_current.then(|| BY_CURRENT.to_owned()));
+    doubts.extend(series.watts_per_a().map(by_current));
     doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
     let is_possible = |one: &&'static dyn Mechanism| !excluded.contains(&one.name());
@@ -102,8 +104,12 @@ pub fn diagnose_watched(
         mistakes: &mistakes,
         shared: &shared,
         doubts: &doubts,
+        predicted_by: if offset_w.is_empty() { "robot file" } else { "simulation" },
     };
-    let report = document(&subject, &found)?;
+    let mut report = document(&subject, &found)?;
+    if !offset_w.is_empty() {
+        about_simulation(&mut report, suspect, &offset_w);
+    }
     progress("done", 1.0);
     Ok(report)
 }
@@ -115,7 +121,13 @@ pub(crate) fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
 }
 
 /// What a diagnosis of motor currents has to say of itself.
-const BY_CURRENT: &str = "motor currents were taken for forces by `force_n_per_a` of the robot's file and for power by its k1 and k2";
+fn by_current(watts_per_a: Sides<f64>) -> String {
+    let Sides { left, right } = watts_per_a;
+    format!(
+        "motor currents are compared as currents, by `force_n_per_a` of the robot's file: an ampere counts as the {left:.1} W (left) and {right:.1} W \
+         (right) that it stands for on average in these drives"
+    )
+}
 
 /// Mechanisms that healthy drives need beside the robot's file, by themselves: what the file lacks of this robot.
 fn shared(

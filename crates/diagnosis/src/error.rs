@@ -8,10 +8,9 @@ pub enum Error {
     /// They cannot be prepared or fitted.
     #[error(transparent)]
     Calibration(#[from] calibration::Error),
-    /// Motor currents, or drives that tell power in different forms.
+    /// Drives that tell power in different forms.
     #[error(
-        "a diagnosis needs power in watts, by side or of the battery, in the same columns of all recordings; \
-         motor currents are first turned into power by `joulepath calibrate` and `force_n_per_a`"
+        "a diagnosis needs power in the same columns of all recordings: by side, of the battery, or as motor currents of both sides"
     )]
     Form,
     /// Ground that the robot does not know.
@@ -45,6 +44,14 @@ pub enum Error {
         /// The same among the healthy ones.
         healthy: String,
     },
+    /// A simulation that is not of the recorded drives.
+    #[error("the simulation cannot stand beside the recording: {0}")]
+    Simulated(String),
+    /// A simulation of some drives beside healthy ones, of which there is none.
+    #[error(
+        "a simulation of the drives cannot be held against healthy drives, which were not simulated: leave out the healthy drives, or the simulation"
+    )]
+    SimulatedBesideHealthy,
     /// Not enough to decide anything.
     #[error(
         "{seconds} s of driving are too little for a diagnosis, which compares at least {needed} s of it"

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use calibration::{Calibration, FittedParameter, with_powers};
+use calibration::{Calibration, FittedParameter};
 use model::{
     Robot,
     knowledge::{ModelError, Posterior, PowerNoise, Provenance, Regimes},
@@ -134,7 +134,7 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let sampled = thin.sampled(MOST_S);
     let is_whole = sampled.rows() == thin.rows();
     let by_current = thin.power_form() == Some(PowerForm::MotorCurrents);
-    let drives = with_powers(&about, &sampled, watch)?;
+    let drives = sampled;
     let series = Series::watched(&about, &drives, None, watch)?;
     if series.averages.iter().filter(|a| a.channel == 0).count() < NEEDED_S {
         return Ok(Learnt { robot: calibrated.clone(), errors: None });

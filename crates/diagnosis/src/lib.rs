@@ -45,6 +45,7 @@ mod observe {
     pub(crate) mod sag;
     pub(crate) mod sanity;
     pub(crate) mod series;
+    pub(crate) mod simulated;
     pub(crate) mod span;
     pub(crate) mod turning;
 }
@@ -79,6 +80,7 @@ mod search {
 
 /// What the posterior says, as a report.
 pub mod report {
+    pub(crate) mod about_simulation;
     pub(crate) mod corrected;
     pub(crate) mod detectable;
     pub(crate) mod diagnosis;

@@ -41,8 +41,8 @@ pub fn husky_a200() -> Robot {
         yaw_inertia_kgm2: 5.0,
         max_wheel_speed_mps: HUSKY_TOP_MPS,
         motors: Motors {
-            left: Motor { k1_w_per_n2: 0.0023, k2: 1.7158, force_n_per_a: None },
-            right: Motor { k1_w_per_n2: 0.0016, k2: 1.7723, force_n_per_a: None },
+            left: Motor { k1_w_per_n2: 0.0023, k2: 1.7158, force_n_per_a: None, idle_current_a: None },
+            right: Motor { k1_w_per_n2: 0.0016, k2: 1.7723, force_n_per_a: None, idle_current_a: None },
             reference_temperature_c: 20.0,
             resistance_per_k: 0.0039,
             motor_constant_per_k: -0.0012,

@@ -126,6 +126,9 @@ pub struct Motor {
     /// Wheel force per motor current [N/A]; needed only for recordings of motor current.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_n_per_a: Option<f64>,
+    /// Motor current that is read while the robot stands, of recordings of motor current [A]. Default 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub idle_current_a: Option<f64>,
 }
 
 /// What the robot must not be asked to do.

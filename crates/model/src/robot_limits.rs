@@ -91,6 +91,15 @@ fn check_motors(robot: &Robot) -> Result<(), Error> {
                 "give newtons at the rim per ampere",
             )?;
         }
+        if let Some(idle_a) = motor.idle_current_a {
+            within(
+                &format!("motors.{side}.idle_current_a"),
+                idle_a,
+                0.0,
+                100.0,
+                "give amperes at standstill",
+            )?;
+        }
     }
     within("motors.reference_temperature_c", m.reference_temperature_c, -60.0, 150.0, "give °C")?;
     within("motors.resistance_per_k", m.resistance_per_k, 0.0, 0.02, "give 1/K; copper has 0.0039")?;

@@ -38,7 +38,7 @@ pub use figures::{Cell, MechanismRow, OnsetRow, PeerRow, ShareRow, StrengthRow};
 pub use files::{RECORDING, REFERENCE, ROBOT};
 pub use key::{Kind, Parameter, SealedKey, Truth};
 pub use peer::{PeerAnswer, PeerScore};
-pub use process::{Diagnosis, Outcome};
+pub use process::{Diagnosis, FileBeside, Outcome};
 pub use rate::Rate;
 pub use report::{Estimate, Finding, Least, Report, Scope, Verdict};
 pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};

@@ -75,6 +75,8 @@ pub struct MotorFile {
     pub k2: f64,
     #[serde(default)]
     pub force_n_per_a: Option<f64>,
+    #[serde(default)]
+    pub idle_current_a: Option<f64>,
 }
 
 /// The battery pack. What else a file says of it is for who predicts range: this world has cells of its own.
@@ -242,7 +244,7 @@ fn slip_angle_scale_rad() -> f64 {
 /// A robot of the size of a Husky A200, for examples and tests: 90 kg, base 0.54 m by 0.54 m, motor constants and friction
 /// on marble of Dogru & Marques (2018), Tables I and II.
 pub fn example_robot() -> RobotFile {
-    let motor = |k1_w_per_n2, k2| MotorFile { k1_w_per_n2, k2, force_n_per_a: None };
+    let motor = |k1_w_per_n2, k2| MotorFile { k1_w_per_n2, k2, force_n_per_a: None, idle_current_a: None };
     let ground =
         |mu_roll, mu_skid| SurfaceFile { mu_roll, mu_skid, slip_angle_scale_rad: 0.30, dogru_marques: None };
     RobotFile {

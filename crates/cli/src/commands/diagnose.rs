@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Recordings of the same robot known to be healthy
     #[arg(long, num_args = 1..)]
     reference: Vec<PathBuf>,
+    /// Another simulator's log of the same drives (Gazebo, Isaac, your own): find what it left out, in place of the robot file
+    #[arg(long, num_args = 1.., conflicts_with = "reference", value_name = "FILE")]
+    simulated: Vec<PathBuf>,
     /// Mechanisms that are known not to act, such as `payload` of a robot that was weighed
     #[arg(long, num_args = 1.., value_name = "MECHANISM", value_parser = PossibleValuesParser::new(mechanism::ALL.map(|one| one.name())))]
     ruled_out: Vec<String>,
@@ -39,16 +42,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
-    let Arguments { recorded, reference, ruled_out, out } = arguments;
+    let Arguments { recorded, reference, simulated, ruled_out, out } = arguments;
     let (robot, suspect) = recorded.read()?;
     let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference)?) };
+    let simulated = if simulated.is_empty() { None } else { Some(recorded.read_files(simulated)?) };
     let bar = progress::steps();
     let told = |step: &str, share: f64| {
         bar.set_position((share * progress::STEPS as f64) as u64);
         bar.set_message(step.to_owned());
     };
     let ruled_out: Vec<_> = ruled_out.iter().filter_map(|name| mechanism::by_name(name)).collect();
-    let question = Question { ruled_out: &ruled_out, ..Question::new(&robot, &suspect, healthy.as_ref()) };
+    let question = Question {
+        ruled_out: &ruled_out,
+        simulated: simulated.as_ref(),
+        ..Question::new(&robot, &suspect, healthy.as_ref())
+    };
     let found = diagnose(&question, &told);
     bar.finish_and_clear();
     let found = found.map_err(|error| recorded.refuse(&error))?;

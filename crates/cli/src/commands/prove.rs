@@ -11,7 +11,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::Robot;
-use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Trial, Way};
+use prove::{Diagnosis, FileBeside, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Trial, Way};
 use recording::read_paths;
 
 use crate::{failure::BadInput, output, progress::Cases, recorded::robot, scored::summary};
@@ -122,7 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         robot_json: &robot_json,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program: program()?, threads: 1 },
+        diagnosis: Diagnosis { program: program()?, threads: 1, beside: FileBeside::Raw },
         ways: &ways(arguments),
         peers: &peers,
         at_once: at_once(),

@@ -13,8 +13,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use statrs::function::erf::erfc;
 
-/// Scales of the noise that are summed over, each about a quarter more than the one before, and their prior: the noise model is right to a factor of
-/// 1.5, one sigma.
+/// Scales of the noise that are summed over, each a quarter to a half more than the one before, and their prior: the noise model is right to a
+/// factor of 1.5, one sigma.
 const NOISE_SCALES: [f64; 7] = [0.7, 0.87, 1.1, 1.35, 1.7, 2.3, 3.5];
 const NOISE_SCALE_LOG_SIGMA: f64 = 0.4;
 

@@ -33,17 +33,17 @@ pub(crate) struct Noise {
     pub(crate) channels: Vec<ChannelNoise>,
 }
 
-/// Largest correlation of neighbours; what lasts longer is no noise.
+/// Largest correlation of neighbours: it falls to 1/e in 4.5 s. What lasts longer is no noise.
 const LARGEST_CORRELATION: f64 = 0.8;
-/// Squares count up to so many of their expectation, and the mean of what is so cut of a normal distribution (Huber's second proposal,
-/// Ann. Math. Stat. 35, 1964).
+/// Squares count up to so many of their expectation, those beyond 1.5 standard deviations as that, and the mean of what is so cut of a
+/// normal distribution (Huber's second proposal, Ann. Math. Stat. 35, 1964).
 const CUT: f64 = 2.25;
 const MEAN_OF_CUT: f64 = 0.778_465;
 /// Rounds of weighing squares by what was found.
 const ROUNDS: usize = 8;
-/// Least share of the typical variance that does not grow with power.
+/// Least share of the typical variance that does not grow with power: a floor of nothing would weigh seconds without power without bound.
 const LEAST_FLOOR: f64 = 0.05;
-/// Second differences that tell how noise grows; sums over stretches have none.
+/// Second differences that tell how noise grows: so many squares tell a variance to a third. Sums over stretches have none.
 const LEAST_BENDS: usize = 20;
 /// No meter is closer, in watts or metres per second, squared.
 const LEAST_VARIANCE: f64 = 1e-8;

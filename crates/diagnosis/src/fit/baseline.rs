@@ -14,9 +14,9 @@ use crate::{
     observe::observations::{Observations, REST, YAW_RATE},
 };
 
-/// Steps of Gauss and Newton at most.
+/// Steps of Gauss and Newton at most; what they leave stays in the residual, which is linearised about the last.
 const STEPS: usize = 4;
-/// A fit has settled where no parameter moves by more, in prior standard deviations.
+/// A fit has settled where no parameter moves by more, in prior standard deviations: the linear model takes up what is left.
 const SETTLED: f64 = 0.02;
 /// Step of differences, in prior standard deviations.
 const DIFFERENCE: f64 = 0.2;
@@ -52,6 +52,7 @@ impl Baseline {
         let series = observed.series;
         let shown = Shown {
             battery: series.channels() == 1 || observed.has_channel(REST),
+            currents: series.watts_per_a().is_some(),
             yaw_rate: observed.has_channel(YAW_RATE),
         };
         let parameters = Parameters::of(file, &series.surfaces(), shown);

@@ -6,7 +6,7 @@ use crate::{
     observe::observations::{GROUND_SPEED, Observations, REGIME, REST, YAW_RATE},
 };
 
-/// Functions of the regime for each component.
+/// Functions of the regime for each component: random features meet their covariance to about 1/√24, a fifth (Rahimi & Recht, NIPS 2007).
 const FUNCTIONS: usize = 24;
 /// Length scale of each quantity of the regime, in its scatter: models miss slow curves, not every bend.
 const LENGTHS: [f64; REGIME] = [1.5; REGIME];
@@ -55,9 +55,9 @@ pub(crate) fn columns(observed: &Observations<'_>, components: &Components, shar
     all
 }
 
-/// Runs from which healthy drives tell how much runs differ.
+/// Runs from which healthy drives tell how much runs differ: two show one difference.
 const LEAST_RUNS: usize = 3;
-/// Most runs that have columns of their own.
+/// Most runs that have columns of their own: each adds two, and the time of a diagnosis grows with the square of all columns.
 const MOST_RUNS: usize = 60;
 
 /// Columns of unit amplitude: rolling and skid resistance of every run; none where there are too few or too many runs.

@@ -17,18 +17,18 @@ use crate::{
 /// Share by which an effect's form may be off, one sigma: in concealed worlds with forms of their own, sizes that noise told to 5 % were off
 /// by 8 %.
 const FORM_ERROR: f64 = 0.07;
-/// Functions by which it is off.
+/// Functions by which it is off, for each member: a third of the discrepancy's.
 const FORM_FUNCTIONS: usize = 8;
-/// Their length scales: of each quantity of the regime in its scatter, and of time as a share of all time.
+/// Their length scales: of each quantity of the regime in its scatter, those of the discrepancy, and of time as a share of all time.
 const FORM_LENGTHS: [f64; REGIME] = [1.5; REGIME];
 const FORM_TIME_LENGTH: f64 = 0.3;
 /// Steps of Gauss and Newton at most.
 const STEPS: usize = 4;
-/// A fit has settled where a step gains less log density.
+/// A fit has settled where a step gains less log density: odds change by a tenth, which no threshold of the verdict notices.
 const SETTLED: f64 = 0.1;
 /// Step of differences, as a share of a size and at least in prior standard deviations.
 const DIFFERENCE: f64 = 0.05;
-/// Sizes beyond so many prior standard deviations are not looked at.
+/// Sizes beyond so many prior standard deviations are not looked at: the prior gives them a chance of 2·10⁻⁹.
 const FARTHEST: f64 = 6.0;
 /// Shares of a step that are tried in turn.
 const SHARES: [f64; 3] = [1.0, 0.4, 0.15];

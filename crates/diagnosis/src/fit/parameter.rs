@@ -43,6 +43,8 @@ enum Field {
     Electronics,
     Hotel,
     SlipTrack,
+    LeftIdle,
+    RightIdle,
 }
 
 /// Relative width of the slip-angle scale, which no robot file measures.
@@ -52,9 +54,11 @@ const SLIP_TRACK_SIGMA: f64 = 0.1;
 /// Width of a standing load of a robot of a Husky's strength, a hundredth of its power, in watts, and at least a tenth of what the file gives.
 const STANDING_SIGMA_W: f64 = 1.0;
 const STANDING_SHARE: f64 = 0.1;
+/// Width of the current that is read at rest \[A\]: the zero of a hall sensor of 50 A is good for a hundredth of its range.
+const IDLE_SIGMA_A: f64 = 0.5;
 /// Difference of logarithms that writing and reading a number may make.
 const UNCHANGED: f64 = 1e-9;
-/// z beyond which no fit goes.
+/// z beyond which no fit goes: a guard of the exponential, farther off than any verdict of `consistent` allows.
 const FARTHEST: f64 = 8.0;
 
 /// Channels that show certain parameters.
@@ -64,6 +68,8 @@ pub(crate) struct Shown {
     pub(crate) battery: bool,
     /// The yaw rate, which shows the slip track.
     pub(crate) yaw_rate: bool,
+    /// Motor currents, which show what is read at rest.
+    pub(crate) currents: bool,
 }
 
 impl Parameters {
@@ -169,6 +175,14 @@ impl Parameter {
         if shown.yaw_rate {
             add("slip_track_m", Field::SlipTrack, Prior::Log(SLIP_TRACK_SIGMA));
         }
+        if shown.currents {
+            for (name, field) in [
+                ("motors.left.idle_current_a", Field::LeftIdle),
+                ("motors.right.idle_current_a", Field::RightIdle),
+            ] {
+                add(name, field, Prior::Linear(IDLE_SIGMA_A));
+            }
+        }
         list
     }
 
@@ -206,9 +220,12 @@ impl Parameter {
             Prior::Log(sigma) => self.file * (sigma * z).exp(),
             Prior::Linear(sigma) => self.file + sigma * z,
         };
-        // Gears and belts only lose.
-        let least =
-            if matches!(self.field, Field::LeftK2 | Field::RightK2) { 1.0 } else { f64::NEG_INFINITY };
+        let least = match self.field {
+            // Gears and belts only lose.
+            Field::LeftK2 | Field::RightK2 => 1.0,
+            Field::LeftIdle | Field::RightIdle => 0.0,
+            _ => f64::NEG_INFINITY,
+        };
         if let Some(place) = self.place(robot) {
             *place = value.max(least);
         }
@@ -244,6 +261,8 @@ impl Parameter {
             Field::Electronics => &mut robot.drive_electronics_w,
             Field::Hotel => &mut robot.hotel_power_w,
             Field::SlipTrack => &mut robot.slip_track_m,
+            Field::LeftIdle => motors.left.idle_current_a.get_or_insert(0.0),
+            Field::RightIdle => motors.right.idle_current_a.get_or_insert(0.0),
         })
     }
 }
@@ -256,7 +275,7 @@ mod tests {
     fn every_parameter_is_the_file_at_zero_and_moves_by_its_width() {
         let robot = model::builtin::husky_a200();
         let surfaces = ["marble".to_owned(), "unheard of".to_owned()];
-        let all = Parameters::of(&robot, &surfaces, Shown { battery: true, yaw_rate: true });
+        let all = Parameters::of(&robot, &surfaces, Shown { battery: true, yaw_rate: true, currents: false });
         assert_eq!(all.len(), 11);
         for parameter in &all.list {
             let mut moved = robot.clone();
@@ -275,7 +294,11 @@ mod tests {
         let covariance = vec![vec![4e-4, -3e-4, 0.0], vec![-3e-4, 9e-4, 0.0], vec![0.0, 0.0, 1.0]];
         let mean = vec![robot.motors.left.k2.ln(), robot.surfaces["marble"].mu_roll.ln(), 0.0];
         robot.posterior = Some(knowledge::Posterior { parameters: names, mean, covariance });
-        let all = Parameters::of(&robot, &["marble".to_owned()], Shown { battery: false, yaw_rate: false });
+        let all = Parameters::of(
+            &robot,
+            &["marble".to_owned()],
+            Shown { battery: false, yaw_rate: false, currents: false },
+        );
         let at = |name: &str| all.list.iter().position(|one| one.name == name).unwrap();
         let (k2, roll) = (at("motors.left.k2"), at("surfaces.marble.mu_roll"));
         let identity = DMatrix::identity(all.len(), all.len());
@@ -286,8 +309,11 @@ mod tests {
         let sigma_at = |name: &str, factor: f64| {
             let mut changed = robot.clone();
             changed.motors.left.k2 *= factor;
-            let all =
-                Parameters::of(&changed, &["marble".to_owned()], Shown { battery: false, yaw_rate: false });
+            let all = Parameters::of(
+                &changed,
+                &["marble".to_owned()],
+                Shown { battery: false, yaw_rate: false, currents: false },
+            );
             all.list.iter().find(|one| one.name == name).unwrap().sigma()
         };
         assert!((sigma_at("motors.left.k2", 1.0) - 0.02).abs() < 1e-6);
@@ -304,7 +330,7 @@ mod tests {
     fn what_is_borrowed_is_known_to_a_factor() {
         let mut robot = model::builtin::husky_a200();
         robot.provenance = [("mass_kg".to_owned(), knowledge::Provenance::Borrowed)].into();
-        let all = Parameters::of(&robot, &[], Shown { battery: false, yaw_rate: false });
+        let all = Parameters::of(&robot, &[], Shown { battery: false, yaw_rate: false, currents: false });
         let mass = all.list.iter().find(|one| one.name == "mass_kg").unwrap();
         assert_eq!(mass.sigma(), 1.0);
     }

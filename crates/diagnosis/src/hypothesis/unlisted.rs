@@ -40,12 +40,13 @@ pub(crate) enum Component {
 const FAMILIES: [Family; 5] = [Family::Regime, Family::Time, Family::Place, Family::SinceStart, Family::Turn];
 const COMPONENTS: [Component; 4] =
     [Component::Rolling, Component::Skid, Component::Power, Component::Constant];
-/// Amplitudes, as shares of the component.
+/// Amplitudes, as shares of the component: from what a model misses anyway to all of it, each about three times the one before.
 pub(crate) const AMPLITUDES: [f64; 4] = [0.05, 0.15, 0.4, 1.0];
-/// Functions of the regime, of which there are five quantities, and of anything else.
+/// Functions of the regime, of which there are five quantities, and of anything else; twice as many of a place, which has two.
 const REGIME_FUNCTIONS: usize = 16;
 const FUNCTIONS: usize = 8;
-/// Length scales: regime in its scatter, time and place as shares of all, time since a start in factors of e.
+/// Length scales: regime in its scatter, shorter than those of the discrepancy; time and place as shares
+/// of all; time since a start in factors of e.
 const REGIME_LENGTHS: [f64; REGIME] = [1.2; REGIME];
 const TIME_LENGTH: f64 = 0.15;
 const PLACE_LENGTH: f64 = 0.25;

@@ -4,13 +4,13 @@ use model::{KnownMechanism, mechanism::Mechanism};
 
 use crate::{Region, Span, observe::observations::Observations};
 
-/// Pieces of the time driven; windows begin and end between them.
+/// Pieces of the time driven; windows begin and end between them, and refits move their edges within a piece.
 pub(crate) const PIECES: usize = 15;
 /// Parts that what was driven is cut into, in both directions; places are rectangles of them.
 pub(crate) const PARTS: usize = 4;
-/// Share of positions that may be strays.
+/// Share of positions that may be strays, which must not stretch the grid of places.
 const STRAY: f64 = 0.01;
-/// Drives that went less far have no places \[m\].
+/// Drives that went less far have no places \[m\]: a part is then shorter than a robot.
 const SHORTEST_M: f64 = 4.0;
 
 /// A window on the grid.

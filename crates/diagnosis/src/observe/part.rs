@@ -3,7 +3,7 @@
 mod predict;
 
 use calibration::{Drives, average};
-use model::{Grade, Robot};
+use model::{Grade, Robot, Sides};
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
@@ -44,6 +44,8 @@ pub(crate) struct Part {
     sag: Option<Sag>,
     /// How voltages follow currents, where drives tell it.
     source: Option<Source>,
+    /// What an ampere of each side's motor counts as, where motor currents were recorded [W/A].
+    pub(crate) watts_per_a: Option<Sides<f64>>,
     /// Climbs, where heights were recorded.
     climb: Option<Climb>,
     /// How the ground carries the weight, by row.
@@ -110,6 +112,7 @@ impl Part {
             yaw_rate_radps,
             sag: Sag::of(recording, &drives),
             source: None,
+            watts_per_a: None,
             climb: Climb::of(recording, &drives),
             grade,
             shapes,
@@ -141,14 +144,22 @@ impl Part {
     pub(crate) fn recorded(&self, meter: Meter) -> Vec<f64> {
         let known = |values: &[f64]| values.iter().copied().filter(|x| x.is_finite()).collect();
         match meter {
-            Meter::Left | Meter::Battery => self.drives.averaged(&self.drives.recorded[0]),
-            Meter::Right => self.drives.averaged(&self.drives.recorded[1]),
+            Meter::Left | Meter::Battery => self.drives.averaged_by(|row| self.recorded_w(0, row)),
+            Meter::Right => self.drives.averaged_by(|row| self.recorded_w(1, row)),
             Meter::Rest => known(&self.rest_w),
             Meter::Ground => known(&self.ground_mps),
             Meter::Yaw => known(&self.yaw_rate_radps),
             Meter::Sag => known(self.beyond_v()),
             Meter::Climb => known(self.risen_m()),
         }
+    }
+
+    /// Power of a channel as it was recorded, or what its motor current counts as [W].
+    pub(crate) fn recorded_w(&self, channel: usize, row: usize) -> f64 {
+        let value = self.drives.recorded[channel][row];
+        // Currents come without a sign.
+        self.watts_per_a
+            .map_or(value, |per_a| value.abs() * if channel == 0 { per_a.left } else { per_a.right })
     }
 
     /// Climbs by heights, average by average; NaN where none ends [m].

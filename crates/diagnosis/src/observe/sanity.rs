@@ -1,6 +1,6 @@
 //! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
 
-use calibration::{Drives, with_powers};
+use calibration::Drives;
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
 
@@ -18,14 +18,13 @@ const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
 /// The same beyond which it is, whatever is missing: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as much on loam.
 const NOT_THIS_ROBOT: [f64; 2] = [0.1, 3.0];
 /// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round,
-/// units or robots mistaken. Nothing else is told of them before that is mended. `said` are their [`contradictions`]; `as_recorded` may tell
-/// motor currents where `recording` has the power that they make.
+/// units or robots mistaken. Nothing else is told of them before that is mended. `said` are their [`contradictions`].
 ///
 /// # Errors
 /// As [`Series::new`] and [`Series::predict`].
 pub(crate) fn mistakes(
     robot: &Robot,
-    (recording, as_recorded, mut said): (&Recording, &Recording, Vec<String>),
+    (recording, mut said): (&Recording, Vec<String>),
     series: &Series,
     of_healthy: &Robot,
 ) -> Result<Vec<String>, Error> {
@@ -33,12 +32,8 @@ pub(crate) fn mistakes(
     let known = if series.has_healthy() { of_healthy } else { robot };
     let given = follows(known, series, true)?;
     let mut mended = Vec::new();
-    let swapped_currents = swapped(as_recorded, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
-        .map(|swapped| with_powers(robot, &swapped, series.watch()))
-        .transpose()?;
-    let of_currents = swapped_currents.map(|changed| (changed, SWAPPED_CURRENTS));
     let changes = CHANGES.iter().filter_map(|(change, words)| Some((change(recording)?, *words)));
-    for (changed, words) in changes.chain(of_currents) {
+    for (changed, words) in changes {
         let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
             mended.push((other.r2, words));
@@ -183,17 +178,20 @@ fn follows(robot: &Robot, series: &Series, suspect: bool) -> Result<Follows, Err
 
 type Change = fn(&Recording) -> Option<Recording>;
 
-const CHANGES: [(Change, &str); 4] = [
+const CHANGES: [(Change, &str); 5] = [
     (swapped_power, "power of the left and the right side seem swapped"),
+    (swapped_currents, "motor currents of the left and the right side seem swapped"),
     (swapped_speeds, "wheel speeds of the left and the right side seem swapped"),
     (turned_pitch, "pitch seems to have the wrong sign (nose up must be positive)"),
     (turned_power, "power seems to have the wrong sign (drawn from the battery must be positive)"),
 ];
 
-const SWAPPED_CURRENTS: &str = "motor currents of the left and the right side seem swapped";
-
 fn swapped_power(recording: &Recording) -> Option<Recording> {
     swapped(recording, Channel::LeftPower, Channel::RightPower)
+}
+
+fn swapped_currents(recording: &Recording) -> Option<Recording> {
+    swapped(recording, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
 }
 
 /// None where how the robot turned tells that they are not.

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use model::Robot;
+use model::{Robot, Sides};
 use recording::{PowerForm, Recording, Watch, unwatched};
 
 use crate::{
@@ -58,8 +58,12 @@ impl Series {
             parts.push(Part::new(robot, healthy, false, watch)?);
         }
         let form = parts[0].drives.form.unwrap_or(PowerForm::Battery);
-        if form == PowerForm::MotorCurrents || parts.iter().any(|part| part.drives.form != Some(form)) {
+        if parts.iter().any(|part| part.drives.form != Some(form)) {
             return Err(Error::Form);
+        }
+        if form == PowerForm::MotorCurrents {
+            let watts_per_a = Some(parts[0].mean_watts_per_a(robot)?);
+            parts.iter_mut().for_each(|part| part.watts_per_a = watts_per_a);
         }
         // Healthy drives show how voltages follow currents; whatever a meter reads is the same in all of them.
         let source = parts.last().and_then(Part::source);
@@ -108,7 +112,7 @@ impl Series {
         let errors_w = |part: &Part| -> Result<Vec<Vec<f64>>, Error> {
             let seen = part.predict(robot, &[], &self.meters)?;
             let of = |(channel, recorded): (usize, &Vec<f64>)| {
-                recorded.iter().zip(&seen).map(|(recorded, seen)| recorded - seen[channel]).collect()
+                (0..recorded.len()).map(|row| part.recorded_w(channel, row) - seen[row][channel]).collect()
             };
             Ok(part.drives.recorded.iter().enumerate().map(of).collect())
         };
@@ -136,6 +140,11 @@ impl Series {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(calibration::Error::Stopped.into()),
         }
+    }
+
+    /// What an ampere of each side's motor counts as, where motor currents were recorded [W/A].
+    pub(crate) fn watts_per_a(&self) -> Option<Sides<f64>> {
+        self.parts[0].watts_per_a
     }
 
     /// Number of channels of power.

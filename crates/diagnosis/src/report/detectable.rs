@@ -2,7 +2,7 @@
 
 use crate::{hypothesis::effect::Effect, report::diagnosis::Detectable, search::explanation::log_prior};
 
-/// Probability of nothing at which an effect is noticed.
+/// Probability of nothing at which an effect is noticed: that of the verdict.
 const NOTICED: f64 = 0.01;
 
 /// By mechanism, the least size at which an effect that acts all the time makes nothing improbable, or its name where none does.

@@ -37,13 +37,13 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// The same in one sentence.
     pub sentence: String,
-    /// The robot's file as it is against the recording; of the posterior engine.
+    /// The robot's file as it is against the recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<FileReport>,
-    /// Probabilities of nothing, of listed and of unlisted effects; of the posterior engine.
+    /// Probabilities of nothing, of listed and of unlisted effects.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probability: Option<Probability>,
-    /// The credible set of explanations, likeliest first; of the posterior engine.
+    /// The credible set of explanations, likeliest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub explanations: Vec<ExplanationFigures>,
     /// The model before.
@@ -138,7 +138,7 @@ pub struct BaselineFit {
     pub bias_w: f64,
     /// Root mean square error of the refitted robot where it was not fitted [W].
     pub held_out_rmse_w: f64,
-    /// What no model could predict: the part of the errors that neither the inputs nor the second before tell [W].
+    /// Noise of the recorded power by quick differences, root mean square [W].
     pub noise_floor_w: f64,
 }
 
@@ -220,10 +220,10 @@ pub struct Finding {
     pub indistinguishable_from: Vec<String>,
     /// Errors without and with it.
     pub fit: FindingFit,
-    /// Probability of its mechanism, summed over explanations; of the posterior engine.
+    /// Probability of its mechanism, summed over explanations.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probability: Option<f64>,
-    /// When and where it acts; of the posterior engine.
+    /// When and where it acts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scope: Option<Scope>,
 }
@@ -244,11 +244,11 @@ pub struct FoundParameter {
 /// How sure a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EvidenceFigures {
-    /// Chance of as much by accident, corrected for all that was tried.
+    /// Posterior probability that it does not act; the name is that of reports of before.
     pub p_value: f64,
-    /// Drop of the Bayesian information criterion over blocks.
+    /// Twice the log posterior odds of the likeliest explanation with it against the likeliest without.
     pub delta_bic: f64,
-    /// Gain of held-out squared errors, as a share of them.
+    /// Gain of held-out squared errors, as a share of them, by all findings together.
     pub held_out_gain: f64,
 }
 

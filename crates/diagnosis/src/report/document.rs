@@ -35,7 +35,7 @@ use crate::{
     },
 };
 
-/// Standard deviations from which a parameter is worth a note.
+/// Standard deviations from which a parameter is worth a note: among a dozen parameters one in seven robots has one by chance.
 const FAR_OFF_SIGMAS: f64 = 2.5;
 
 /// What a report is about.
@@ -52,6 +52,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) mistakes: &'a [String],
     /// What the file lacks of this robot, as all drives show it.
     pub(crate) shared: &'a [Finding],
+    /// What predicts the drives, as the sentence calls it.
+    pub(crate) predicted_by: &'static str,
     /// What is doubtful about them, the mistakes among it.
     pub(crate) doubts: &'a [String],
 }
@@ -91,7 +93,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         verdict: said,
         sentence: match subject.mistakes.first() {
             Some(mistake) => mistaken(mistake),
-            None => sentence(said, &error, &findings),
+            None => sentence(subject.predicted_by, said, &error, &findings),
         },
         file: Some(FileReport { error, findings: subject.shared.to_vec() }),
         probability: Some(probability(&found.explanations)),

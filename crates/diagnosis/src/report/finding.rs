@@ -15,7 +15,7 @@ use crate::{
 /// The name of an effect that no mechanism of the list describes.
 pub const UNKNOWN: &str = "unknown";
 
-/// Standard deviations of the sides of a 95 % interval.
+/// Standard deviations of the sides of a 95 % interval of a normal distribution.
 const NORMAL_975: f64 = 1.96;
 
 /// What findings are read off.

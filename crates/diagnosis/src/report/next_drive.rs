@@ -24,7 +24,7 @@ use crate::{
     },
 };
 
-/// Explanations beside the first that a drive is planned for.
+/// Explanations beside the first that a drive is planned for: as many as an answer has.
 const MOST_OTHERS: usize = 3;
 /// Odds by which a drive has to tell explanations apart: those of a credible set of 95 %.
 const LEAST_ODDS: f64 = 19.0;

@@ -51,16 +51,16 @@ pub(crate) fn places(
 
 /// Chance of naming any place where none differs.
 const LEVEL: f64 = 0.01;
-/// Parts that each drive's time is cut into; windows are runs of them.
+/// Parts that each drive's time is cut into; windows are runs of them, of a minute in a drive of twenty.
 const PARTS: usize = 20;
 /// Drives whose sequences are looked at; of more there would be too many.
 const MOST_DRIVES: usize = 20;
-/// Blocks that a place needs for its scatter to be known.
+/// Blocks that a place needs for its scatter to be known: Student's law with three degrees of freedom is wide, but not without end.
 const LEAST_BLOCKS: usize = 4;
 /// Averages whose excess is greater count as this much, in variances: single spikes are no place.
 const MOST_VARIANCES: f64 = 50.0;
 
-/// Speeds below are standing [m/s].
+/// Speeds below are standing [m/s]. This and what follows only words a place.
 const STANDING_MPS: f64 = 0.02;
 /// Speeds below are slow and above are fast, as shares of the highest.
 const SLOW: f64 = 0.3;
@@ -230,6 +230,7 @@ fn grounds(series: &Series) -> Vec<Cell> {
 /// Ways of driving.
 fn regimes(fastest_mps: f64) -> Vec<Cell> {
     type Of = fn(&Average) -> f64;
+    /// A range without an end.
     const EVER: f64 = f64::INFINITY;
     let speed: Of = |a| a.input.speed_mps;
     let turn: Of = |a| a.input.difference_mps;

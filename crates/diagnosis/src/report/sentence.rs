@@ -8,10 +8,15 @@ use crate::report::{
 };
 
 /// The sentence.
-pub(crate) fn sentence(verdict: Verdict, file: &FileError, findings: &[Finding]) -> String {
+pub(crate) fn sentence(
+    predicted_by: &str,
+    verdict: Verdict,
+    file: &FileError,
+    findings: &[Finding],
+) -> String {
     let way = if file.bias_w >= 0.0 { "low" } else { "high" };
     let about = format!(
-        "The robot file predicts these drives {:.1} W too {way} on average ({:.1} W RMSE; noise {:.1} W).",
+        "The {predicted_by} predicts these drives {:.1} W too {way} on average ({:.1} W RMSE; noise {:.1} W).",
         file.bias_w.abs(),
         file.rmse_w,
         file.noise_w

@@ -7,17 +7,17 @@ use crate::{
     search::explanation::{Explanation, credible},
 };
 
-/// Least probability of nothing at which drives are consistent.
+/// Least probability of nothing at which drives are consistent: a fault is told at odds of 99 to 1.
 const LEAST_OF_NOTHING: f64 = 0.01;
-/// Held-out error over the noise up to which a model describes the drives.
+/// Held-out error over the noise up to which a model describes the drives: squares a third above those of noise.
 const MOST_ERROR: f64 = 1.15;
-/// Probability of the unlisted class beyond which it is the answer.
+/// Probability of the unlisted class beyond which it is the answer: likelier than all else together.
 const MOSTLY_UNLISTED: f64 = 0.5;
-/// Probability that one set of names has to hold.
+/// Probability that one set of names has to hold: at most one answer in ten is another's.
 const SURE: f64 = 0.9;
-/// Most explanations that are an answer.
+/// Most explanations that are an answer: more are no help to who looks at the robot.
 const MOST_EXPLANATIONS: usize = 3;
-/// Chance of parameters as far from the file where its stated uncertainty is right.
+/// Chance of parameters as far from the file where its stated uncertainty is right; that of [`LEAST_OF_NOTHING`].
 const BEYOND_UNCERTAINTY: f64 = 0.01;
 
 /// What a verdict needs besides the posterior.

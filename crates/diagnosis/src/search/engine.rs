@@ -30,16 +30,17 @@ use crate::{
     search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
-/// Amplitudes that healthy drives choose from.
+/// Amplitudes that healthy drives choose from, each about twice the one before, up to what a robot with borrowed constants is missed by.
 const AMPLITUDES: [f64; 8] = [0.003, 0.006, 0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
 /// Standard deviations of ground from run to run that healthy drives choose from, as shares of resistance: none on a floor, a third on soil
 /// that is wet here and dry there (BorealTC: sandy loam).
 const RUN_VARIATIONS: [f64; 5] = [0.0, 0.03, 0.08, 0.18, 0.35];
 /// Amplitude of the discrepancy beside which that is chosen.
 const RUN_MODEL_ERROR: f64 = 0.02;
-/// Residuals beyond so many standard deviations count linearly.
+/// Residuals beyond so many standard deviations count linearly: one second in 2000 by chance.
 const LARGE: f64 = 3.5;
-/// By how much wider the discrepancy is in the most flexible fit, from which weights are taken.
+/// By how much wider the discrepancy is in the most flexible fit, from which weights are taken: with weights and scale of the base fit the
+/// unlisted class wins everything, since what is missing counts as stray there.
 const FLEXIBLE: f64 = 5.0;
 
 /// What the engine found.

@@ -6,8 +6,8 @@ use crate::{
     observe::observations::{GROUND_SPEED, Observations, REST, YAW_RATE},
 };
 
-/// Prior probability of each mechanism, and of something outside the list: of four drives that somebody has diagnosed about one lacks one
-/// of twenty mechanisms.
+/// Prior probability of each mechanism, and of something outside the list: of drives that somebody has diagnosed about half lack nothing
+/// and a third lack one of twenty mechanisms. In a trial of 128 effects and 30 healthy drives 0.1 did as well.
 const MECHANISM_PRIOR: f64 = 0.03;
 const UNLISTED_PRIOR: f64 = 0.03;
 /// By how much an added mechanism has to change the fitted prediction for its gain to count in full, and below what it is discounted, as
@@ -15,7 +15,7 @@ const UNLISTED_PRIOR: f64 = 0.03;
 /// that misses three.
 const COUNTED_CHANGE: f64 = 2.0 / 3.0;
 const NOTED_CHANGE: f64 = 0.5;
-/// Least probability of all explanations of a credible set together.
+/// Least probability of all explanations of a credible set together, as that of every interval here.
 const CREDIBLE: f64 = 0.95;
 
 /// A set of mechanisms.

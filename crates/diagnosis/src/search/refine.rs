@@ -19,18 +19,18 @@ use crate::{
     },
 };
 
-/// Names whose best candidates are refitted alone, in pairs and in threes.
+/// Names whose best candidates are refitted alone, in pairs and in threes: each asks the forward model anew for every size.
 const SINGLES: usize = 9;
 const PAIRS: usize = 8;
 const TRIPLES: usize = 3;
-/// Singles that pairs are grown from, and pairs that threes are grown from.
+/// Singles that pairs are grown from, and pairs that threes are grown from: columns alone, which cost little.
 const PAIR_SEEDS: usize = 12;
 const TRIPLE_SEEDS: usize = 3;
-/// Singles beside which something unlisted is tried.
+/// Singles beside which something unlisted is tried, beside nothing also: each takes all blocks at all amplitudes.
 const UNLISTED_BESIDE: usize = 4;
-/// Log odds behind the best beyond which a set is not refitted.
+/// Log odds behind the best beyond which a set is not refitted: odds of 10¹⁷ to 1.
 const HOPELESS: f64 = 40.0;
-/// Log odds behind the best of its size beyond which windows of a set are not moved.
+/// Log odds behind the best of its size beyond which windows of a set are not moved: odds of 160 000 to 1.
 const BEHIND: f64 = 12.0;
 /// Moves of a window's edge that are tried, as shares of a piece of the grid.
 const EDGE_MOVES: [f64; 4] = [-0.5, 0.5, -0.25, 0.25];

@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// Sizes from which refits begin, at most in prior standard deviations.
+/// Sizes from which refits begin, at most in prior standard deviations; refits may go twice as far.
 const MOST_SIGMAS: f64 = 3.0;
 
 /// One effect in one window.

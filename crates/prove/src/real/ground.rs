@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use recording::{Recording, Run, read_paths};
+use recording::{Labels, Recording, Run, read_paths};
 
 use crate::Error;
 
@@ -32,6 +32,12 @@ impl Ground {
     pub fn new(name: String, recording: Recording) -> Option<Self> {
         (recording.runs.len() >= LEAST_RUNS)
             .then(|| Ground { name, recording: Recording { surface: None, ..recording } })
+    }
+
+    /// All of its runs, with its name as their surface.
+    pub(crate) fn labelled(&self) -> Recording {
+        let surface = Some(Labels::constant(&self.name, self.recording.rows()));
+        Recording { surface, ..self.recording.clone() }
     }
 
     /// Some of its runs, in the order given.
@@ -84,7 +90,7 @@ pub(crate) fn nameless(recording: Recording) -> Recording {
 pub(crate) mod tests {
     use std::collections::BTreeMap;
 
-    use recording::{Channel, Labels};
+    use recording::Channel;
 
     use super::*;
 

@@ -31,8 +31,8 @@ struct MeterNoise {
 
 /// Ratio of sigma to the median absolute value of a normal distribution.
 const SIGMA_PER_MEDIAN: f64 = 1.4826;
-/// Correlations beyond which differences tell no level.
-const MOST_CORRELATION: f64 = 0.9;
+/// Largest correlation of neighbours; what lasts longer is no noise.
+const MOST_CORRELATION: f64 = 0.8;
 /// The floor is no lower than this share of the noise over all, so that standstill does not decide everything.
 const LEAST_FLOOR: f64 = 0.2;
 /// Noise of a meter without any: a current's last digit, 0.01 A, is worth about 0.1 W on a Husky, and a yaw rate has four decimals.
@@ -67,7 +67,8 @@ impl Noise {
         let (follows, meters) = (follows(&reading), reading.averages(robot));
         let squares =
             self.meters.iter().zip(&meters).map(|(noise, meter)| noise.norm_squared(meter, &follows));
-        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change: power_change(&meters) })
+        let recorded = Reading::new(robot, drives)?.averages(robot);
+        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change: power_change(&meters, &recorded) })
     }
 
     /// The act at the size at which it has a strength, or at the largest that it can have; and how strong it is there.
@@ -169,16 +170,19 @@ fn follows(reading: &Reading) -> Vec<bool> {
     (0..averages.len()).map(of).collect()
 }
 
-/// Root mean square change of the power of both sides where there is any, over their mean.
-fn power_change([left, right, _]: &[MeterAverages; METERS]) -> f64 {
-    let sums = |of: fn(&MeterAverages) -> &[f64]| -> Vec<f64> {
-        of(left).iter().zip(of(right)).map(|(left, right)| left + right).collect()
-    };
-    let (changes_w, needed_w) = (sums(|side| &side.difference), sums(|side| &side.needed));
-    let acting: Vec<f64> = changes_w.into_iter().filter(|change_w| change_w.abs() > 1e-9).collect();
+/// Root mean square change of the power of both sides where there is any, over the mean of what was recorded without it.
+fn power_change(
+    [left, right, _]: &[MeterAverages; METERS],
+    [recorded_left, recorded_right, _]: &[MeterAverages; METERS],
+) -> f64 {
+    let both_w = left.difference.iter().zip(&right.difference).map(|(left_w, right_w)| left_w + right_w);
+    let acting: Vec<f64> = both_w.filter(|change_w| change_w.abs() > 1e-9).collect();
     let square = acting.iter().map(|change_w| change_w * change_w).sum::<f64>() / acting.len().max(1) as f64;
-    let mean_w = needed_w.iter().map(|w| w.abs()).sum::<f64>() / needed_w.len().max(1) as f64;
-    square.sqrt() / mean_w.max(f64::MIN_POSITIVE)
+    let of_side = |side: &MeterAverages| -> f64 {
+        side.difference.iter().zip(&side.needed).map(|(more_w, needed_w)| more_w + needed_w).sum()
+    };
+    let sum_w = of_side(recorded_left) + of_side(recorded_right);
+    square.sqrt() / (sum_w / recorded_left.needed.len().max(1) as f64).max(f64::MIN_POSITIVE)
 }
 
 /// The median; 0 of nothing.

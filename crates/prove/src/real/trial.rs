@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use calibration::{Options, calibrate};
-use model::{Robot, Sides};
+use model::{Robot, robot::Motors};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use recording::Recording;
@@ -75,7 +75,7 @@ struct Drawn {
 struct Halves<'g> {
     ground: &'g Ground,
     split: Split,
-    /// The raw file with the force per ampere that the healthy half shows: what the diagnosis gets.
+    /// The raw file: what the diagnosis gets.
     raw: Robot,
     /// The robot fitted to the healthy half: what forces and strengths are worked out with.
     fitted: Robot,
@@ -91,11 +91,12 @@ impl RealTrial<'_> {
     /// Drives that no case can be made of; files that cannot be written; a key or case that changed between commitment and opening.
     pub fn run(&self) -> Result<RealBoards, Error> {
         let dealt = deal(self.cases, self.seed, self.grounds.len(), self.strengths_z);
+        let raw = raw(self.robot, self.grounds)?;
         for folder in ["cases", "keys"] {
             files::folder(&self.out.join(folder))?;
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.at_once).build()?;
-        let drawing = || each(self.progress, Stage::Drawing, &dealt, |case| self.seal(case));
+        let drawing = || each(self.progress, Stage::Drawing, &dealt, |case| self.seal(case, &raw));
         let keys = pool.install(drawing)?;
         let named = dealt.iter().zip(&keys).map(|(case, bytes)| (case.name.as_str(), bytes.as_slice()));
         let (commitments, commitment) = sealed::commit(&self.out.join("keys"), named)?;
@@ -129,12 +130,12 @@ impl RealTrial<'_> {
     }
 
     /// Draws a case, writes what the diagnosis gets, and seals the key.
-    fn seal(&self, case: &RealCase) -> Result<Vec<u8>, Error> {
+    fn seal(&self, case: &RealCase, raw: &Robot) -> Result<Vec<u8>, Error> {
         let mut random = Pcg64Mcg::seed_from_u64(case.seed);
-        let mut drawn = self.draw(case, &mut random);
+        let mut drawn = self.draw(case, raw, &mut random);
         for _ in 1..DRAWS {
             if drawn.is_err() {
-                drawn = self.draw(case, &mut random);
+                drawn = self.draw(case, raw, &mut random);
             }
         }
         let Drawn { robot, healthy, suspect, decimals, key } = drawn.map_err(|source| Error::Drawing {
@@ -154,8 +155,8 @@ impl RealTrial<'_> {
         sealed::bytes(&key, &self.key(case))
     }
 
-    fn draw(&self, case: &RealCase, random: &mut Pcg64Mcg) -> Result<Drawn, Error> {
-        let halves = Halves::draw(&self.grounds[case.ground], self.robot, random)?;
+    fn draw(&self, case: &RealCase, raw: &Robot, random: &mut Pcg64Mcg) -> Result<Drawn, Error> {
+        let halves = Halves::draw(&self.grounds[case.ground], raw, random)?;
         match (case.wanted, case.onto) {
             (Some(wanted), _) => halves.changed(case, wanted, random),
             (None, Some(onto)) => halves.spliced(case, &self.grounds[onto], random),
@@ -195,15 +196,10 @@ impl RealTrial<'_> {
 
 impl<'g> Halves<'g> {
     /// Splits the runs of a ground and fits the robot to the healthy half.
-    fn draw(ground: &'g Ground, robot: &Robot, random: &mut Pcg64Mcg) -> Result<Self, Error> {
+    fn draw(ground: &'g Ground, raw: &Robot, random: &mut Pcg64Mcg) -> Result<Self, Error> {
         let split = split(ground, random);
-        let fitted = calibrate(robot, &ground.part(&split.healthy), &Options::default())?.robot;
-        // Currents without it are no powers: it is the one number that the raw file cannot do without.
-        let mut raw = robot.clone();
-        let Sides { left, right } = fitted.motor_sides().map(|motor| motor.force_n_per_a);
-        raw.motors.left.force_n_per_a = raw.motors.left.force_n_per_a.or(left);
-        raw.motors.right.force_n_per_a = raw.motors.right.force_n_per_a.or(right);
-        Ok(Halves { ground, split, raw, fitted })
+        let fitted = calibrate(raw, &ground.part(&split.healthy), &Options::default())?.robot;
+        Ok(Halves { ground, split, raw: raw.clone(), fitted })
     }
 
     fn untouched(self, case: &RealCase) -> Drawn {
@@ -266,6 +262,22 @@ impl<'g> Halves<'g> {
             },
         }
     }
+}
+
+/// The raw file, with the force per ampere that all grounds together show where it has none.
+///
+/// Currents without it are no powers. It belongs to the robot and not to the ground, and level ground does not tell it.
+fn raw(robot: &Robot, grounds: &[Ground]) -> Result<Robot, Error> {
+    let Motors { left, right, .. } = &robot.motors;
+    if left.force_n_per_a.is_some() && right.force_n_per_a.is_some() {
+        return Ok(robot.clone());
+    }
+    let all = Recording::join(grounds.iter().map(Ground::labelled));
+    let found = calibrate(robot, &all, &Options::default())?.robot.motors;
+    let mut raw = robot.clone();
+    raw.motors.left.force_n_per_a = left.force_n_per_a.or(found.left.force_n_per_a);
+    raw.motors.right.force_n_per_a = right.force_n_per_a.or(found.right.force_n_per_a);
+    Ok(raw)
 }
 
 fn kind(put: Option<&Put>, border: Option<&Border>) -> RealKind {

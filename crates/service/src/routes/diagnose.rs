@@ -44,6 +44,11 @@ pub struct DiagnoseRequest {
     #[serde(default)]
     #[schema(max_items = 1000)]
     pub reference: Vec<String>,
+    /// Ids of stored logs of the same drives by another simulator, in place of what the robot's file predicts: what did it leave out?
+    /// Not together with `reference`. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 1000)]
+    pub simulated: Vec<String>,
     /// Names of mechanisms that are known not to act, such as `payload` of a robot that was weighed. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(max_items = 20)]
@@ -96,8 +101,12 @@ async fn prepared(
     request.robot.look_up(engine.robots(), tenant).await?;
     let kept = to_value(&request)?;
     let work = Work::prepare(engine, tenant, request).await?;
-    let inputs = json!({ "recordings": inputs(&work.suspect), "reference": inputs(&work.healthy) });
-    Ok((Description::new(tenant, "diagnose", kept, inputs), Box::new(work)))
+    let mut named = json!({ "recordings": inputs(&work.suspect), "reference": inputs(&work.healthy) });
+    // Requests without a simulation stay the same job as before there were any.
+    if !work.simulated.is_empty() {
+        named["simulated"] = json!(inputs(&work.simulated));
+    }
+    Ok((Description::new(tenant, "diagnose", kept, named), Box::new(work)))
 }
 
 /// A diagnosis whose request was found right.
@@ -105,6 +114,7 @@ struct Work {
     robot: Robot,
     suspect: Vec<Note>,
     healthy: Vec<Note>,
+    simulated: Vec<Note>,
     ruled_out: Vec<&'static dyn Mechanism>,
     map: Option<Map>,
 }
@@ -112,8 +122,10 @@ struct Work {
 impl Work {
     /// Refuses at once what can be known without reading a recording.
     async fn prepare(engine: &Engine, tenant: &Tenant, request: DiagnoseRequest) -> Result<Work, Problem> {
-        let DiagnoseRequest { robot, recordings, reference, ruled_out, map } = request;
-        for (ids, least, field) in [(&recordings, 1, "/recordings"), (&reference, 0, "/reference")] {
+        let DiagnoseRequest { robot, recordings, reference, simulated, ruled_out, map } = request;
+        for (ids, least, field) in
+            [(&recordings, 1, "/recordings"), (&reference, 0, "/reference"), (&simulated, 0, "/simulated")]
+        {
             let count = ids.len();
             if !(least..=MOST_RECORDINGS).contains(&count) {
                 let detail =
@@ -121,10 +133,15 @@ impl Work {
                 return Err(Problem::new(ProblemType::InvalidRequest, detail).at(field));
             }
         }
+        if !simulated.is_empty() && !reference.is_empty() {
+            let detail = "healthy drives were not simulated: leave out `reference`, or `simulated`";
+            return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/simulated"));
+        }
         Ok(Work {
             robot: robot.robot()?,
             suspect: notes(engine, tenant, &recordings, "/recordings").await?,
             healthy: notes(engine, tenant, &reference, "/reference").await?,
+            simulated: notes(engine, tenant, &simulated, "/simulated").await?,
             ruled_out: mechanisms(&ruled_out)?,
             map: map.as_ref().map(map_from).transpose()?,
         })
@@ -139,9 +156,16 @@ impl job_run::Work for Work {
             [] => None,
             _ => Some(read(engine, job, &self.healthy, map, "/reference")?),
         };
+        let simulated = match self.simulated[..] {
+            [] => None,
+            _ => Some(read(engine, job, &self.simulated, map, "/simulated")?),
+        };
         let tell = |step: &str, share: f64| job.tell(step, Some(share));
-        let question =
-            Question { ruled_out: &self.ruled_out, ..Question::new(&self.robot, &suspect, healthy.as_ref()) };
+        let question = Question {
+            ruled_out: &self.ruled_out,
+            simulated: simulated.as_ref(),
+            ..Question::new(&self.robot, &suspect, healthy.as_ref())
+        };
         let found = diagnose_watched(&question, &tell, &job.watch());
         let found = found.map_err(|error| Problem::no_diagnosis(&error))?;
         let mut answer = to_value(&found)?;

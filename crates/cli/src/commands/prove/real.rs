@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use prove::{
-    Diagnosis,
+    Diagnosis, FileBeside,
     real::{Ground, RealTrial, STRENGTHS_Z},
 };
 
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Arguments, out: &Path) -> anyhow::Result<()> {
         robot: &robot,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program: program()?, threads: 1 },
+        diagnosis: Diagnosis { program: program()?, threads: 1, beside: FileBeside::Calibrated },
         ways: &ways(arguments),
         peers: &peers,
         at_once: at_once(),

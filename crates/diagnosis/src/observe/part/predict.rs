@@ -2,8 +2,12 @@
 
 use std::sync::Arc;
 
-use calibration::{drives::Stretch, losses, power::seen_w, row::Row};
-use model::{Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides, mechanism::Moment, robot::Surface};
+use calibration::{current_readings_a, drives::Stretch, losses, power::seen_w, row::Row};
+use model::{
+    Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
+    mechanism::{Adjustment, Moment},
+    robot::Surface,
+};
 use rayon::prelude::*;
 use recording::PowerForm;
 
@@ -89,6 +93,39 @@ impl Part {
             }
         }
         Ok(seen)
+    }
+
+    /// What an ampere of each side's motor stands for on average in these drives, as a robot's model has them [W/A].
+    ///
+    /// # Errors
+    /// A surface that the robot does not know; a robot that does not say how many newtons an ampere is.
+    pub(crate) fn mean_watts_per_a(&self, robot: &Robot) -> Result<Sides<f64>, Error> {
+        let mut sums = [Sides::both(0.0); 2];
+        self.drives.go_on()?;
+        for stretch in &self.drives.stretches {
+            let name = &self.drives.surfaces[stretch.surface];
+            let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
+            let friction = Friction::new(robot, surface);
+            for row in &self.drives.rows[stretch.rows.clone()] {
+                let motion = row.motion(robot);
+                let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
+                let manoeuvre = Manoeuvre::adjusted(
+                    robot,
+                    &friction,
+                    motion,
+                    &shape,
+                    row.motor_c,
+                    &Adjustment::default(),
+                );
+                let power = manoeuvre.power_on_grade(row.attitude().grade(), row.acceleration(robot));
+                let read_a = current_readings_a(robot, row, &power)?;
+                if !row.stands() && row.step_s > 0.0 {
+                    sums[0] = sums[0].zip(power.side_w).map(|(sum, w)| sum + w.max(0.0));
+                    sums[1] = sums[1].zip(read_a).map(|(sum, a)| sum + a);
+                }
+            }
+        }
+        Ok(sums[0].zip(sums[1]).map(|(w, a)| w / a.max(1e-9)))
     }
 
     /// By row: which mechanisms act, as the bits of a number.
@@ -188,7 +225,15 @@ impl Part {
         let read = |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.reading_w(&a.values, w));
         let read_battery =
             |true_w: f64| acting.iter().fold(true_w, |w, a| a.mechanism.battery_reading_w(&a.values, w));
-        let sides_w = || seen_w(robot, PowerForm::Sides, row, &power).map(read);
+        let sides_w = || match self.watts_per_a {
+            // Drives by motor currents know how many newtons an ampere is.
+            Some(watts_per_a) => {
+                let read_a = current_readings_a(robot, row, &power).unwrap_or_default();
+                let Sides { left, right } = read_a.zip(watts_per_a).map(|(a, w)| read(a * w));
+                [left, right]
+            }
+            None => seen_w(robot, PowerForm::Sides, row, &power).map(read),
+        };
         let battery_w = || read_battery(seen_w(robot, PowerForm::Battery, row, &power)[0]);
         let [first_w, second_w] = match meters.first() {
             Some(Meter::Battery) => [battery_w(), 0.0],
