@@ -35,7 +35,11 @@ fn grounds() -> Option<Vec<Ground>> {
     Some(["flooring", "ice", "sandy-loam"].map(read).into())
 }
 
-fn run(grounds: &[Ground], out: &Path, progress: &(dyn Fn(Stage, usize, usize) + Sync)) -> Result<RealBoards, Error> {
+fn run(
+    grounds: &[Ground],
+    out: &Path,
+    progress: &(dyn Fn(Stage, usize, usize) + Sync),
+) -> Result<RealBoards, Error> {
     let program = out.with_extension("program");
     fs::write(&program, QUIET).unwrap();
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
@@ -100,7 +104,10 @@ fn holds(key: &RealKey, case: &Path, grounds: &[Ground]) {
         RealKind::Changed => {
             let acts = key.put.unwrap().act.onset.rows(&recorded);
             let is_same = |row: usize| {
-                recorded.channels.iter().all(|(channel, values)| suspect.channel(*channel).unwrap()[row] == values[row])
+                recorded
+                    .channels
+                    .iter()
+                    .all(|(channel, values)| suspect.channel(*channel).unwrap()[row] == values[row])
             };
             assert!((0..recorded.rows()).filter(|row| !acts[*row]).all(is_same), "{}", key.case);
             assert!(!(0..recorded.rows()).all(is_same), "{}", key.case);
