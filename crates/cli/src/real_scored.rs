@@ -49,6 +49,7 @@ pub(crate) fn summary(boards: &RealBoards) -> String {
         for (name, figure) in peer_figures() {
             lines.push(line(name, boards.peers.iter().map(|peer| rate(figure(peer)))));
         }
+        lines.push(line("cases that failed", boards.peers.iter().map(|peer| peer.errors.to_string())));
     }
     lines.join("\n")
 }

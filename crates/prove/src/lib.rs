@@ -35,7 +35,7 @@ pub use commitment::{Commitments, sha256};
 pub use deal::{Dealt, SHARES, deal};
 pub use error::Error;
 pub use figures::{Cell, MechanismRow, OnsetRow, PeerRow, ShareRow, StrengthRow};
-pub use files::{RECORDING, REFERENCE, ROBOT};
+pub use files::{CALIBRATED, RECORDING, REFERENCE, ROBOT};
 pub use key::{Kind, Parameter, SealedKey, Truth};
 pub use peer::{PeerAnswer, PeerScore};
 pub use process::{Diagnosis, FileBeside, Outcome};

@@ -172,9 +172,14 @@ fn at_once() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 
-/// What simpler methods say of a case.
+/// What simpler methods say of a case by the robot's raw file and the healthy drives.
 fn peers(case: &Path) -> Vec<PeerAnswer> {
-    let plain = plain(case);
+    peers_by(case, ROBOT)
+}
+
+/// What simpler methods say of a case by one of its robot files and the healthy drives.
+fn peers_by(case: &Path, robot: &str) -> Vec<PeerAnswer> {
+    let plain = plain(case, robot);
     let say = |peer, names: fn(&Plain) -> Vec<String>| PeerAnswer {
         peer,
         names: plain.as_ref().map(names).map_err(Clone::clone),
@@ -183,8 +188,8 @@ fn peers(case: &Path) -> Vec<PeerAnswer> {
 }
 
 /// What they need of it.
-fn plain(case: &Path) -> Result<Plain, String> {
-    let robot = std::fs::read_to_string(case.join(ROBOT)).map_err(|error| error.to_string())?;
+fn plain(case: &Path, robot: &str) -> Result<Plain, String> {
+    let robot = std::fs::read_to_string(case.join(robot)).map_err(|error| error.to_string())?;
     let robot = Robot::from_json(&robot).map_err(|error| error.to_string())?;
     let read = |name: &str| read_paths(&[case.join(name)], None).map_err(|error| error.to_string());
     let (suspect, healthy) = (read(prove::RECORDING)?.0, read(REFERENCE)?.0);

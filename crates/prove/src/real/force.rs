@@ -1,6 +1,6 @@
 //! Extra forces as extra current, and back, by the robot's own force per ampere.
 
-use calibration::{force_n_per_a, signed_n_per_a};
+use calibration::force_n_per_a;
 use model::{Robot, Sides};
 use recording::{Channel, Recording};
 
@@ -28,15 +28,9 @@ pub(crate) fn add_forces(
     let rows: Vec<usize> = (0..recording.rows()).filter(|row| acts(*row)).collect();
     for row in rows {
         let force_n = reading.recorded_n[row].zip(extra_n(&reading, row)).map(|(own, extra)| own + extra);
-        set(recording, row, current_a(robot, &reading, row, force_n));
+        set(recording, row, reading.current_a(robot, &reading.drives.rows[row], force_n));
     }
     Ok(())
-}
-
-/// The unsigned current that a force reads as [A].
-fn current_a(robot: &Robot, reading: &Reading, row: usize, force_n: Sides<f64>) -> Sides<f64> {
-    let signed = signed_n_per_a(robot, reading.per_a, &reading.drives.rows[row], force_n);
-    force_n.zip(signed).map(|(force_n, per_a)| force_n / per_a)
 }
 
 fn set(recording: &mut Recording, row: usize, current_a: Sides<f64>) {
@@ -63,7 +57,7 @@ pub(crate) fn imitated(robot: &Robot, recording: &Recording) -> Result<Recording
             *yaw_rate = wheels_radps;
         }
         if reading.recorded_n[row].left.is_finite() && reading.recorded_n[row].right.is_finite() {
-            set(&mut ideal, row, current_a(robot, &reading, row, reading.needed_n[row]));
+            set(&mut ideal, row, reading.current_a(robot, &reading.drives.rows[row], reading.needed_n[row]));
         }
     }
     Ok(ideal)

@@ -39,26 +39,26 @@ impl Reading {
     }
 
     /// Power of each side at forces of a row, by eq. 2 [W].
-    pub(crate) fn power_w(robot: &Robot, row: &Row, force_n: Sides<f64>) -> Sides<f64> {
+    fn power_w(robot: &Robot, row: &Row, force_n: Sides<f64>) -> Sides<f64> {
         PowerKernel::of_motors(robot, row.rim_mps, row.motor_c).side_w(force_n)
     }
 
-    /// One-second averages of every meter: power of the left and of the right side \[W\], and yaw rate \[rad/s\].
+    /// One-second averages of every meter: current of the left and of the right side \[A\], and yaw rate \[rad/s\].
     ///
-    /// The yaw rate needed is that of the wheels over the slip track. Powers of currents are made with recorded speeds, so that speeds that are
-    /// off show in it alone.
+    /// The yaw rate needed is that of the wheels over the slip track. What an ampere stands for follows recorded speeds, so that speeds that
+    /// are off show in the yaw rate alone.
     pub(crate) fn averages(&self, robot: &Robot) -> [MeterAverages; METERS] {
         let of_row = |i: usize| {
             let row = &self.drives.rows[i];
-            let [recorded_w, needed_w] =
-                [self.recorded_n[i], self.needed_n[i]].map(|force_n| Reading::power_w(robot, row, force_n));
-            let wheels_radps = self.drives.rows[i].difference_mps() / robot.slip_track_m;
+            let [recorded_a, needed_a] =
+                [self.recorded_n[i], self.needed_n[i]].map(|force_n| self.current_a(robot, row, force_n));
+            let wheels_radps = row.difference_mps() / robot.slip_track_m;
             [
-                recorded_w.left - needed_w.left,
-                recorded_w.right - needed_w.right,
+                recorded_a.left - needed_a.left,
+                recorded_a.right - needed_a.right,
                 row.yaw_rate_radps - wheels_radps,
-                needed_w.left,
-                needed_w.right,
+                needed_a.left,
+                needed_a.right,
                 wheels_radps,
             ]
         };
@@ -67,6 +67,20 @@ impl Reading {
             difference: means.iter().map(|mean| mean[meter]).collect(),
             needed: means.iter().map(|mean| mean[METERS + meter]).collect(),
         })
+    }
+
+    /// One-second averages of recorded and of needed power of both sides \[W\].
+    pub(crate) fn powers_w(&self, robot: &Robot) -> Vec<[f64; 2]> {
+        self.drives.means(|i| {
+            let power_w = |force_n| Reading::power_w(robot, &self.drives.rows[i], force_n).sum();
+            [power_w(self.recorded_n[i]), power_w(self.needed_n[i])]
+        })
+    }
+
+    /// The unsigned current that a force of a row reads as \[A\].
+    pub(crate) fn current_a(&self, robot: &Robot, row: &Row, force_n: Sides<f64>) -> Sides<f64> {
+        let signed = signed_n_per_a(robot, self.per_a, row, force_n);
+        force_n.zip(signed).map(|(force_n, per_a)| force_n / per_a)
     }
 }
 

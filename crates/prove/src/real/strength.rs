@@ -14,14 +14,14 @@ use crate::{
     },
 };
 
-/// Noise of the one-second averages of each side's power and of the yaw rate, told by quick differences, so that what a model misses slowly is
+/// Noise of the one-second averages of each side's current and of the yaw rate, told by quick differences, so that what a model misses slowly is
 /// no part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     meters: [MeterNoise; METERS],
 }
 
-/// Noise of one meter: σ² = floor² + (gain · P)², P what is needed; neighbours correlated by ρ.
+/// Noise of one meter: σ² = floor² + (gain · I)², I what is needed; neighbours correlated by ρ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct MeterNoise {
     floor: f64,
@@ -35,8 +35,8 @@ const SIGMA_PER_MEDIAN: f64 = 1.4826;
 const MOST_CORRELATION: f64 = 0.8;
 /// The floor is no lower than this share of the noise over all, so that standstill does not decide everything.
 const LEAST_FLOOR: f64 = 0.2;
-/// Noise of a meter without any: a current's last digit, 0.01 A, is worth about 0.1 W on a Husky, and a yaw rate has four decimals.
-const LEAST_NOISE: [f64; METERS] = [0.1, 0.1, 1e-4];
+/// Noise of a meter without any: the last digits of a current \[A\] and of a yaw rate \[rad/s\].
+const LEAST_NOISE: [f64; METERS] = [0.01, 0.01, 1e-4];
 
 impl Noise {
     /// The noise of recorded drives about what a robot needs.
@@ -53,11 +53,12 @@ impl Noise {
     /// Strength of an act on drives as a robot itself would have recorded them.
     ///
     /// ```text
-    /// z = √ Σ (e_t − ρ e_{t−1})² / (1 − ρ²),   e_t = ΔP_t / σ_t
+    /// z = √ Σ (e_t − ρ e_{t−1})² / (1 − ρ²),   e_t = ΔI_t / σ_t
     /// ```
     ///
-    /// over the one-second averages of both sides and of the yaw rate. ΔP is the power that the changed currents stand for less the power needed at the
-    /// changed speeds and slopes. A detector that knows the change sees it at z standard deviations.
+    /// over the one-second averages of both sides and of the yaw rate. ΔI is the changed current less the one needed at the changed speeds and
+    /// slopes: power of which an ampere counts as what it stands for on average, as the diagnosis takes it. A detector that knows the
+    /// change sees it at z standard deviations.
     ///
     /// # Errors
     /// A robot that does not say what an ampere stands for.
@@ -67,8 +68,9 @@ impl Noise {
         let (follows, meters) = (follows(&reading), reading.averages(robot));
         let squares =
             self.meters.iter().zip(&meters).map(|(noise, meter)| noise.norm_squared(meter, &follows));
-        let recorded = Reading::new(robot, drives)?.averages(robot);
-        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change: power_change(&meters, &recorded) })
+        let recorded_w = Reading::new(robot, drives)?.powers_w(robot);
+        let power_change = power_change(&reading.powers_w(robot), &recorded_w);
+        Ok(Strength { z: squares.sum::<f64>().sqrt(), power_change })
     }
 
     /// The act at the size at which it has a strength, or at the largest that it can have; and how strong it is there.
@@ -171,18 +173,12 @@ fn follows(reading: &Reading) -> Vec<bool> {
 }
 
 /// Root mean square change of the power of both sides where there is any, over the mean of what was recorded without it.
-fn power_change(
-    [left, right, _]: &[MeterAverages; METERS],
-    [recorded_left, recorded_right, _]: &[MeterAverages; METERS],
-) -> f64 {
-    let both_w = left.difference.iter().zip(&right.difference).map(|(left_w, right_w)| left_w + right_w);
-    let acting: Vec<f64> = both_w.filter(|change_w| change_w.abs() > 1e-9).collect();
+fn power_change(changed_w: &[[f64; 2]], recorded_w: &[[f64; 2]]) -> f64 {
+    let changes_w = changed_w.iter().map(|[recorded_w, needed_w]| recorded_w - needed_w);
+    let acting: Vec<f64> = changes_w.filter(|change_w| change_w.abs() > 1e-9).collect();
     let square = acting.iter().map(|change_w| change_w * change_w).sum::<f64>() / acting.len().max(1) as f64;
-    let of_side = |side: &MeterAverages| -> f64 {
-        side.difference.iter().zip(&side.needed).map(|(more_w, needed_w)| more_w + needed_w).sum()
-    };
-    let sum_w = of_side(recorded_left) + of_side(recorded_right);
-    square.sqrt() / (sum_w / recorded_left.needed.len().max(1) as f64).max(f64::MIN_POSITIVE)
+    let sum_w: f64 = recorded_w.iter().map(|[recorded_w, _]| recorded_w).sum();
+    square.sqrt() / (sum_w / recorded_w.len().max(1) as f64).max(f64::MIN_POSITIVE)
 }
 
 /// The median; 0 of nothing.
@@ -204,7 +200,7 @@ mod tests {
     };
 
     fn noise() -> Noise {
-        Noise { meters: [5.0, 5.0, 0.02].map(|floor| MeterNoise { floor, gain: 0.0, correlation: 0.0 }) }
+        Noise { meters: [0.5, 0.5, 0.02].map(|floor| MeterNoise { floor, gain: 0.0, correlation: 0.0 }) }
     }
 
     #[test]
@@ -222,14 +218,17 @@ mod tests {
     }
 
     #[test]
-    fn an_idle_drag_has_the_strength_of_the_power_that_it_takes() {
-        // Straight on the level, 90 · 9.80665 · 0.063 / 2 = 27.80 N a side; 10 N more at 0.5 m/s:
-        // 0.0023 (37.80² − 27.80²) + 1.7158 · 0.5 · 10 = 10.09 W in noise of 5 W, for 60 s.
+    fn a_drag_has_the_strength_of_the_current_that_it_takes() {
+        // 15 N are half an ampere at 30 N to the ampere: one standard deviation of a second, for 60 s.
         let drives = drives(&[600], 0.0);
-        let found = noise().strength(&robot(), &drives, &act(Change::Drag, 10.0)).unwrap();
-        let force_n = 90.0 * 9.80665 * 0.063 / 2.0;
-        let more_w = 0.0023 * ((force_n + 10.0_f64).powi(2) - force_n.powi(2)) + 1.7158 * 0.5 * 10.0;
-        assert!((found.z - more_w / 5.0 * 60.0_f64.sqrt()).abs() < 0.05, "{found:?}");
+        let found = noise().strength(&robot(), &drives, &act(Change::Drag, 15.0)).unwrap();
+        assert!((found.z - 60.0_f64.sqrt()).abs() < 0.01, "{found:?}");
+        // Recorded are 4 A, 120 N a side at 0.5 m/s: 2 · (0.00195 · 120² + 1.7441 · 0.5 · 120) = 265 W. On the level 27.80 N are needed, and
+        // 15 N more take 0.0023 (42.80² − 27.80²) + 1.7158 · 0.5 · 15 = 15.3 W.
+        let needed_n = 90.0 * 9.80665 * 0.063 / 2.0;
+        let more_w = 0.0023 * ((needed_n + 15.0_f64).powi(2) - needed_n.powi(2)) + 1.7158 * 0.5 * 15.0;
+        let recorded_w = 0.0039 * 120.0_f64.powi(2) + (1.7158 + 1.7723) * 0.5 * 120.0;
+        assert!((found.power_change / (more_w / recorded_w) - 1.0).abs() < 0.01, "{found:?}");
     }
 
     #[test]

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use anyhow::Context;
 use prove::{
-    Diagnosis, FileBeside,
+    CALIBRATED, Diagnosis, FileBeside, PeerAnswer, ROBOT,
     real::{Ground, RealTrial, STRENGTHS_Z},
 };
 
-use super::{Arguments, at_once, check, peers, program, ways};
+use super::{Arguments, at_once, check, peers_by, program, ways};
 use crate::{failure::BadInput, output, progress::Cases, real_scored::summary, recorded::robot};
 
 /// Strengths that changes can be given: below, no detector sees them; above, none of a robot's size is as strong.
@@ -49,4 +49,10 @@ pub(super) fn run(arguments: &Arguments, out: &Path) -> anyhow::Result<()> {
     output::line(summary(&boards))?;
     output::line(page.display())?;
     Ok(())
+}
+
+/// What simpler methods say of a case by the file that stands beside the healthy drives, where it could be calibrated.
+fn peers(case: &Path) -> Vec<PeerAnswer> {
+    let is_calibrated = case.join(CALIBRATED).is_file();
+    peers_by(case, if is_calibrated { CALIBRATED } else { ROBOT })
 }
