@@ -39,7 +39,8 @@ pub use error::Error;
 pub use field::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};
 pub use method::Method;
 pub use predict::{
-    PredictedDrives, Prediction, RunPrediction, current_readings_a, predict, predict_watched, with_powers,
+    PredictedDrives, Prediction, RunPrediction, current_readings_a, force_n_per_a, predict, predict_watched,
+    signed_n_per_a, with_powers,
 };
 pub use slopes::slopes_note;
 pub use stuck::{SlipTrack, slip_track};

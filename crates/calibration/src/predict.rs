@@ -94,13 +94,15 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
     // A prediction is judged on all of a drive; being stuck is part of it.
     let drives = drives.including_stuck();
     let form = drives.form.unwrap_or(PowerForm::Battery);
-    let amperes = (form == PowerForm::MotorCurrents).then(|| amperes(robot)).transpose()?;
+    let amperes = (form == PowerForm::MotorCurrents).then(|| force_n_per_a(robot)).transpose()?;
     let (predicted_w, recorded_w) = columns_by_row(&drives, robot, |i, power| {
         let row = &drives.rows[i];
         let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
         let recorded_w = match amperes {
             Some(amperes) => {
-                watts_of_currents(robot, row, reading(robot, amperes, row, power), read).iter().sum()
+                watts_of_currents(robot, row, signed_n_per_a(robot, amperes, row, power.force_n), read)
+                    .iter()
+                    .sum()
             }
             None => read(0) + read(1),
         };
@@ -134,12 +136,12 @@ pub fn with_powers(robot: &Robot, recording: &Recording, watch: &Watch) -> Resul
     if recording.power_form() != Some(PowerForm::MotorCurrents) {
         return Ok(recording.clone());
     }
-    let amperes = amperes(robot)?;
+    let amperes = force_n_per_a(robot)?;
     let drives = Drives::watched(robot, recording, watch)?.including_stuck();
     let (left_w, right_w) = columns_by_row(&drives, robot, |i, power| {
         let row = &drives.rows[i];
         let read = |column: usize| drives.recorded.get(column).map_or(0.0, |values| values[i]);
-        watts_of_currents(robot, row, reading(robot, amperes, row, power), read).into()
+        watts_of_currents(robot, row, signed_n_per_a(robot, amperes, row, power.force_n), read).into()
     })?;
     let mut recording = recording.clone();
     for (current, power, watts) in [
@@ -152,7 +154,11 @@ pub fn with_powers(robot: &Robot, recording: &Recording, watch: &Watch) -> Resul
     Ok(recording)
 }
 
-fn amperes(robot: &Robot) -> Result<Sides<f64>, Error> {
+/// Newtons that an ampere of each side's motor current stands for \[N/A\].
+///
+/// # Errors
+/// [`Error::NoForcePerAmpere`] where the robot's file does not say.
+pub fn force_n_per_a(robot: &Robot) -> Result<Sides<f64>, Error> {
     match (robot.motors.left.force_n_per_a, robot.motors.right.force_n_per_a) {
         (Some(left), Some(right)) => Ok(Sides { left, right }),
         _ => Err(Error::NoForcePerAmpere),
@@ -168,14 +174,20 @@ pub fn current_readings_a(robot: &Robot, row: &Row, power: &Power) -> Result<Sid
     if row.stands() {
         return Ok(robot.motor_sides().map(|motor| motor.idle_current_a.unwrap_or(0.0)));
     }
-    let per_a = reading(robot, amperes(robot)?, row, power);
+    let per_a = signed_n_per_a(robot, force_n_per_a(robot)?, row, power.force_n);
     Ok(power.force_n.zip(per_a).map(|(force_n, per_a)| force_n / per_a))
 }
 
-/// Signed newtons that an ampere of each side's reading stands for.
-fn reading(robot: &Robot, amperes: Sides<f64>, row: &Row, power: &Power) -> Sides<f64> {
+/// Signed newtons that an ampere of each side's reading stands for while that side exerts a force \[N/A\]: c where the motor drives,
+/// c k2² where the ground drives it, with the sign of the force.
+pub fn signed_n_per_a(
+    robot: &Robot,
+    force_n_per_a: Sides<f64>,
+    row: &Row,
+    force_n: Sides<f64>,
+) -> Sides<f64> {
     let k2 = robot.motor_sides().map(|motor| motor.k2);
-    let sides = power.force_n.zip(row.rim_mps).zip(amperes.zip(k2));
+    let sides = force_n.zip(row.rim_mps).zip(force_n_per_a.zip(k2));
     sides.map(|((force_n, rim_mps), (per_a, k2))| {
         let gear = if force_n * rim_mps >= 0.0 { 1.0 } else { k2 * k2 };
         per_a * gear * if force_n < 0.0 { -1.0 } else { 1.0 }
@@ -197,7 +209,7 @@ fn watts_of_currents(
 /// One-second averages of predicted and recorded current, side by side \[A\].
 fn currents(robot: &Robot, drives: &Drives, amperes: Sides<f64>) -> Result<Vec<[Vec<f64>; 2]>, Error> {
     let predicted = PowerModel::new(drives)?.averages(robot, |row, power| {
-        let per_a = reading(robot, amperes, row, power);
+        let per_a = signed_n_per_a(robot, amperes, row, power.force_n);
         [power.force_n.left / per_a.left, power.force_n.right / per_a.right]
     })?;
     let sides = (0..2).map(|side| {

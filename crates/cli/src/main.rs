@@ -13,6 +13,7 @@ mod output;
 mod picture;
 mod progress;
 mod reach_picture;
+mod real_scored;
 mod recorded;
 mod scored;
 mod table;

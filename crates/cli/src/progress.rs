@@ -1,8 +1,9 @@
 //! Bars on a terminal; nothing on a pipe, where indicatif draws nothing.
 
-use std::{path::PathBuf, time::Duration};
+use std::{path::PathBuf, sync::Mutex, time::Duration};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use prove::Stage;
 
 /// A bar over the bytes of files that are about to be read.
 pub(crate) fn reading(files: &[PathBuf]) -> ProgressBar {
@@ -31,8 +32,34 @@ pub(crate) fn steps() -> ProgressBar {
 /// Steps of a bar over shares.
 pub(crate) const STEPS: u64 = 1000;
 
-/// A bar over cases, whose number is told later.
-pub(crate) fn cases() -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos} of {len} {elapsed}");
-    ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+/// A bar over the cases of a trial, whose number is told later; told by several threads.
+pub(crate) struct Cases(Mutex<ProgressBar>);
+
+impl Cases {
+    /// A bar over no cases yet.
+    pub(crate) fn new() -> Self {
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {pos} of {len} {elapsed}");
+        let bar = ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Cases(Mutex::new(bar))
+    }
+
+    /// So many of so many cases are done.
+    pub(crate) fn show(&self, stage: Stage, done: usize, all: usize) {
+        if let Ok(bar) = self.0.lock() {
+            bar.set_message(match stage {
+                Stage::Drawing => "drawing cases",
+                Stage::Diagnosing => "diagnosing",
+                Stage::Scoring => "opening keys",
+            });
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn end(&self) {
+        if let Ok(bar) = self.0.lock() {
+            bar.finish_and_clear();
+        }
+    }
 }

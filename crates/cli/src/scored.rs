@@ -26,7 +26,18 @@ pub(crate) fn summary(columns: &[(&str, &Scoreboard)]) -> String {
 /// Characters of a column.
 const WIDTH: usize = 28;
 
+/// Change of power over its mean from which on effects are strong.
+const STRONG_SHARE: f64 = 0.05;
+
 fn figures(board: &Scoreboard) -> Vec<(&'static str, Option<String>)> {
+    let of_share = |low: f64, high: f64| {
+        let rows = board.shares.iter().filter(|row| (low..high).contains(&row.from_share));
+        let (hits, of) = rows.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
+        Rate::new(hits, of)
+    };
+    let begun = |late: bool| {
+        board.onsets.iter().find(|row| row.late == late).map_or_else(Rate::default, |row| row.in_two)
+    };
     let strong = |low: f64, high: f64| {
         let rows = board.strengths.iter().filter(|row| (low..high).contains(&row.from_z));
         let (hits, of) = rows.fold((0, 0), |(h, n), row| (h + row.in_two.hits, n + row.in_two.of));
@@ -45,6 +56,11 @@ fn figures(board: &Scoreboard) -> Vec<(&'static str, Option<String>)> {
         ("effects named, set of two at most", rate(board.in_two)),
         ("those of z = 32 to 64", rate(strong(32.0, 64.0))),
         ("those of z = 64 and more", rate(strong(64.0, f64::INFINITY))),
+        ("those of less than 5 % of power", rate(of_share(0.0, STRONG_SHARE))),
+        ("those of 5 to 20 % of power", rate(of_share(STRONG_SHARE, 0.20))),
+        ("those of 20 % of power and more", rate(of_share(0.20, f64::INFINITY))),
+        ("those from the start", rate(begun(false))),
+        ("those from some time on", rate(begun(true))),
         ("both of two effects named", rate(board.both_of_two)),
         ("sensor faults called physics", rate(board.sensor_called_physics)),
         ("physics called a sensor fault", rate(board.physics_called_sensor)),

@@ -4,8 +4,8 @@ use serde::Serialize;
 use world::Family;
 
 use crate::{
-    CaseScore, Kind, MechanismRow, PeerRow, Rate, StrengthRow, Verdict, Way,
-    figures::{by_mechanism, by_peer, by_strength, listed, mean},
+    CaseScore, Kind, MechanismRow, OnsetRow, PeerRow, Rate, ShareRow, StrengthRow, Verdict, Way,
+    figures::{by_mechanism, by_onset, by_peer, by_share, by_strength, listed, mean},
     rate::median,
 };
 
@@ -99,6 +99,10 @@ pub struct Scoreboard {
     pub mechanisms: Vec<MechanismRow>,
     /// By strength.
     pub strengths: Vec<StrengthRow>,
+    /// By change of power.
+    pub shares: Vec<ShareRow>,
+    /// By when they begin.
+    pub onsets: Vec<OnsetRow>,
     /// Other methods on the same files.
     pub peers: Vec<PeerRow>,
     /// Every case.
@@ -160,6 +164,8 @@ pub fn scoreboard(seed: u64, commitment: String, scores: Vec<CaseScore>) -> Scor
         rmse_ratio_unlisted_median: median(of(Kind::Unlisted).filter_map(|case| case.rmse_ratio)),
         mechanisms: by_mechanism(&scores),
         strengths: by_strength(&scores),
+        shares: by_share(&scores),
+        onsets: by_onset(&scores),
         peers: by_peer(&scores),
         scores,
     }

@@ -9,8 +9,8 @@ use world::{CaseKind, EffectName, Family};
 use crate::Kind;
 
 /// Strengths asked for: root mean square change of power over its mean. An ideal detector sees the
-/// first at about z = 40 on a Husky's quarter of an hour; the last is plain to the eye.
-pub const SHARES: [f64; 4] = [0.012, 0.03, 0.06, 0.12];
+/// first at about z = 40 on a Husky's quarter of an hour; from 12 % on they are plain to the eye, and still they have to be named.
+pub const SHARES: [f64; 6] = [0.012, 0.03, 0.06, 0.12, 0.20, 0.40];
 /// Shares of healthy drives, decoys, one effect, two effects and effects without a name among the cases.
 const MIX: [f64; 5] = [0.20, 0.10, 0.45, 0.15, 0.10];
 /// Their kinds.
@@ -89,7 +89,7 @@ fn counts(cases: usize) -> [usize; 5] {
 }
 
 /// Fisher and Yates.
-fn shuffle<T>(cards: &mut [T], random: &mut Pcg64Mcg) {
+pub(crate) fn shuffle<T>(cards: &mut [T], random: &mut Pcg64Mcg) {
     for i in (1..cards.len()).rev() {
         cards.swap(i, random.random_range(0..=i));
     }

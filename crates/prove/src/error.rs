@@ -61,6 +61,39 @@ pub enum Error {
         /// Its scoreboard.
         path: PathBuf,
     },
+    /// A recording of real drives that cannot be read.
+    #[error("{path}: {source}")]
+    Recording {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: Box<recording::Error>,
+    },
+    /// A recording with too few runs to keep some apart.
+    #[error("{path}: a ground needs three runs or more, two to fit the robot on and one to diagnose")]
+    FewRuns {
+        /// Which.
+        path: PathBuf,
+    },
+    /// Real drives that no case could be made of.
+    #[error("case {case}, on {ground}: {source}")]
+    Drawing {
+        /// Which.
+        case: String,
+        /// The ground of its drives.
+        ground: String,
+        /// Why the last try failed.
+        source: Box<Error>,
+    },
+    /// Drives that no robot can be fitted to, or whose currents cannot be read.
+    #[error(transparent)]
+    Calibration(#[from] calibration::Error),
+    /// A run that cannot go on over another ground from this time on.
+    #[error("no run can go on over another ground at {border_s} s")]
+    NoBorder {
+        /// After the beginning of the run [s].
+        border_s: f64,
+    },
     /// No threads could be had.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -50,6 +50,28 @@ pub struct StrengthRow {
     pub in_two: Rate,
 }
 
+/// All listed effects of about the same change of power, alone or in pairs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShareRow {
+    /// From this change of power over its mean on, up to the next row's.
+    pub from_share: f64,
+    /// Something was found.
+    pub detected: Rate,
+    /// The truth was in a set of two at most.
+    pub in_two: Rate,
+}
+
+/// All listed effects that begin alike, alone or in pairs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OnsetRow {
+    /// Whether they act from some time on, rather than from the start.
+    pub late: bool,
+    /// Something was found.
+    pub detected: Rate,
+    /// The truth was in a set of two at most.
+    pub in_two: Rate,
+}
+
 /// Another method on the same files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PeerRow {
@@ -67,6 +89,9 @@ pub struct PeerRow {
 
 /// Lower bounds of z; 32 is where the goals are set.
 const FROM_Z: [f64; 5] = [0.0, 16.0, 32.0, 64.0, 128.0];
+
+/// Lower bounds of the change of power; from 5 % on effects are strong.
+const FROM_SHARE: [f64; 5] = [0.0, 0.02, 0.05, 0.10, 0.20];
 
 /// The table of mechanisms, in the order of their names.
 pub(crate) fn by_mechanism(cases: &[CaseScore]) -> Vec<MechanismRow> {
@@ -113,6 +138,33 @@ pub(crate) fn by_strength(cases: &[CaseScore]) -> Vec<StrengthRow> {
         }
     };
     FROM_Z.iter().zip(ends).map(row).collect()
+}
+
+/// The table of changes of power.
+pub(crate) fn by_share(cases: &[CaseScore]) -> Vec<ShareRow> {
+    let ends = FROM_SHARE.iter().skip(1).copied().chain([f64::INFINITY]);
+    let row = |(&from_share, to): (&f64, f64)| {
+        let within = || listed(cases).filter(move |t| (from_share..to).contains(&t.power_change));
+        ShareRow {
+            from_share,
+            detected: Rate::of(within().map(|t| t.detected)),
+            in_two: Rate::of(within().map(|t| t.in_two)),
+        }
+    };
+    FROM_SHARE.iter().zip(ends).map(row).collect()
+}
+
+/// The table of onsets.
+pub(crate) fn by_onset(cases: &[CaseScore]) -> Vec<OnsetRow> {
+    let row = |late: bool| {
+        let alike = || listed(cases).filter(move |t| (t.onset_s > 0.0) == late);
+        OnsetRow {
+            late,
+            detected: Rate::of(alike().map(|t| t.detected)),
+            in_two: Rate::of(alike().map(|t| t.in_two)),
+        }
+    };
+    [false, true].map(row).into()
 }
 
 /// The table of other methods, in the order of their names.

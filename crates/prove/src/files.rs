@@ -14,7 +14,7 @@ pub const ROBOT: &str = "robot.json";
 pub const REFERENCE: &str = "reference.csv";
 
 /// The robot calibrated on these.
-pub(crate) const CALIBRATED: &str = "calibrated.json";
+pub const CALIBRATED: &str = "calibrated.json";
 
 /// How all cases together came out.
 pub(crate) const SCOREBOARD: &str = "scoreboard.json";

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 use serde::{Deserialize, Serialize};
 use world::{Case, CaseKind, Drive, EffectName, Family, RobotFile, World};
 
-use crate::{Commitments, Dealt, Error, commitment::sha256, files};
+use crate::{Commitments, Dealt, Error, sealed};
 
 /// What kind of case it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -81,14 +81,13 @@ impl SealedKey {
     pub fn seal(dealt: &Dealt, case: &Case, robot: &RobotFile, folder: &Path) -> Result<Self, Error> {
         let world_error = |source| Error::World { case: dealt.name.clone(), source };
         let truths = case.key(robot).map_err(world_error)?.truths.into_iter().map(Truth::of).collect();
-        let hash = |name: &&str| Ok(((*name).to_owned(), sha256(&files::read(&folder.join(name))?)));
         Ok(SealedKey {
             case: dealt.name.clone(),
             kind: Kind::of(dealt.kind),
             share: dealt.share,
             seed: dealt.seed,
             truths,
-            files: files::ALL.iter().map(hash).collect::<Result<_, Error>>()?,
+            files: sealed::hashes(folder)?,
             world: case.world.clone(),
             drive: case.drive.clone(),
         })
@@ -99,9 +98,7 @@ impl SealedKey {
     /// # Errors
     /// Numbers that JSON cannot hold.
     pub fn bytes(&self, path: &Path) -> Result<Vec<u8>, Error> {
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|source| Error::Content { path: path.into(), source })?;
-        Ok((text + "\n").into_bytes())
+        sealed::bytes(self, path)
     }
 
     /// Opens a key, if it is the one that was committed to and its case's files are those that it speaks of.
@@ -109,16 +106,13 @@ impl SealedKey {
     /// # Errors
     /// A key or a file that has changed.
     pub fn open(path: &Path, commitments: &Commitments, folder: &Path) -> Result<Self, Error> {
-        let bytes = commitments.open(path)?;
-        let key: SealedKey =
-            serde_json::from_slice(&bytes).map_err(|source| Error::Content { path: path.into(), source })?;
-        for (name, hash) in &key.files {
-            let path = folder.join(name);
-            if sha256(&files::read(&path)?) != *hash {
-                return Err(Error::ChangedCase { path });
-            }
-        }
-        Ok(key)
+        sealed::open(path, commitments, folder)
+    }
+}
+
+impl sealed::Sealed for SealedKey {
+    fn files(&self) -> &BTreeMap<String, String> {
+        &self.files
     }
 }
 

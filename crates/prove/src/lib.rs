@@ -4,7 +4,10 @@
 //! else, and runs as a separate process. What is true of a case stands in a key, kept apart, whose SHA-256 is published before
 //! the first diagnosis begins; keys are opened after the last one has ended, and one that has changed since is refused.
 //!
-//! The crate knows the world and the form of the diagnosis' report, and nothing of how a diagnosis comes about.
+//! [`real`] is the same on drives of a real robot, into some of which known changes are put.
+//!
+//! The crate knows the world, how recorded currents stand for forces, and the form of the diagnosis' report, and nothing of how a
+//! diagnosis comes about.
 
 mod board;
 mod commitment;
@@ -17,8 +20,11 @@ mod matching;
 mod peer;
 mod process;
 mod rate;
+pub mod real;
 mod report;
 mod score;
+mod sealed;
+mod stage;
 mod strength;
 mod together;
 mod trial;
@@ -28,15 +34,16 @@ pub use board::{Boards, Scoreboard, WayBoard, scoreboard};
 pub use commitment::{Commitments, sha256};
 pub use deal::{Dealt, SHARES, deal};
 pub use error::Error;
-pub use figures::{Cell, MechanismRow, PeerRow, StrengthRow};
-pub use files::{RECORDING, REFERENCE, ROBOT};
+pub use figures::{Cell, MechanismRow, OnsetRow, PeerRow, ShareRow, StrengthRow};
+pub use files::{CALIBRATED, RECORDING, REFERENCE, ROBOT};
 pub use key::{Kind, Parameter, SealedKey, Truth};
 pub use peer::{PeerAnswer, PeerScore};
-pub use process::{Diagnosis, Outcome};
+pub use process::{Diagnosis, FileBeside, Outcome};
 pub use rate::Rate;
-pub use report::{Estimate, Finding, Least, Report, Verdict};
+pub use report::{Estimate, Finding, Least, Report, Scope, Verdict};
 pub use score::{CaseScore, ParameterScore, TruthScore, Twin, score};
+pub use stage::{Progress, Stage};
 pub use strength::{Misled, z};
 pub use together::together;
-pub use trial::{Stage, Trial};
+pub use trial::Trial;
 pub use way::Way;

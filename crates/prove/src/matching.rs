@@ -65,6 +65,7 @@ mod tests {
             parameters: Vec::new(),
             indistinguishable_from: names[1..].iter().map(|name| (*name).to_owned()).collect(),
             fit: crate::report::HeldOut::default(),
+            scope: None,
         }
     }
 

@@ -23,6 +23,17 @@ pub struct Diagnosis {
     pub program: PathBuf,
     /// Threads that each process may use.
     pub threads: usize,
+    /// Which of the robot's files stands beside the healthy drives.
+    pub beside: FileBeside,
+}
+
+/// Which of the robot's files stands beside the healthy drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileBeside {
+    /// The file as it is.
+    Raw,
+    /// The file that was calibrated on these drives, as whoever has them would.
+    Calibrated,
 }
 
 /// What came of a diagnosis.
@@ -43,12 +54,15 @@ impl Diagnosis {
     /// # Errors
     /// Folders that cannot be made or copied. A process that fails is an outcome.
     pub fn run(&self, case: &Path, way: Way) -> Result<Outcome, Error> {
-        let robot = match way {
-            Way::CalibratedFileAlone => match self.calibrated(case)? {
-                Ok(robot) => robot,
-                Err(why) => return Ok(Outcome::Failed(why)),
-            },
-            Way::FileAlone | Way::HealthyDrives => case.join(ROBOT),
+        let is_calibrated = match way {
+            Way::FileAlone => false,
+            Way::CalibratedFileAlone => true,
+            Way::HealthyDrives => self.beside == FileBeside::Calibrated,
+        };
+        let robot = match is_calibrated.then(|| self.calibrated(case)).transpose()? {
+            Some(Ok(robot)) => robot,
+            Some(Err(why)) => return Ok(Outcome::Failed(why)),
+            None => case.join(ROBOT),
         };
         let mut given = vec![(robot, ROBOT), (case.join(RECORDING), RECORDING)];
         let mut words = vec!["diagnose", "--robot", ROBOT, "--recording", RECORDING, "--out", RESULT];

@@ -79,6 +79,23 @@ pub struct Finding {
     /// What it does on drives that were held out.
     #[serde(default)]
     pub fit: HeldOut,
+    /// When it acts, where the report says so.
+    #[serde(default)]
+    pub scope: Option<Scope>,
+}
+
+/// When a finding acts; nothing is given where it always does.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Scope {
+    /// From so long after the beginning of the drive on [s].
+    #[serde(default)]
+    pub from_s: Option<f64>,
+    /// Until so long after it [s].
+    #[serde(default)]
+    pub until_s: Option<f64>,
+    /// The drive; none where it is each one.
+    #[serde(default)]
+    pub run: Option<String>,
 }
 
 /// What a finding does on drives that were held out.

@@ -81,6 +81,9 @@ pub struct TruthScore {
     pub z: f64,
     /// Root mean square change of power over its mean, as it came out.
     pub power_change: f64,
+    /// From when on it acted [s].
+    #[serde(default)]
+    pub onset_s: f64,
     /// Whether anything was found.
     pub detected: bool,
     /// Whether it was named, before all others.
@@ -205,6 +208,7 @@ fn truth_score(truth: &Truth, z: f64, detected: bool, finding: Option<&Finding>)
         family: truth.family,
         z,
         power_change: truth.power_change,
+        onset_s: truth.onset_s,
         detected,
         named_first: named.is_some(),
         in_two: answer >= Answer::OneOfTwo,

@@ -1,28 +1,14 @@
 //! A trial from the first case drawn to the scoreboard.
 
-use std::{
-    path::{Path, PathBuf},
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use world::{Case, RobotFile, World, simulate};
 
 use crate::{
     Boards, CaseScore, Commitments, Dealt, Diagnosis, Error, Kind, Misled, Outcome, PeerAnswer, PeerScore,
-    SealedKey, Twin, Way, WayBoard, commitment::sha256, deal, files, score, scoreboard, strength::z,
+    Progress, SealedKey, Stage, Twin, Way, WayBoard, deal, files, score, scoreboard, sealed, stage::each,
+    strength::z,
 };
-
-/// What a trial is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Cases are drawn and keys sealed.
-    Drawing,
-    /// Cases are diagnosed.
-    Diagnosing,
-    /// Keys are opened, and the same drives without effects diagnosed.
-    Scoring,
-}
 
 /// A trial.
 pub struct Trial<'a> {
@@ -47,7 +33,7 @@ pub struct Trial<'a> {
     /// Cases that are worked on at the same time.
     pub at_once: usize,
     /// Told of progress: stage, cases done, cases in all.
-    pub progress: &'a (dyn Fn(Stage, usize, usize) + Sync),
+    pub progress: &'a Progress<'a>,
     /// Told the hash of the list of commitments as soon as it is published.
     pub published: &'a (dyn Fn(&str) + Sync),
 }
@@ -67,10 +53,11 @@ impl Trial<'_> {
             files::folder(&self.out.join(folder))?;
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.at_once).build()?;
-        let keys = pool.install(|| self.each(Stage::Drawing, &dealt, |dealt| self.draw(dealt, &robot)))?;
+        let keys =
+            pool.install(|| each(self.progress, Stage::Drawing, &dealt, |dealt| self.draw(dealt, &robot)))?;
         let (commitments, commitment) = self.commit(&dealt, &keys)?;
         let outcomes = pool.install(|| {
-            self.each(Stage::Diagnosing, &dealt, |dealt| {
+            each(self.progress, Stage::Diagnosing, &dealt, |dealt| {
                 let case = self.case(dealt);
                 let outcomes = self.ways.iter().map(|way| self.diagnosis.run(&case, *way));
                 Ok((outcomes.collect::<Result<_, Error>>()?, (self.peers)(&case)))
@@ -78,7 +65,9 @@ impl Trial<'_> {
         })?;
         let pairs: Vec<(Dealt, Said)> = dealt.into_iter().zip(outcomes).collect();
         let scores = pool.install(|| {
-            self.each(Stage::Scoring, &pairs, |(dealt, said)| self.open(dealt, said, &commitments, &robot))
+            each(self.progress, Stage::Scoring, &pairs, |(dealt, said)| {
+                self.open(dealt, said, &commitments, &robot)
+            })
         })?;
         let board = |way: usize| {
             let own = scores.iter().filter_map(|of_case| of_case.get(way)).cloned().collect();
@@ -91,29 +80,12 @@ impl Trial<'_> {
         Ok(boards)
     }
 
-    fn each<T: Sync, U: Send>(
-        &self,
-        stage: Stage,
-        over: &[T],
-        work: impl Fn(&T) -> Result<U, Error> + Sync,
-    ) -> Result<Vec<U>, Error> {
-        let done = AtomicUsize::new(0);
-        (self.progress)(stage, 0, over.len());
-        let one = |item: &T| {
-            let result = work(item);
-            (self.progress)(stage, done.fetch_add(1, Ordering::Relaxed) + 1, over.len());
-            result
-        };
-        // One at a time to a thread: cases take seconds each.
-        over.par_iter().with_max_len(1).map(one).collect()
-    }
-
     fn case(&self, dealt: &Dealt) -> PathBuf {
         self.out.join("cases").join(&dealt.name)
     }
 
     fn key(&self, dealt: &Dealt) -> PathBuf {
-        self.out.join("keys").join(format!("{}.json", dealt.name))
+        self.out.join("keys").join(sealed::file_name(&dealt.name))
     }
 
     /// Draws a case, writes what the diagnosis gets, and seals the key.
@@ -138,15 +110,8 @@ impl Trial<'_> {
 
     /// Writes the keys and publishes their hashes, before anything is diagnosed.
     fn commit(&self, dealt: &[Dealt], keys: &[Vec<u8>]) -> Result<(Commitments, String), Error> {
-        let mut commitments = Commitments::default();
-        for (dealt, bytes) in dealt.iter().zip(keys) {
-            let path = self.key(dealt);
-            std::fs::write(&path, bytes).map_err(Error::file(&path))?;
-            commitments.add(&format!("{}.json", dealt.name), bytes);
-        }
-        let text = commitments.text();
-        files::write(&self.out.join("keys").join("SHA256SUMS"), &text)?;
-        let commitment = sha256(text.as_bytes());
+        let named = dealt.iter().zip(keys).map(|(dealt, bytes)| (dealt.name.as_str(), bytes.as_slice()));
+        let (commitments, commitment) = sealed::commit(&self.out.join("keys"), named)?;
         (self.published)(&commitment);
         Ok((commitments, commitment))
     }

@@ -10,7 +10,7 @@ use std::{
     sync::Mutex,
 };
 
-use prove::{Boards, Diagnosis, Error, PeerAnswer, Stage, Trial, Way};
+use prove::{Boards, Diagnosis, Error, FileBeside, PeerAnswer, Stage, Trial, Way};
 
 /// Calibrates a robot as it was, reports what it sees and finds nothing wrong.
 const SPY: &str = r#"#!/bin/sh
@@ -46,7 +46,7 @@ fn run(out: &Path, program: &Path, progress: &(dyn Fn(Stage, usize, usize) + Syn
         share: None,
         robot_json: &robot_json,
         out,
-        diagnosis: Diagnosis { program: program.to_owned(), threads: 1 },
+        diagnosis: Diagnosis { program: program.to_owned(), threads: 1, beside: FileBeside::Raw },
         ways: &Way::ALL,
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
@@ -138,7 +138,9 @@ fn failing_programs_and_reports_that_are_none_are_errors_on_the_board() {
         for name in [prove::ROBOT, prove::RECORDING, prove::REFERENCE] {
             fs::write(case.join(name), "").unwrap();
         }
-        let outcome = Diagnosis { program, threads: 1 }.run(&case, Way::HealthyDrives).unwrap();
+        let outcome = Diagnosis { program, threads: 1, beside: FileBeside::Raw }
+            .run(&case, Way::HealthyDrives)
+            .unwrap();
         assert!(matches!(&outcome, prove::Outcome::Failed(why) if why.contains(said)), "{outcome:?}");
     }
 }

@@ -11,8 +11,10 @@ mod document;
 mod figures;
 mod labels;
 mod prediction_page;
+mod real_scoreboard_page;
 mod scoreboard_page;
 
 pub use diagnosis_page::diagnosis_page;
 pub use prediction_page::prediction_page;
+pub use real_scoreboard_page::real_scoreboard_page;
 pub use scoreboard_page::scoreboard_page;

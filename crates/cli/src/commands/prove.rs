@@ -1,8 +1,9 @@
 //! `joulepath prove`.
 
+mod real;
+
 use std::{
     path::{Path, PathBuf},
-    sync::Mutex,
     thread::available_parallelism,
 };
 
@@ -10,10 +11,10 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::Robot;
-use prove::{Diagnosis, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Stage, Trial, Way};
+use prove::{Diagnosis, FileBeside, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Trial, Way};
 use recording::read_paths;
 
-use crate::{failure::BadInput, output, progress, recorded::robot, scored::summary};
+use crate::{failure::BadInput, output, progress::Cases, recorded::robot, scored::summary};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -34,9 +35,15 @@ pub(crate) struct Arguments {
     /// Only cases of one kind, instead of all kinds
     #[arg(long)]
     only: Option<Only>,
-    /// How strong every effect is, as a share of power; otherwise 1.2, 3, 6 and 12 % take turns
+    /// How strong every effect is, as a share of power; otherwise 1.2, 3, 6, 12, 20 and 40 % take turns
     #[arg(long)]
     share: Option<f64>,
+    /// Recordings of a real robot, one for each ground: put known changes into some of their runs, instead of simulating
+    #[arg(long, value_name = "RECORDING", num_args = 1.., conflicts_with_all = ["only", "share", "together"])]
+    real: Vec<PathBuf>,
+    /// With --real: how strong changes are, in standard deviations of a detector that knows them; otherwise 16, 32 and 64 take turns
+    #[arg(long, value_delimiter = ',', requires = "real")]
+    z: Vec<f64>,
     /// Only what a diagnosis is given this way, instead of all three
     #[arg(long)]
     way: Option<WayName>,
@@ -101,18 +108,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         output::line(summary(&[("", &prove::together(&arguments.together)?)]))?;
         return Ok(());
     };
+    if !arguments.real.is_empty() {
+        return real::run(arguments, out);
+    }
     check(arguments, out)?;
-    let program = std::env::current_exe().context("cannot tell where joulepath itself lies")?;
     let robot_json = serde_json::to_string_pretty(&robot(&arguments.robot)?)? + "\n";
-    let bar = Mutex::new(progress::cases());
-    let told = |stage, done, all| {
-        if let Ok(bar) = bar.lock() {
-            bar.set_message(doing(stage));
-            bar.set_length(all as u64);
-            bar.set_position(done as u64);
-        }
-    };
-    let ways: Vec<Way> = arguments.way.map_or_else(|| Way::ALL.to_vec(), |way| vec![way.into()]);
+    let bar = Cases::new();
     let trial = Trial {
         cases: arguments.cases,
         seed: arguments.seed,
@@ -121,11 +122,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         robot_json: &robot_json,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program, threads: 1 },
-        ways: &ways,
+        diagnosis: Diagnosis { program: program()?, threads: 1, beside: FileBeside::Raw },
+        ways: &ways(arguments),
         peers: &peers,
-        at_once: available_parallelism().map_or(1, usize::from),
-        progress: &told,
+        at_once: at_once(),
+        progress: &|stage, done, all| bar.show(stage, done, all),
         // The commitment is in a file too; a reader that left ends the command at the summary.
         published: &|hash| drop(output::line(format_args!("committed to all keys: SHA-256 {hash}"))),
     };
@@ -133,9 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let page = out.join("scoreboard.html");
     std::fs::write(&page, report::scoreboard_page(&boards.most))
         .with_context(|| format!("cannot write {}", page.display()))?;
-    if let Ok(bar) = bar.lock() {
-        bar.finish_and_clear();
-    }
+    bar.end();
     let columns: Vec<(&str, &Scoreboard)> =
         boards.ways.iter().map(|one| (one.way.words(), &one.board)).collect();
     output::line(summary(&columns))?;
@@ -158,17 +157,29 @@ fn check(arguments: &Arguments, out: &Path) -> Result<(), BadInput> {
     if is_new { Ok(()) } else { Err(BadInput(format!("--out {}: {fault}", out.display()))) }
 }
 
-fn doing(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Drawing => "drawing cases",
-        Stage::Diagnosing => "diagnosing",
-        Stage::Scoring => "opening keys",
-    }
+/// The program that diagnoses: this one.
+fn program() -> anyhow::Result<PathBuf> {
+    std::env::current_exe().context("cannot tell where joulepath itself lies")
 }
 
-/// What simpler methods say of a case.
+/// What a diagnosis is given: all, or what was asked for.
+fn ways(arguments: &Arguments) -> Vec<Way> {
+    arguments.way.map_or_else(|| Way::ALL.to_vec(), |way| vec![way.into()])
+}
+
+/// Cases that are worked on at the same time.
+fn at_once() -> usize {
+    available_parallelism().map_or(1, usize::from)
+}
+
+/// What simpler methods say of a case by the robot's raw file and the healthy drives.
 fn peers(case: &Path) -> Vec<PeerAnswer> {
-    let plain = plain(case);
+    peers_by(case, ROBOT)
+}
+
+/// What simpler methods say of a case by one of its robot files and the healthy drives.
+fn peers_by(case: &Path, robot: &str) -> Vec<PeerAnswer> {
+    let plain = plain(case, robot);
     let say = |peer, names: fn(&Plain) -> Vec<String>| PeerAnswer {
         peer,
         names: plain.as_ref().map(names).map_err(Clone::clone),
@@ -177,8 +188,8 @@ fn peers(case: &Path) -> Vec<PeerAnswer> {
 }
 
 /// What they need of it.
-fn plain(case: &Path) -> Result<Plain, String> {
-    let robot = std::fs::read_to_string(case.join(ROBOT)).map_err(|error| error.to_string())?;
+fn plain(case: &Path, robot: &str) -> Result<Plain, String> {
+    let robot = std::fs::read_to_string(case.join(robot)).map_err(|error| error.to_string())?;
     let robot = Robot::from_json(&robot).map_err(|error| error.to_string())?;
     let read = |name: &str| read_paths(&[case.join(name)], None).map_err(|error| error.to_string());
     let (suspect, healthy) = (read(prove::RECORDING)?.0, read(REFERENCE)?.0);

@@ -92,17 +92,29 @@ fn field(right: Rate, seen: Rate, cell: &Cell) -> Markup {
 pub(super) fn strengths(board: &Scoreboard) -> Markup {
     html! {
         table.board {
-            thead { tr { th { "z from" } th { "effects" } th { "something found" } th { "named" } } }
+            thead { tr { th { "strength and onset" } th { "effects" } th { "something found" } th { "named" } } }
             tbody {
                 @for row in &board.strengths {
-                    tr {
-                        th scope="row" { (format!("{:.0}", row.from_z)) }
-                        td { (row.in_two.of) }
-                        td { (percent(row.detected.share())) }
-                        td { (percent(row.in_two.share())) " " small { (interval(row.in_two)) } }
-                    }
+                    (line(&format!("z from {:.0}", row.from_z), row.detected, row.in_two))
+                }
+                @for row in &board.shares {
+                    (line(&format!("from {:.0}\u{a0}% of power", 100.0 * row.from_share), row.detected, row.in_two))
+                }
+                @for row in &board.onsets {
+                    (line(if row.late { "from some time on" } else { "from the start" }, row.detected, row.in_two))
                 }
             }
+        }
+    }
+}
+
+fn line(name: &str, detected: Rate, in_two: Rate) -> Markup {
+    html! {
+        tr {
+            th scope="row" { (name) }
+            td { (in_two.of) }
+            td { (percent(detected.share())) }
+            td { (percent(in_two.share())) " " small { (interval(in_two)) } }
         }
     }
 }
