@@ -43,7 +43,7 @@ pub fn deal(cases: usize, seed: u64, only: Option<Kind>, share: Option<f64>) -> 
     shuffle(&mut others, &mut random);
     let mut kinds = vec![(CaseKind::Healthy, 0.0); healthy];
     kinds.extend(vec![(CaseKind::Decoy, 0.0); decoys]);
-    let strength = |i: usize, deck: usize| share.unwrap_or(SHARES[(i + i / deck) % SHARES.len()]);
+    let strength = |i: usize, deck: usize| share.unwrap_or(SHARES[(i % deck + i / deck) % SHARES.len()]);
     kinds.extend((0..ones).map(|i| (CaseKind::One(listed[i % listed.len()]), strength(i, listed.len()))));
     kinds.extend((0..twos).map(|i| (two(&listed, &mut random), strength(i, listed.len()))));
     kinds.extend((0..unlisted).map(|i| (CaseKind::One(others[i % others.len()]), strength(i, others.len()))));

@@ -121,19 +121,18 @@ impl Deck {
     }
 
     fn wanted(&self, i: usize, strengths_z: &[f64], random: &mut Pcg64Mcg) -> Wanted {
-        let round = i / self.changes.len();
-        let change = self.changes[i % self.changes.len()];
+        let (round, place) = (i / self.changes.len(), i % self.changes.len());
+        let change = self.changes[place];
         let down = random.random_bool(0.5) && change.goes_both_ways();
         Wanted {
             change,
-            z: strengths_z[(i + round) % strengths_z.len()],
+            z: strengths_z[(place + round) % strengths_z.len()],
             direction: if down { Direction::Down } else { Direction::Up },
             side: if random.random_bool(0.5) { Side::Left } else { Side::Right },
-            // Another one each time that a change comes up again.
-            begins: if (i % self.changes.len() + round).is_multiple_of(2) {
-                Begins::AtOnce
-            } else {
-                Begins::Later
+            // Another one each time that a change has come up with every strength.
+            begins: match (place + round / strengths_z.len()) % 2 {
+                0 => Begins::AtOnce,
+                _ => Begins::Later,
             },
         }
     }
@@ -172,20 +171,20 @@ mod tests {
 
     #[test]
     fn changes_strengths_and_onsets_come_round_evenly_and_nothing_is_spliced_to_itself() {
-        let dealt = deal(450, 3, 5, &STRENGTHS_Z);
+        let dealt = deal(900, 3, 5, &STRENGTHS_Z);
         for change in Change::ALL {
             let wanted: Vec<Wanted> = dealt
                 .iter()
                 .filter_map(|case| case.wanted)
                 .filter(|wanted| wanted.change == change)
                 .collect();
-            assert_eq!(wanted.len(), 24, "{change:?}");
+            assert_eq!(wanted.len(), 48, "{change:?}");
             for z in STRENGTHS_Z {
-                assert_eq!(wanted.iter().filter(|wanted| wanted.z == z).count(), 8, "{change:?} {z}");
+                assert_eq!(wanted.iter().filter(|wanted| wanted.z == z).count(), 16, "{change:?} {z}");
             }
             assert_eq!(
                 wanted.iter().filter(|wanted| wanted.begins == Begins::Later).count(),
-                12,
+                24,
                 "{change:?}"
             );
             let down = wanted.iter().any(|wanted| wanted.direction == Direction::Down);

@@ -252,6 +252,7 @@ mod tests {
         // Half a turn in a minute: 0.1 m/s over a track of 0.54 m, of which a twentieth is 0.0093 rad/s in noise of 0.02.
         let mut turning = straight.clone();
         turning.channels.insert(Channel::RightSpeed, vec![0.6; 600]);
+        turning.channels.insert(Channel::YawRate, vec![0.1 / 0.54; 600]);
         let expected = 0.05 * 0.1 / 0.54 / 0.02 * 60.0_f64.sqrt();
         let found = strength(&turning);
         assert!((found.z / expected - 1.0).abs() < 0.02 && found.power_change < 1e-3, "{found:?} {expected}");

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use calibration::{Options, calibrate};
-use model::{Robot, robot::Motors};
+use model::{Robot, Sides, robot::Motors};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use recording::Recording;
@@ -199,6 +199,7 @@ impl<'g> Halves<'g> {
     fn draw(ground: &'g Ground, raw: &Robot, random: &mut Pcg64Mcg) -> Result<Self, Error> {
         let split = split(ground, random);
         let fitted = calibrate(raw, &ground.part(&split.healthy), &Options::default())?.robot;
+        let fitted = with_force_of(raw, fitted);
         Ok(Halves { ground, split, raw: raw.clone(), fitted })
     }
 
@@ -262,6 +263,20 @@ impl<'g> Halves<'g> {
             },
         }
     }
+}
+
+/// A robot that shows the same currents as a fitted one, with the force per ampere of its raw file: level ground does not tell it, and a fit
+/// may end anywhere. All friction is in proportion to it.
+fn with_force_of(raw: &Robot, mut fitted: Robot) -> Robot {
+    let forces = raw.motor_sides().zip(fitted.motor_sides());
+    let ratio = forces.map(|(raw, fitted)| Some(raw.force_n_per_a? / fitted.force_n_per_a?));
+    if let Sides { left: Some(left), right: Some(right) } = ratio {
+        let ratio = (left + right) / 2.0;
+        fitted.surfaces.values_mut().for_each(|surface| *surface = surface.scaled(ratio, ratio));
+        fitted.motors.left.force_n_per_a = raw.motors.left.force_n_per_a;
+        fitted.motors.right.force_n_per_a = raw.motors.right.force_n_per_a;
+    }
+    fitted
 }
 
 /// The raw file, with the force per ampere that all grounds together show where it has none.
