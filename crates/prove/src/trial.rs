@@ -91,17 +91,21 @@ impl Trial<'_> {
     /// Draws a case, writes what the diagnosis gets, and seals the key.
     fn draw(&self, dealt: &Dealt, robot: &RobotFile) -> Result<Vec<u8>, Error> {
         let world_error = |source| Error::World { case: dealt.name.clone(), source };
-        let mut drawn = Case::draw(dealt.seed, dealt.kind, dealt.share, robot);
+        // A strong effect may tip over what it is found by; what cannot be driven is drawn again.
+        let draw = |another: u64| {
+            let case = Case::draw(dealt.seed.wrapping_add(another), dealt.kind, dealt.share, robot)?;
+            simulate(&case.world, robot, &case.drive).map(|suspect| (case, suspect))
+        };
+        let mut drawn = draw(0);
         for another in 1..DRAWS {
             if drawn.is_err() {
-                drawn = Case::draw(dealt.seed.wrapping_add(another), dealt.kind, dealt.share, robot);
+                drawn = draw(another);
             }
         }
-        let case = drawn.map_err(world_error)?;
+        let (case, suspect) = drawn.map_err(world_error)?;
         let folder = self.case(dealt);
         files::folder(&folder)?;
         files::write(&folder.join(files::ROBOT), self.robot_json)?;
-        let suspect = simulate(&case.world, robot, &case.drive).map_err(world_error)?;
         files::write_log(&suspect, &folder.join(files::RECORDING))?;
         let healthy = case.reference(robot).map_err(world_error)?;
         files::write_log(&healthy, &folder.join(files::REFERENCE))?;

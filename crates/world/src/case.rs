@@ -193,11 +193,12 @@ fn strength_of_share(
     let quiet = World { sensors: Sensors::perfect(), effects: Vec::new(), ..world.clone() };
     let plain = simulate(&quiet, robot, drive)?;
     let mean_w = plain.rows.iter().map(|r| r.battery_w).sum::<f64>() / plain.rows.len().max(1) as f64;
-    if let Some(strength) = unseen_by_power(effect.effect, robot, &plain, share * mean_w.abs()) {
-        return Ok(strength);
-    }
     let [_, most] = effect.effect.range();
+    if let Some(strength) = unseen_by_power(effect.effect, robot, &plain, share * mean_w.abs()) {
+        return Ok(strength.min(most));
+    }
     let (mut strength, mut before) = (effect.strength, None::<[f64; 2]>);
+    let [least, _] = effect.effect.typical();
     // How steeply the share grows with strength on logarithmic scales: wind by its square, most effects in proportion.
     let mut steepness = 1.0;
     for _ in 0..8 {
@@ -208,6 +209,11 @@ fn strength_of_share(
             Err(_) if before.is_some() => {
                 strength = before.map_or(strength, |[driven, _]| driven);
                 break;
+            }
+            // Nor at the strength that was begun with.
+            Err(_) if strength > least => {
+                strength = (strength / 2.0).max(least);
+                continue;
             }
             Err(error) => return Err(error),
         };
@@ -227,8 +233,8 @@ fn strength_of_share(
         strength = (strength * factor.clamp(0.1, 10.0).powf(1.0 / steepness)).min(most);
     }
     // A delay below one row cannot be told from none.
-    let least = if effect.effect == EffectName::ClockOffset { 1.0 / world.sensors.rate_hz } else { 0.0 };
-    Ok(strength.max(least))
+    let one_row_s = if effect.effect == EffectName::ClockOffset { 1.0 / world.sensors.rate_hz } else { 0.0 };
+    Ok(strength.max(one_row_s))
 }
 
 /// The strength of a fault that leaves power alone and misleads who computes it by so much [W], root mean square.
