@@ -159,7 +159,15 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let error =
         |robot: &Robot| Ok::<_, Error>(file_error(&observed, &baseline, &series.predict(robot, &[])?));
     // Ground that only the calibration knows is as new to the file before as to its reader.
-    let with_new_ground = Robot { surfaces: with_new(before, calibrated), ..before.clone() };
+    let mut with_new_ground = Robot { surfaces: with_new(before, calibrated), ..before.clone() };
+    // So are newtons of an ampere, without which currents cannot be compared.
+    let new = [&calibrated.motors.left, &calibrated.motors.right];
+    for (motor, new) in
+        [&mut with_new_ground.motors.left, &mut with_new_ground.motors.right].into_iter().zip(new)
+    {
+        motor.force_n_per_a = motor.force_n_per_a.or(new.force_n_per_a);
+        motor.idle_current_a = motor.idle_current_a.or(new.idle_current_a);
+    }
     let errors = Errors {
         before: error(&with_new_ground)?,
         after: error(calibrated)?,

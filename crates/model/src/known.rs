@@ -106,6 +106,11 @@ impl TryFrom<KnownMechanismFile> for KnownMechanism {
             let names: Vec<&str> = wanted.iter().map(|p| p.name).collect();
             return Err(format!("`{name}` has no parameter `{unknown}`; it has {}", names.join(", ")));
         }
+        if file.parameters.get("slip_scale_change").is_some_and(|change| *change != 0.0) {
+            return Err(format!(
+                "`{name}` cannot change the slip angle's scale in a file: write it into `slip_angle_scale_rad` of the surface"
+            ));
+        }
         let value = |(i, p): (usize, &mechanism::Parameter)| {
             let written = file.parameters.get(p.name).copied();
             written

@@ -55,7 +55,7 @@ const SLIP_TRACK_SIGMA: f64 = 0.1;
 const STANDING_SIGMA_W: f64 = 1.0;
 const STANDING_SHARE: f64 = 0.1;
 /// Width of the current that is read at rest \[A\]: the zero of a hall sensor of 50 A is good for a hundredth of its range.
-const IDLE_SIGMA_A: f64 = 0.5;
+pub(crate) const IDLE_SIGMA_A: f64 = 0.5;
 /// Difference of logarithms that writing and reading a number may make.
 const UNCHANGED: f64 = 1e-9;
 /// z beyond which no fit goes: a guard of the exponential, farther off than any verdict of `consistent` allows.

@@ -74,8 +74,8 @@ pub(crate) fn effects(
         let free: Vec<Size> = form.free.iter().map(|i| Size::of(&form, &priors, *i)).collect();
         let columns = free.iter().map(|size| beside.column(mechanism, &form.values, size));
         let mut columns = columns.collect::<Result<Vec<_>, Error>>()?;
-        let correlation = if free.len() == 2 { mechanism.size_correlation() } else { 0.0 };
-        if let [first, second] = &mut columns[..] {
+        let correlation = if free.len() >= 2 { mechanism.size_correlation() } else { 0.0 };
+        if let [first, second, ..] = &mut columns[..] {
             first.iter_mut().zip(&*second).for_each(|(a, b)| *a += correlation * b);
             second.iter_mut().for_each(|b| *b *= (1.0 - correlation * correlation).sqrt());
         }

@@ -19,6 +19,7 @@ use crate::{
         discrepancy::run_columns,
         held_out::{HeldOut, held_out},
         joint::Joint,
+        parameter::IDLE_SIGMA_A,
         temperature,
     },
     hypothesis::{
@@ -166,7 +167,12 @@ pub(crate) fn scale<'r>(observed: &Observations<'_>, baseline: &Baseline, file: 
     let mean_power_w = channels * sums[0] / f64::max(sums[1], 1.0);
     // Of what a side draws about a fifth heats its windings on level ground (Dogru & Marques 2018, Table II: k1 F² of k1 F² + k2 F u).
     let mean_loss_w = 0.2 * mean_power_w / 2.0;
-    Scale { robot: file, mean_power_w, mean_loss_w }
+    // Of currents the zero of a sensor, else 15 % of mean power, half of it on each side's meter.
+    let meter_zero_w = match observed.series.watts_per_a() {
+        Some(per_a) => IDLE_SIGMA_A * per_a.sum() / 2.0,
+        None => 0.075 * mean_power_w,
+    };
+    Scale { robot: file, meter_zero_w, mean_power_w, mean_loss_w }
 }
 
 /// With healthy drives, every mechanism's sizes that all drives share: what the file lacks of this robot.

@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn prior_sizes_are_within_what_a_robot_can_have_and_forms_hold_one_value_for_each_parameter() {
         let robot = builtin::husky_a200();
-        let scale = Scale { robot: &robot, mean_power_w: 100.0, mean_loss_w: 5.0 };
+        let scale = Scale { robot: &robot, meter_zero_w: 7.5, mean_power_w: 100.0, mean_loss_w: 5.0 };
         for mechanism in ALL {
             let priors = mechanism.size_prior(&scale);
             assert_eq!(priors.len(), mechanism.parameters().len(), "{}", mechanism.name());

@@ -34,9 +34,9 @@ impl Mechanism for PowerOffset {
         ]
     }
 
-    /// 15 % of mean power, half of it on each side's meter.
+    /// What zeros of meters are off by.
     fn size_prior(&self, scale: &Scale<'_>) -> Vec<SizePrior> {
-        vec![SizePrior::either(0.075 * scale.mean_power_w), SizePrior::either(1.0)]
+        vec![SizePrior::either(scale.meter_zero_w), SizePrior::either(1.0)]
     }
 
     /// The battery's meter off as each side's, or right. Off by their sum it would be what drivers lose.

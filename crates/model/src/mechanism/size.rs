@@ -44,6 +44,8 @@ impl SizePrior {
 pub struct Scale<'a> {
     /// The robot as its file has it.
     pub robot: &'a Robot,
+    /// What the zero of a side's meter is usually off by [W].
+    pub meter_zero_w: f64,
     /// Mean magnitude of the power drawn in all [W].
     pub mean_power_w: f64,
     /// Mean copper loss of one side [W].

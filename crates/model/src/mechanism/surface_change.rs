@@ -5,6 +5,14 @@ use crate::{
     mechanism::{Adjustment, Form, Kind, Mechanism, Moment, Parameter, Scale, SizePrior},
 };
 
+/// Which parameter changes the scale of the slip angle.
+const SLIP_SCALE: usize = 2;
+
+/// Change of the scale of the slip angle; none where only resistances are given.
+fn scale_change(values: &[f64]) -> f64 {
+    values.get(SLIP_SCALE).copied().unwrap_or(0.0)
+}
+
 /// Other ground than the recording says.
 pub(super) struct SurfaceChange;
 
@@ -21,6 +29,7 @@ impl Mechanism for SurfaceChange {
         let mut changed = robot.clone();
         for (_, surface) in changed.surfaces.iter_mut().filter(|(name, _)| surfaces.contains(name)) {
             *surface = surface.scaled(1.0 + values[0], 1.0 + values[1]);
+            surface.slip_angle_scale_rad *= 1.0 + scale_change(values);
         }
         Some(changed)
     }
@@ -33,18 +42,27 @@ impl Mechanism for SurfaceChange {
         &[
             Parameter { name: "roll_change", unit: "1", bounds: [-0.9, 10.0], probe: 0.05 },
             Parameter { name: "skid_change", unit: "1", bounds: [-0.9, 5.0], probe: 0.05 },
+            Parameter { name: "slip_scale_change", unit: "1", bounds: [-0.95, 5.0], probe: 0.05 },
         ]
     }
 
+    /// A file has it as the surface's own `slip_angle_scale_rad`.
+    fn is_optional(&self, parameter: usize) -> bool {
+        parameter == SLIP_SCALE
+    }
+
     /// Half as much rolling and a third as much skid resistance: what hard floors, asphalt and loam differ by (Dogru & Marques 2018, Fig. 13;
-    /// BorealTC).
+    /// BorealTC). Scales of the slip angle differ between kinds of ground only, by factors of 3 to 10 (BorealTC: ice 0.01 rad, floors 0.1 rad,
+    /// loam 0.3 rad).
     fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
-        [0.5, 0.3].map(SizePrior::either).into()
+        [0.5, 0.3, 0.25].map(SizePrior::either).into()
     }
 
     /// Another floor or field, and another kind of ground altogether: asphalt has three to four times the skid resistance of ice (BorealTC).
     fn forms(&self, _: &Robot) -> Vec<Form> {
-        [1.0, 4.0].map(|widening| Form { widening, ..Form::all_free(2) }).into()
+        let floor = Form { values: vec![0.0; 3], free: vec![0, 1], widening: 1.0 };
+        let kind = Form { values: vec![0.0; 3], free: vec![0, 1, SLIP_SCALE], widening: 4.0 };
+        vec![floor, kind]
     }
 
     /// Ground that rolls harder skids harder.
@@ -53,7 +71,7 @@ impl Mechanism for SurfaceChange {
     }
 
     fn equation(&self) -> &'static str {
-        "μ_R → μ_R (1 + c_R), μ_S → μ_S (1 + c_S)"
+        "μ_R → μ_R (1 + c_R), μ_S → μ_S (1 + c_S), α_0 → α_0 (1 + c_α)"
     }
 
     fn statement(&self, values: &[f64]) -> String {
@@ -62,6 +80,15 @@ impl Mechanism for SurfaceChange {
         format!(
             "the ground is another: it rolls {rolls:+.0} % and skids {skids:+.0} % against what was fitted"
         )
+    }
+
+    fn robot(&self, robot: &Robot, values: &[f64]) -> Option<Robot> {
+        let change = scale_change(values);
+        (change != 0.0).then(|| {
+            let mut changed = robot.clone();
+            changed.surfaces.values_mut().for_each(|surface| surface.slip_angle_scale_rad *= 1.0 + change);
+            changed
+        })
     }
 
     fn adjust(&self, _: &Robot, values: &[f64], _: &Moment) -> Adjustment {
