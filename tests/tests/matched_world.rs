@@ -14,8 +14,8 @@ use diagnosis::{Diagnosis, Question, Verdict, diagnose};
 use model::mechanism;
 use score::{Board, is_in_two};
 
-/// Strength that an ideal detector sees, some 1.2 % of power.
-const Z: f64 = 32.0;
+/// Strength that an ideal detector sees, some 5 % of power.
+const Z: f64 = 128.0;
 
 fn said(case: &Case) -> Diagnosis {
     diagnose(&Question::new(&case.robot, &case.suspect, Some(&case.healthy)), &|_, _| {}).unwrap()
@@ -38,7 +38,7 @@ fn nothing_is_found_where_nothing_is_concealed() {
 }
 
 #[test]
-fn one_per_cent_of_power_is_named_with_its_size() {
+fn five_per_cent_of_power_is_named_with_its_size() {
     let mut board = Board::default();
     for (seed, name) in
         [(1006, "drivetrain_drag"), (1012, "grade_dependent_friction"), (1010, "load_transfer")]
