@@ -94,7 +94,10 @@ fn a_healthy_drive_is_consistent_and_the_report_says_what_would_have_been_seen()
     let payload = sizes.iter().find(|size| size["mechanism"] == "payload").unwrap();
     assert!((0.1..60.0).contains(&payload["value"].as_f64().unwrap()), "{payload}");
     let page = std::fs::read_to_string(found.join("report.html")).unwrap();
-    assert!(page.contains("Within its uncertainty nothing is missing") && !page.contains("<script"), "{page}");
+    assert!(
+        page.contains("Within its uncertainty nothing is missing") && !page.contains("<script"),
+        "{page}"
+    );
     let robot = found.join("corrected-robot.json").display().to_string();
     let after = joulepath(folder.path(), &["predict", "--robot", &robot, "--recording", "suspect.csv"]);
     assert!(after.status.success(), "the corrected robot is a robot: {}", text(&after.stderr));
@@ -214,8 +217,16 @@ fn what_another_simulation_of_the_same_drive_left_out_is_named_in_its_place() {
     let is_named = finding["mechanism"] == "payload" || others.contains(&json!("payload"));
     assert!(is_named && report["findings"].as_array().unwrap().len() == 1, "{sentence}");
     // Of nothing that it left out nothing is found.
-    let arguments =
-        ["diagnose", "--recording", "simulated.csv", "--simulated", "simulated.csv", "--out", "same", "--json"];
+    let arguments = [
+        "diagnose",
+        "--recording",
+        "simulated.csv",
+        "--simulated",
+        "simulated.csv",
+        "--out",
+        "same",
+        "--json",
+    ];
     let made = joulepath(folder.path(), &arguments);
     let report: Value = serde_json::from_slice(&made.stdout).unwrap();
     assert_eq!(report["verdict"], "consistent", "{}", report["sentence"]);

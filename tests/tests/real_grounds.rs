@@ -66,8 +66,11 @@ fn on_flooring(folder: &Path) -> Robot {
 /// The robot of flooring, some drives on another ground, and those over flooring that are healthy.
 fn on_other_ground(ground: &str) -> Option<Diagnosis> {
     let folder = real_recordings()?;
-    let found =
-        said(&on_flooring(&folder), &unlabelled(&folder, ground, |_| true), &unlabelled(&folder, "flooring", |_| true));
+    let found = said(
+        &on_flooring(&folder),
+        &unlabelled(&folder, ground, |_| true),
+        &unlabelled(&folder, "flooring", |_| true),
+    );
     say(ground, &found);
     Some(found)
 }
@@ -196,7 +199,12 @@ fn grounds(folder: &Path) -> [Recording; 3] {
 
 /// That ice is found, and from when on: after 285 s of driving.
 fn came_onto_ice(found: &Diagnosis, expected: &str) {
-    assert_eq!((found.verdict, names(found)), (Verdict::Explained, vec!["surface_change"]), "{}", found.sentence);
+    assert_eq!(
+        (found.verdict, names(found)),
+        (Verdict::Explained, vec!["surface_change"]),
+        "{}",
+        found.sentence
+    );
     assert!(found.sentence.contains(expected), "{}", found.sentence);
     let finding = &found.findings[0];
     assert!((-0.9..-0.6).contains(&value(finding, "skid_change")), "{}", found.sentence);
