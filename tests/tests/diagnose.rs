@@ -199,36 +199,29 @@ fn a_strong_load_is_told_with_its_time_and_makes_no_second_mechanism_by_setting_
 }
 
 #[test]
-fn what_another_simulation_of_the_same_drive_left_out_is_named_in_its_place() {
-    // The simulation is the recording's own world without the load that the robot carried.
+fn drag_that_another_simulation_of_the_same_drive_left_out_is_named_with_its_force() {
+    // The simulation is the recording's own world without the drag.
     let folder = tempfile::tempdir().unwrap();
-    record(folder.path(), "suspect", 22, &json!([{"effect": "payload", "strength": 25}]));
+    record(folder.path(), "suspect", 22, &json!([{"effect": "drivetrain_drag", "strength": 20}]));
     record(folder.path(), "simulated", 22, &json!([]));
-    let arguments =
-        ["diagnose", "--recording", "suspect.csv", "--simulated", "simulated.csv", "--out", "out", "--json"];
-    let made = joulepath(folder.path(), &arguments);
-    assert!(made.status.success(), "{}", text(&made.stderr));
-    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    let beside_simulation = |recording: &str| -> Value {
+        let all =
+            ["diagnose", "--recording", recording, "--simulated", "simulated.csv", "--out", "out", "--json"];
+        let made = joulepath(folder.path(), &all);
+        assert!(made.status.success(), "{}", text(&made.stderr));
+        serde_json::from_slice(&made.stdout).unwrap()
+    };
+    let report = beside_simulation("suspect.csv");
     assert_is_of_the_contract(&report);
     let sentence = report["sentence"].as_str().unwrap();
     assert!(sentence.starts_with("The simulation predicts these drives"), "{sentence}");
+    assert_ne!(report["verdict"], "consistent", "{sentence}");
     let finding = &report["findings"][0];
-    let others = finding["indistinguishable_from"].as_array().unwrap();
-    let is_named = finding["mechanism"] == "payload" || others.contains(&json!("payload"));
-    assert!(is_named && report["findings"].as_array().unwrap().len() == 1, "{sentence}");
-    // Of nothing that it left out nothing is found.
-    let arguments = [
-        "diagnose",
-        "--recording",
-        "simulated.csv",
-        "--simulated",
-        "simulated.csv",
-        "--out",
-        "same",
-        "--json",
-    ];
-    let made = joulepath(folder.path(), &arguments);
-    let report: Value = serde_json::from_slice(&made.stdout).unwrap();
+    assert_eq!(finding["mechanism"], "drivetrain_drag", "{sentence}");
+    let left_n = finding["parameters"][0]["value"].as_f64().unwrap();
+    assert!((left_n - 20.0).abs() < 3.0, "{sentence}");
+    // Where it left out nothing, nothing is found.
+    let report = beside_simulation("simulated.csv");
     assert_eq!(report["verdict"], "consistent", "{}", report["sentence"]);
 }
 
