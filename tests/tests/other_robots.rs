@@ -146,7 +146,7 @@ fn a_weaker_mechanism_beside_a_stronger_one_is_told_from_what_that_ones_form_mis
     let small = robot("small");
     let effects = vec![
         Effect { direction_rad: 1.7, ..Effect::new(EffectName::CenterOfMass, 0.1) },
-        Effect { onset_s: 358.0, ..Effect::new(EffectName::GradeDependentFriction, 15.0) },
+        Effect { onset_s: 358.0, ..Effect::new(EffectName::GradeDependentFriction, 8.0) },
     ];
     let suspect = drive_of(&small, &Drive::new(DriveKind::Rich, 900.0, 69), effects);
     let healthy = drive_of(&small, &Drive::new(DriveKind::Rich, 600.0, 70), vec![]);
