@@ -22,7 +22,7 @@ seen_environment=$(env | grep -v -e ^PWD= -e ^_= -e ^SHLVL= -e ^OLDPWD= | tr '\n
 [ "$1 $2 $3 $4 $5" = "diagnose --robot robot.json --recording recording.csv" ] || exit 2
 seen=$(ls -a | grep -v '^\.*$' | sort | tr '\n' ' ')
 mkdir -p "$7"
-printf '%s|%s|%s|%s' "$seen" "$seen_environment" "$PWD" "${10} ${11}" > "$7/seen.txt"
+printf '%s|%s|%s|%s' "$seen" "$seen_environment" "$PWD" "$8 $9" > "$7/seen.txt"
 printf '{"verdict": "consistent", "baseline": {"held_out_rmse_w": 1.5}, "findings": []}' > "$7/report.json"
 "#;
 
