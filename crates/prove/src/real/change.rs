@@ -191,12 +191,12 @@ impl Act {
                 add_forces(robot, &mut changed, |row| acts[row], extra)?;
             }
             Change::Tow => {
-                add_forces(robot, &mut changed, |row| acts[row], |own, row| self.pull_n(robot, own, row))?
+                add_forces(robot, &mut changed, |row| acts[row], |own, row| self.pull_n(robot, own, row))?;
             }
             Change::Gain => each(&mut changed, &CURRENTS, &acts, |_, current_a| (1.0 + signed) * current_a),
             // A meter of currents without a sign shows none below zero.
             Change::Offset => {
-                each(&mut changed, &CURRENTS, &acts, |_, current_a| (current_a.abs() + signed).max(0.0))
+                each(&mut changed, &CURRENTS, &acts, |_, current_a| (current_a.abs() + signed).max(0.0));
             }
             Change::IdleCurrent => {
                 let turns = turns(recording);
@@ -206,7 +206,7 @@ impl Act {
             }
             Change::Delay => delay(recording, &mut changed, &acts, self.size),
             Change::PitchBias => {
-                each(&mut changed, &[Channel::Pitch], &acts, |_, pitch_rad| pitch_rad + signed)
+                each(&mut changed, &[Channel::Pitch], &acts, |_, pitch_rad| pitch_rad + signed);
             }
             Change::WheelScale => {
                 each(&mut changed, &[Channel::LeftSpeed, Channel::RightSpeed], &acts, |_, u| {

@@ -31,7 +31,7 @@ impl Ground {
     /// A ground of drives at hand; none of fewer than three runs.
     pub fn new(name: String, recording: Recording) -> Option<Self> {
         (recording.runs.len() >= LEAST_RUNS)
-            .then(|| Ground { name, recording: Recording { surface: None, ..recording } })
+            .then_some(Ground { name, recording: Recording { surface: None, ..recording } })
     }
 
     /// All of its runs, with its name as their surface.
