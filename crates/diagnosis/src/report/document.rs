@@ -79,6 +79,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let mut notes = subject.doubts.to_vec();
     notes.extend(of_corrected);
     notes.extend(assumed(file, observed, found));
+    notes.extend(strays(found.held_out[usize::from(!findings.is_empty())]));
     let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
     let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
     let (detectable, not_judged) = detectable(&information, &named);
@@ -132,7 +133,6 @@ fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<Stri
             "healthy drives lie farther from the model than it and its noise allow, so that everything counts as {times:.1} times less sure"
         ));
     }
-    notes.extend(strays(found.held_out[0]));
     let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
     let parameters = &found.baseline.parameters;
     let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
