@@ -293,7 +293,7 @@ pub(crate) mod tests {
     /// The built-in robot with 30 N to the ampere.
     pub(crate) fn robot() -> Robot {
         let robot = builtin::husky_a200();
-        let mut motors: Motors = robot.motors.clone();
+        let mut motors: Motors = robot.motors;
         motors.left.force_n_per_a = Some(30.0);
         motors.right.force_n_per_a = Some(30.0);
         Robot { motors, ..robot }
