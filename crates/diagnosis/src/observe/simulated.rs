@@ -365,8 +365,11 @@ mod tests {
         });
         assert!(faster.contains("2.00 times"), "{faster}");
         let other = said(&|made| {
-            let backwards = |values: &Vec<f64>| values.iter().rev().map(|x| -x).collect::<Vec<f64>>();
-            made.channels.values_mut().for_each(|values| *values = backwards(values));
+            // The same half minutes in another order.
+            let dealt = |values: &Vec<f64>| -> Vec<f64> {
+                (0..values.len()).map(|row| values[(row / 300 * 7 + 3) % 30 * 300 + row % 300]).collect()
+            };
+            made.channels.values_mut().for_each(|values| *values = dealt(values));
         });
         assert!(other.contains("another drive"), "{other}");
         let without = said(&|made| {
