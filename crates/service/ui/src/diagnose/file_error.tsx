@@ -24,9 +24,7 @@ export function FileError({ report, shown }: { report: Report; shown: Shown | nu
       </p>
       {file?.findings && file.findings.length > 0 && (
         <>
-          <p>
-            The healthy drives need this beside the robot file as well, so that it is a property of this robot and sets no verdict:
-          </p>
+          <p>The healthy drives need this beside the robot file as well, so that it is a property of this robot and sets no verdict:</p>
           <ul>
             {file.findings.map((finding) => (
               <li key={finding.mechanism}>{finding.statement}.</li>
