@@ -23,7 +23,7 @@ test("a drive is diagnosed, the corrected robot accepted, and old and new paths 
   await expect(page.locator(".verdict")).toBeVisible({ timeout: 120_000 });
   await expect(page.locator(".verdict-name")).toHaveText(/Explained|Ambiguous/);
   await expect(page.getByRole("region", { name: "payload" })).toContainText("95 %");
-  await expect(page.locator(".bars")).toContainText("noise floor");
+  await expect(page.locator(".bars").last()).toContainText("noise floor");
   expect(await colors(page.locator(".time-axis canvas").last())).toBeGreaterThan(10);
   expect(await colors(page.locator(".drive-map canvas"))).toBeGreaterThan(10);
   const usual = page.viewportSize()!;
