@@ -6,7 +6,8 @@ use crate::report::diagnosis::Diagnosis;
 
 /// What such a report has to say of itself.
 const SAID: &str = "the simulation stands in the place of the robot file's prediction; what it left out is given as the robot's model \
-     has it, beside constants that may differ as far as the file says; the corrected robot is the file with what was found";
+     has it, beside constants that may differ as far as the file says; the corrected robot is the file with what was found; \
+     the battery's voltage is not compared, without which a payload and a power meter that reads in proportion too much are easily mistaken for one another";
 
 /// Puts power back that was taken off the recording to stand beside the file's prediction; `offset_w` is by row of the recording.
 pub(crate) fn about_simulation(report: &mut Diagnosis, recording: &Recording, offset_w: &[f64]) {
