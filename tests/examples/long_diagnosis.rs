@@ -25,10 +25,16 @@ fn main() {
     let suspect = record(13, vec![load], duration_s);
     let healthy = record(14, vec![], HEALTHY * duration_s);
     let robot = model::builtin::husky_a200();
+    let before = joulepath_tests::peak_memory_bytes("self").map_or(f64::NAN, |bytes| bytes as f64 / 1e6);
     let began = Instant::now();
-    let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|_, _| {}).unwrap();
+    let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|name, share| {
+        if std::env::args().nth(2).is_some() {
+            eprintln!("{:6.2} s {share:4.2} {name}", began.elapsed().as_secs_f64())
+        }
+    })
+    .unwrap();
     println!(
-        "{} rows beside {} healthy ones: {:.0} s, {:.0} MB at most",
+        "{} rows beside {} healthy ones: {:.1} s, {:.0} MB at most ({before:.0} MB to make the drives)",
         suspect.rows(),
         healthy.rows(),
         began.elapsed().as_secs_f64(),

@@ -82,6 +82,7 @@ pub fn diagnose_watched(
     let baseline = Baseline::fit(&observed, robot)?;
     let mistakes = mistakes(robot, (suspect, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
+    doubts.extend(series.sampled());
     doubts.extend(series.watts_per_a().map(by_current));
     doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
@@ -89,11 +90,18 @@ pub fn diagnose_watched(
     // Nothing else is told of what is not what it seems.
     let is_looked_for = |one: &&'static dyn Mechanism| mistakes.is_empty() && is_possible(one);
     let library: Vec<&'static dyn Mechanism> = mechanism::ALL.into_iter().filter(is_looked_for).collect();
-    let found = find(&observed, (robot, baseline), &library, Windows::All, progress)?;
-    progress("looking at what all drives share", 0.95);
-    let shared = match &healthy {
-        Some(healthy) if mistakes.is_empty() => shared(robot, healthy, &library, watch)?,
-        _ => Vec::new(),
+    // What all drives share is looked for at the same time.
+    let is_asked = healthy.as_ref().filter(|_| mistakes.is_empty());
+    let (found, shared) = std::thread::scope(|scope| {
+        let by_themselves = is_asked.map(|healthy| scope.spawn(|| shared(robot, healthy, &library, watch)));
+        let found = find(&observed, (robot, baseline), &library, Windows::All, progress);
+        (found, by_themselves.map(|thread| thread.join()))
+    });
+    let found = found?;
+    let shared = match shared {
+        None => Vec::new(),
+        Some(Ok(findings)) => findings?,
+        Some(Err(panic)) => std::panic::resume_unwind(panic),
     };
     let drives: Vec<String> = suspect.runs.iter().map(|run| run.name.clone()).collect();
     let subject = Subject {

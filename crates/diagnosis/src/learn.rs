@@ -9,13 +9,13 @@ use model::{
     mechanism,
     robot::Surface,
 };
-use nalgebra::DVector;
 use recording::{PowerForm, Recording, Watch};
 
 use crate::{
     Error, Series,
     diagnose::{NEEDED_S, impossible},
-    evidence::linear_model::{LinearModel, matrix},
+    evidence::linear_model::{LinearModel, transposed},
+    fit::amplitude::Healthy,
     fit::{baseline::Baseline, temperature::UNTOLD},
     observe::observations::Observations,
     report::{diagnosis::FileError, predictions::file_error},
@@ -149,12 +149,14 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let shares = engine::healthy_columns(&observed, &baseline, &about, &library)?;
     let whitening = baseline.noise.whitening(&baseline.predicted, &observed.places);
     let rows = 0..observed.rows();
-    let fraction = engine::amplitude(&observed, &baseline, (&whitening, rows), &shares);
+    let healthy = Healthy { observed: &observed, baseline: &baseline, whitening: &whitening, rows };
+    let fraction = healthy.model_error(&shares);
     let mut columns = baseline.sensitivities.clone();
     columns.extend(baseline.discrepancy(&observed, fraction));
     columns.extend(shares);
-    let white = |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)) / UNTOLD.sqrt();
-    let basis = matrix(observed.rows(), &columns.iter().map(white).collect::<Vec<_>>());
+    let tempered = whitening.scaled(|_| 1.0 / UNTOLD.sqrt());
+    let white = columns.iter().map(|column| tempered.apply(column));
+    let basis = transposed(observed.rows(), columns.len(), white);
     let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD);
     let error =
         |robot: &Robot| Ok::<_, Error>(file_error(&observed, &baseline, &series.predict(robot, &[])?));

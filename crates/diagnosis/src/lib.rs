@@ -43,6 +43,7 @@ mod observe {
     pub(crate) mod prepared;
     pub(crate) mod region;
     pub(crate) mod sag;
+    pub(crate) mod sample;
     pub(crate) mod sanity;
     pub(crate) mod series;
     pub(crate) mod simulated;
@@ -52,6 +53,7 @@ mod observe {
 
 /// The robot fitted to the drives: parameters with their priors, what its model misses, and effects beside both.
 mod fit {
+    pub(crate) mod amplitude;
     pub(crate) mod baseline;
     pub(crate) mod discrepancy;
     pub(crate) mod features;

@@ -171,6 +171,16 @@ impl Whitening {
         values.iter().enumerate().map(one).collect()
     }
 
+    /// Undoes [`Whitening::apply`] of the first rows.
+    pub(crate) fn undo(&self, white: &[f64]) -> Vec<f64> {
+        let mut before = 0.0;
+        let one = |(value, [own, last]): (&f64, &[f64; 2])| {
+            before = (value + last * before) / own;
+            before
+        };
+        white.iter().zip(&self.rows).map(one).collect()
+    }
+
     /// The same with every row times a factor, as of a weight or of tempering.
     pub(crate) fn scaled(&self, factor: impl Fn(usize) -> f64) -> Self {
         let one = |(i, row): (usize, &[f64; 2])| row.map(|weight| weight * factor(i));
@@ -228,7 +238,10 @@ mod tests {
     fn whitened_noise_is_independent_and_of_variance_one() {
         let (residuals, predicted, places) = series(0.5, |_| 0.0);
         let noise = Noise::of(&residuals, &predicted, &places);
-        let white = noise.whitening(&predicted, &places).apply(&residuals);
+        let whitening = noise.whitening(&predicted, &places);
+        let white = whitening.apply(&residuals);
+        let back = whitening.undo(&white[..4000]);
+        assert!(back.iter().zip(&residuals).all(|(a, b)| (a - b).abs() < 1e-9 * (1.0 + b.abs())));
         let variance = white.iter().map(|x| x * x).sum::<f64>() / 6000.0;
         let lagged = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 6000.0;
         assert!((variance - 1.0).abs() < 0.12 && lagged.abs() < 0.08, "{variance} {lagged}");

@@ -1,8 +1,12 @@
 //! Errors of fits on stretches that they did not see.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
-use crate::fit::joint::{Fitted, Joint};
+use crate::{
+    evidence::linear_model::products,
+    fit::joint::{Fitted, Joint},
+};
 
 /// Length of stretches that are fitted and held out in turn \[s\]: longer than manoeuvres.
 const STRETCH_S: f64 = 60.0;
@@ -27,26 +31,28 @@ pub(crate) fn held_out(joint: &Joint<'_>, fitted: &Fitted) -> HeldOut {
     let observed = joint.observed;
     let fold = |i: usize| (i < observed.test_rows).then(|| (observed.driven_s[i] / STRETCH_S) as usize % 2);
     let sizes = joint.whiten(&fitted.raw_columns);
-    let (basis, count) = (joint.model.basis(), sizes.len());
-    let columns = basis.ncols() + count;
-    let white = DMatrix::from_fn(basis.nrows(), columns, |i, j| match j.checked_sub(basis.ncols()) {
-        None => basis[(i, j)],
-        Some(size) => sizes[size].get(i).copied().unwrap_or(0.0),
-    });
+    let white = with_sizes(joint.model.transposed(), &sizes);
+    let (columns, rows) = white.shape();
     let left = fitted.left.columns.column(0);
+    let of = |seen: &[usize]| {
+        let train = white.select_columns(seen);
+        let right = &train * DVector::from_iterator(seen.len(), seen.iter().map(|i| left[*i]));
+        (products(&train), right)
+    };
+    let parts: Vec<_> = [None, Some(0), Some(1)]
+        .into_par_iter()
+        .map(|part| of(&(0..rows).filter(|i| fold(*i) == part).collect::<Vec<_>>()))
+        .collect();
     let (mut squares, mut cut, mut variances, mut strays, mut rows) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for held_out in 0..2 {
-        let seen: Vec<usize> = (0..basis.nrows()).filter(|i| fold(*i) != Some(held_out)).collect();
-        let train = white.select_rows(&seen);
-        let transposed = train.transpose();
-        let gram = &transposed * &train + DMatrix::identity(columns, columns);
-        let right = transposed * DVector::from_iterator(seen.len(), seen.iter().map(|i| left[*i]));
+        let [(healthy_gram, healthy_right), (gram, right)] = [&parts[0], &parts[2 - held_out]];
+        let gram = healthy_gram + gram + DMatrix::identity(columns, columns);
         let Some(root) = gram.cholesky() else {
             return HeldOut { rmse_w: f64::NAN, over_noise: f64::NAN, strays: 0.0 };
         };
-        let weights = root.solve(&right);
+        let errors_w = errors_w(joint, fitted, &root.solve(&(healthy_right + right)));
         for i in (0..observed.test_rows).filter(|i| observed.is_power(*i) && fold(*i) == Some(held_out)) {
-            let square = error_w(joint, fitted, &weights, i).powi(2);
+            let square = errors_w[i].powi(2);
             let variance = joint
                 .baseline
                 .noise
@@ -64,11 +70,24 @@ pub(crate) fn held_out(joint: &Joint<'_>, fitted: &Fitted) -> HeldOut {
     HeldOut { rmse_w: (squares / rows).sqrt(), over_noise: (cut / variances).sqrt(), strays: strays / rows }
 }
 
-/// Recorded less predicted of one row, with weights of the basis and of sizes.
-fn error_w(joint: &Joint<'_>, fitted: &Fitted, weights: &DVector<f64>, i: usize) -> f64 {
-    let basis: f64 =
-        joint.raw_basis.iter().zip(weights.iter()).map(|(column, weight)| column[i] * weight).sum();
-    let sizes = fitted.raw_columns.iter().zip(&fitted.sizes).zip(weights.iter().skip(joint.raw_basis.len()));
-    let sizes: f64 = sizes.map(|((column, at), to)| column[i] * (to - at)).sum();
-    joint.baseline.residual[i] - fitted.effect[i] - basis - sizes
+/// A transposed basis with columns of the test drives below it.
+fn with_sizes(basis: &DMatrix<f64>, sizes: &[DVector<f64>]) -> DMatrix<f64> {
+    let mut white = basis.clone().resize_vertically(basis.nrows() + sizes.len(), 0.0);
+    for (j, size) in sizes.iter().enumerate() {
+        (0..size.len()).for_each(|i| white[(basis.nrows() + j, i)] = size[i]);
+    }
+    white
+}
+
+/// Recorded less predicted of the test drives, with weights of the basis and of sizes.
+fn errors_w(joint: &Joint<'_>, fitted: &Fitted, weights: &DVector<f64>) -> Vec<f64> {
+    let of_basis = joint.model.transposed().nrows();
+    let basis = joint.by_basis(&weights.rows(0, of_basis).into_owned());
+    let sizes: Vec<f64> =
+        fitted.sizes.iter().zip(weights.iter().skip(of_basis)).map(|(at, to)| to - at).collect();
+    let error_w = |i: usize| {
+        let of_sizes: f64 = fitted.raw_columns.iter().zip(&sizes).map(|(column, by)| column[i] * by).sum();
+        joint.baseline.residual[i] - fitted.effect[i] - basis[i] - of_sizes
+    };
+    (0..basis.len()).map(error_w).collect()
 }

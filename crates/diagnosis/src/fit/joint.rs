@@ -4,9 +4,9 @@ use model::Robot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::{
-    Applied, Error,
+    Applied, Error, Span,
     evidence::{
-        linear_model::{Evidence, Group, Half, LinearModel, matrix},
+        linear_model::{Evidence, Group, Half, LinearModel, matrix, products, transposed},
         noise::Whitening,
     },
     fit::{baseline::Baseline, features::Features, member::Member},
@@ -42,8 +42,6 @@ pub(crate) struct Joint<'a> {
     pub(crate) whitening: Whitening,
     /// The model.
     pub(crate) model: LinearModel,
-    /// The basis before whitening.
-    pub(crate) raw_basis: Vec<Vec<f64>>,
     /// The whitened residual.
     pub(crate) residual: DVector<f64>,
     /// Cholesky factor of I + J'J, J the whitened sensitivities of the robot's parameters.
@@ -72,7 +70,7 @@ pub(crate) struct Fitted {
     pub(crate) raw_columns: Vec<Vec<f64>>,
     /// See [`Fitted::raw_columns`].
     pub(crate) sizes: Vec<f64>,
-    /// Columns of sizes and form errors, and the residual that goes with them.
+    /// Columns of sizes and form errors, of at most one member, beside which something unlisted is tried; and the residual that goes with them.
     pub(crate) columns: Group,
     /// See [`Fitted::columns`].
     pub(crate) left: Group,
@@ -85,27 +83,18 @@ impl<'a> Joint<'a> {
     pub(crate) fn new(
         observed: &'a Observations<'a>,
         (baseline, file): (&'a Baseline, &'a Robot),
-        others: Vec<Vec<f64>>,
+        others: &[Vec<f64>],
         whitening: Whitening,
         temperature: f64,
     ) -> Self {
-        let raw_basis: Vec<Vec<f64>> = baseline.sensitivities.iter().cloned().chain(others).collect();
-        let basis = matrix(observed.rows(), &whitened(&whitening, &raw_basis));
-        let parameters = basis.columns(0, baseline.parameters.len());
+        let white = baseline.sensitivities.iter().chain(others).map(|column| whitening.apply(column));
+        let basis = transposed(observed.rows(), baseline.sensitivities.len() + others.len(), white);
         let count = baseline.parameters.len();
-        let gram = parameters.transpose() * parameters * temperature + DMatrix::identity(count, count);
+        let parameters = basis.rows(0, count).into_owned();
+        let gram = products(&parameters) * temperature + DMatrix::identity(count, count);
         let residual = DVector::from_vec(whitening.apply(&baseline.residual));
         let model = LinearModel::new(basis, observed.rows() as f64 / temperature);
-        Joint {
-            observed,
-            baseline,
-            file,
-            whitening,
-            model,
-            raw_basis,
-            residual,
-            parameters_root: gram.cholesky(),
-        }
+        Joint { observed, baseline, file, whitening, model, residual, parameters_root: gram.cholesky() }
     }
 
     /// Columns of the test drives, whitened.
@@ -140,6 +129,46 @@ impl<'a> Joint<'a> {
             columns = self.columns(&members, &effect)?;
         }
         self.fitted(members, &effect, &columns)
+    }
+
+    /// Log evidence of members, one of them in other spans at the same time: its effect there is what it would be all the time, where it acts.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know; a watch that breaks.
+    pub(crate) fn in_spans(
+        &self,
+        members: &[Member],
+        which: usize,
+        spans: &[Span],
+    ) -> Result<Vec<f64>, Error> {
+        let mut others = members.to_vec();
+        others.remove(which);
+        let without = self.effect(&others)?;
+        let mut always = members.to_vec();
+        always[which].span = Span::ALL;
+        let effect = self.effect(&always)?;
+        let columns = self.columns(&always, &effect)?;
+        let first: usize = members[..which].iter().map(|member| member.free.len()).sum();
+        let own = first..first + members[which].free.len();
+        let sizes: Vec<f64> = members.iter().flat_map(Member::sizes).collect();
+        let log = |span: &Span| {
+            let acts = |i: usize| {
+                let average = &self.observed.averages()[i];
+                span.acts(average.run, average.t_s, average.input.position_m)
+            };
+            let masked = |values: &[f64], elsewhere: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                (0..values.len()).map(|i| if acts(i) { values[i] } else { elsewhere(i) }).collect()
+            };
+            let in_span = masked(&effect, &|i| without[i]);
+            let columns: Vec<Vec<f64>> = columns
+                .iter()
+                .enumerate()
+                .map(|(j, column)| if own.contains(&j) { masked(column, &|_| 0.0) } else { column.clone() })
+                .collect();
+            let (group, left) = self.groups(&columns, &in_span, &sizes, &[]);
+            self.model.reduce(&[&group, &left]).evidence(&[]).log
+        };
+        Ok(spans.iter().map(log).collect())
     }
 
     /// The first share of a step that explains more.
@@ -179,7 +208,11 @@ impl<'a> Joint<'a> {
             u: weights.rows(0, self.baseline.parameters.len()).into_owned(),
             raw_columns: columns.to_vec(),
             sizes,
-            columns: group,
+            columns: if members.len() <= 1 {
+                group
+            } else {
+                Group { columns: DMatrix::zeros(0, 0), halves: Vec::new() }
+            },
             left,
             halves,
             members,
@@ -189,11 +222,14 @@ impl<'a> Joint<'a> {
 
     /// Fitted predictions of the test drives less the baseline's at the file's parameters.
     fn change(&self, effect: &[f64], weights: &DVector<f64>) -> Vec<f64> {
-        let mut change = effect.to_vec();
-        for (column, weight) in self.raw_basis.iter().zip(weights.iter()) {
-            change.iter_mut().zip(column).for_each(|(sum, by)| *sum += weight * by);
-        }
-        change
+        let by_basis = self.by_basis(weights);
+        effect.iter().zip(by_basis).map(|(effect, by)| effect + by).collect()
+    }
+
+    /// What the basis adds to predictions of the test drives at some weights.
+    pub(crate) fn by_basis(&self, weights: &DVector<f64>) -> Vec<f64> {
+        let rows = self.model.transposed().columns(0, self.observed.test_rows);
+        self.whitening.undo(rows.tr_mul(weights).as_slice())
     }
 
     /// Change of what the test drives show, by all members together.
@@ -252,8 +288,12 @@ impl<'a> Joint<'a> {
             left.rows_mut(0, column.len()).axpy(*x, column, 1.0);
         }
         white.extend(forms.iter().cloned());
-        let columns = matrix(self.observed.test_rows, &white);
-        (self.model.group(columns), self.model.group(DMatrix::from_columns(&[left])))
+        let rows = self.observed.test_rows;
+        if left.len() == rows {
+            white.push(left);
+            return LinearModel::split_last(self.model.group(matrix(rows, &white)));
+        }
+        (self.model.group(matrix(rows, &white)), self.model.group(DMatrix::from_columns(&[left])))
     }
 
     /// What the form of each member leaves open: its net effect times smooth functions.
@@ -292,12 +332,8 @@ impl<'a> Joint<'a> {
     fn net_of_parameters(&self, effect: DVector<f64>) -> DVector<f64> {
         let Some(root) = &self.parameters_root else { return effect };
         let count = self.baseline.parameters.len();
-        let head = self.model.basis().view((0, 0), (effect.len(), count));
-        let weights = root.solve(&head.tr_mul(&effect));
-        &effect - head * weights
+        let head = self.model.transposed().view((0, 0), (count, effect.len()));
+        let weights = root.solve(&(head * &effect));
+        &effect - head.tr_mul(&weights)
     }
-}
-
-fn whitened(whitening: &Whitening, columns: &[Vec<f64>]) -> Vec<DVector<f64>> {
-    columns.iter().map(|column| DVector::from_vec(whitening.apply(column))).collect()
 }

@@ -10,10 +10,15 @@
 //!
 //! is 1 where the model is right. The posterior is tempered by it (Miller & Dunson, J. Am. Stat. Assoc. 114, 2019).
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    evidence::{linear_model::matrix, noise::Whitening},
+    evidence::{
+        linear_model::{products, transposed},
+        noise::Whitening,
+    },
     observe::observations::Observations,
 };
 
@@ -33,14 +38,14 @@ const LEAST_SHARE: f64 = 0.5;
 /// they tell nothing of it.
 const RANGE: [f64; 2] = [UNTOLD, 16.0];
 
-/// Whitened columns over all rows.
+/// Whitened columns over the rows of the healthy drives.
 pub(crate) struct Columns {
-    /// Robot and discrepancy.
+    /// Robot and discrepancy, transposed.
     pub(crate) basis: DMatrix<f64>,
-    /// Shares that healthy robots have of mechanisms, which differ from drive to drive.
+    /// Shares that healthy robots have of mechanisms, which differ from drive to drive, transposed.
     pub(crate) shares: DMatrix<f64>,
-    /// The residual.
-    pub(crate) residual: DVector<f64>,
+    /// The residual, transposed.
+    pub(crate) residual: DMatrix<f64>,
 }
 
 /// The temperature that rows of healthy drives show.
@@ -60,49 +65,52 @@ pub(crate) fn temperature(observed: &Observations<'_>, columns: &Columns) -> f64
 fn block_errors(observed: &Observations<'_>, columns: &Columns, held_out: usize) -> Option<DVector<f64>> {
     let block = |i: usize| (observed.driven_s[i] / BLOCK_S) as usize;
     let is_held_out = |i: usize| (block(i) / STRETCH_BLOCKS) % 2 == held_out;
-    let healthy = observed.test_rows..observed.rows();
-    let seen: Vec<usize> = healthy.clone().filter(|i| !is_held_out(*i)).collect();
-    let train = columns.basis.select_rows(&seen);
-    let gram = train.tr_mul(&train) + DMatrix::identity(train.ncols(), train.ncols());
+    let first = observed.test_rows;
+    let healthy = 0..observed.rows() - first;
+    let seen: Vec<usize> = healthy.clone().filter(|i| !is_held_out(first + i)).collect();
+    let train = columns.basis.select_columns(&seen);
+    let gram = products(&train) + DMatrix::identity(train.nrows(), train.nrows());
     let root = gram.cholesky()?;
-    let mean = root.solve(&train.tr_mul(&columns.residual.select_rows(&seen)));
+    let mean = root.solve(&(&train * columns.residual.select_columns(&seen).transpose()));
 
     let mut rows = std::collections::BTreeMap::<(usize, usize, usize), Vec<usize>>::new();
-    for i in healthy.filter(|i| is_held_out(*i)) {
-        let average = &observed.averages()[i];
-        rows.entry((average.channel, average.run, block(i))).or_default().push(i);
+    for i in healthy.filter(|i| is_held_out(first + i)) {
+        let average = &observed.averages()[first + i];
+        rows.entry((average.channel, average.run, block(first + i))).or_default().push(i);
     }
     rows.retain(|_, rows| rows.len() as f64 >= LEAST_SHARE * BLOCK_S);
     let blocks: Vec<Vec<usize>> = rows.into_values().collect();
+    // Of a transposed matrix.
     let summed = |matrix: &DMatrix<f64>| {
-        DMatrix::from_fn(blocks.len(), matrix.ncols(), |b, j| {
-            let sum: f64 = blocks[b].iter().map(|i| matrix[(*i, j)]).sum();
-            sum / (blocks[b].len() as f64).sqrt()
-        })
+        let mut sums = DMatrix::zeros(blocks.len(), matrix.nrows());
+        for (b, rows) in blocks.iter().enumerate() {
+            let mut sum = DVector::zeros(matrix.nrows());
+            rows.iter().for_each(|i| sum += matrix.column(*i));
+            sums.row_mut(b).tr_copy_from(&(sum / (rows.len() as f64).sqrt()));
+        }
+        sums
     };
     let (basis, shares) = (summed(&columns.basis), summed(&columns.shares));
-    let residual = summed(&DMatrix::from_columns(std::slice::from_ref(&columns.residual)));
-    let errors = residual.column(0) - &basis * mean;
+    let residual = summed(&columns.residual);
+    let errors = (residual - &basis * mean).column(0).into_owned();
     let of_parameters = &basis * root.solve(&basis.transpose());
     let covariance =
         DMatrix::identity(blocks.len(), blocks.len()) + of_parameters + &shares * shares.transpose();
     covariance.cholesky()?.l().solve_lower_triangular(&errors)
 }
 
-/// Whitens the columns that a temperature is found with.
+/// Whitens the columns that a temperature is found with, in the rows of the healthy drives.
 pub(crate) fn columns(
-    whitening: &Whitening,
-    basis: &[Vec<f64>],
+    (whitening, healthy): (&Whitening, Range<usize>),
+    basis: &[&Vec<f64>],
     shares: &[Vec<f64>],
     residual: &[f64],
 ) -> Columns {
-    let whitened = |columns: &[Vec<f64>]| {
-        let all: Vec<_> = columns.iter().map(|column| DVector::from_vec(whitening.apply(column))).collect();
-        matrix(residual.len(), &all)
-    };
+    let white = |column: &[f64]| whitening.apply(column)[healthy.clone()].to_vec();
+    let rows = healthy.len();
     Columns {
-        basis: whitened(basis),
-        shares: whitened(shares),
-        residual: DVector::from_vec(whitening.apply(residual)),
+        basis: transposed(rows, basis.len(), basis.iter().map(|column| white(column))),
+        shares: transposed(rows, shares.len(), shares.iter().map(|column| white(column))),
+        residual: transposed(rows, 1, [white(residual)]),
     }
 }

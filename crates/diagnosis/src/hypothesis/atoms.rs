@@ -40,7 +40,7 @@ impl Atoms {
             Atom {
                 piece,
                 part,
-                with_basis: joint.model.basis().select_rows(&rows).transpose() * &own,
+                with_basis: joint.model.transposed().select_columns(&rows) * &own,
                 with_residual: &transposed * joint.residual.select_rows(&rows),
                 own: transposed * own,
             }

@@ -217,5 +217,5 @@ pub(crate) fn left_by_all(joint: &Joint<'_>) -> DVector<f64> {
         first += count;
     }
     let weights = joint.model.basis_weights(&reduced, &left);
-    left - joint.model.basis() * weights
+    left - joint.model.transposed().tr_mul(&weights)
 }

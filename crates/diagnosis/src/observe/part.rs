@@ -17,6 +17,7 @@ use crate::{
         kept::Kept,
         kept::Shapes,
         sag::{Sag, Source},
+        sample::Sample,
     },
 };
 
@@ -53,6 +54,8 @@ pub(crate) struct Part {
     shapes: Shapes,
     /// What the last robots would have shown on which nothing acts.
     with_nothing: Kept<(Robot, Vec<Meter>), Vec<f64>>,
+    /// Which stretches are compared.
+    pub(crate) sample: Sample,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
@@ -74,6 +77,7 @@ impl Part {
         // Being stuck is a mechanism's business here.
         let mut drives = Drives::watched(robot, recording, watch)?.including_stuck();
         drives.averages.retain(|average| average.duration_s >= LEAST_S);
+        let sample = Sample::of(&mut drives);
         let mut began_s = vec![0.0; recording.rows()];
         for run in &recording.runs {
             let first = run.rows.clone().next().map_or(0.0, |row| recording.t_s[row]);
@@ -117,6 +121,7 @@ impl Part {
             grade,
             shapes,
             with_nothing: Kept::default(),
+            sample,
             drives,
             suspect,
         })

@@ -147,6 +147,12 @@ impl Series {
         self.parts[0].watts_per_a
     }
 
+    /// What a report says of drives that were not compared as a whole.
+    pub(crate) fn sampled(&self) -> Vec<String> {
+        let of = |part: &Part| part.sample.words(if part.suspect { "driving" } else { "healthy driving" });
+        self.parts.iter().filter_map(of).collect()
+    }
+
     /// Number of channels of power.
     pub fn channels(&self) -> usize {
         self.meters.iter().filter(|meter| meter.is_power()).count()

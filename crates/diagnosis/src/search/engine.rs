@@ -1,22 +1,17 @@
 //! The engine from drives to the posterior.
 
-use std::ops::Range;
-
 use model::{
     Robot,
     mechanism::{Mechanism, Scale},
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use crate::{
     Error,
-    evidence::{
-        linear_model::{LinearModel, matrix},
-        noise::Whitening,
-    },
+    evidence::noise::Whitening,
     fit::{
+        amplitude::Healthy,
         baseline::Baseline,
-        discrepancy::run_columns,
         held_out::{HeldOut, held_out},
         joint::Joint,
         parameter::IDLE_SIGMA_A,
@@ -31,13 +26,6 @@ use crate::{
     search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
-/// Amplitudes that healthy drives choose from, each about twice the one before, up to what a robot with borrowed constants is missed by.
-const AMPLITUDES: [f64; 8] = [0.003, 0.006, 0.01, 0.02, 0.03, 0.06, 0.12, 0.25];
-/// Standard deviations of ground from run to run that healthy drives choose from, as shares of resistance: none on a floor, a third on soil
-/// that is wet here and dry there (BorealTC: sandy loam).
-const RUN_VARIATIONS: [f64; 5] = [0.0, 0.03, 0.08, 0.18, 0.35];
-/// Amplitude of the discrepancy beside which that is chosen.
-const RUN_MODEL_ERROR: f64 = 0.02;
 /// Residuals beyond so many standard deviations count linearly: one second in 2000 by chance.
 const LARGE: f64 = 3.5;
 /// By how much wider the discrepancy is in the most flexible fit, from which weights are taken: with weights and scale of the base fit the
@@ -96,9 +84,10 @@ pub(crate) fn find(
     let model_error = if observed.series.has_healthy() {
         let healthy = observed.test_rows..observed.rows();
         let of_runs;
-        (run_variation, of_runs) = runs_differ(observed, &baseline, (&plain, healthy.clone()), &shared);
+        let healthy = Healthy { observed, baseline: &baseline, whitening: &plain, rows: healthy };
+        (run_variation, of_runs) = healthy.run_variation(&shared);
         shared.extend(of_runs);
-        amplitude(observed, &baseline, (&plain, healthy), &shared)
+        healthy.model_error(&shared)
     } else {
         file.model_error_fraction()
     };
@@ -106,14 +95,17 @@ pub(crate) fn find(
     others.extend(shared);
     let weighted = weighted(observed, (&baseline, file), &others, &plain);
     let temperature = if observed.series.has_healthy() {
-        let basis = [&baseline.sensitivities[..], &others].concat();
-        let columns = temperature::columns(&weighted, &basis, &healthy_shares(&common), &baseline.residual);
+        let basis: Vec<&Vec<f64>> = baseline.sensitivities.iter().chain(&others).collect();
+        let healthy = observed.test_rows..observed.rows();
+        let shares = healthy_shares(&common);
+        let columns = temperature::columns((&weighted, healthy), &basis, &shares, &baseline.residual);
         temperature::temperature(observed, &columns)
     } else {
         temperature::UNTOLD
     };
     let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
-    let joint = Joint::new(observed, (&baseline, file), others, whitening, temperature);
+    let joint = Joint::new(observed, (&baseline, file), &others, whitening, temperature);
+    drop(others);
     step("screening mechanisms", 0.4)?;
     let grid = Grid::new(observed, windows);
     let screen = Screen::new(&joint, &grid, effects);
@@ -142,13 +134,14 @@ pub(crate) fn find(
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
 fn held_outs(joint: &Joint<'_>, explanations: &[Explanation]) -> [HeldOut; 2] {
-    let fit = |is_own: &dyn Fn(&Explanation) -> bool| {
+    let fit = |is_own: &(dyn Fn(&Explanation) -> bool + Sync)| {
         let found = explanations.iter().find(|one| is_own(one))?;
         Some(held_out(joint, found.fitted.as_ref()?))
     };
-    let nothing = fit(&|one| one.names.is_empty()).unwrap_or_default();
-    let named = fit(&|one| !one.names.is_empty()).unwrap_or(nothing);
-    [nothing, named]
+    let (nothing, named) =
+        rayon::join(|| fit(&|one| one.names.is_empty()), || fit(&|one| !one.names.is_empty()));
+    let nothing = nothing.unwrap_or_default();
+    [nothing, named.unwrap_or(nothing)]
 }
 
 /// Noise of the power of the test drives, root mean square [W].
@@ -233,69 +226,6 @@ pub(crate) fn healthy_columns(
     Ok(healthy_shares(&effects(&shared, &scale(observed, baseline, file), &beside)?))
 }
 
-/// The likeliest amplitude of the discrepancy in some rows of healthy drives.
-pub(crate) fn amplitude(
-    observed: &Observations<'_>,
-    baseline: &Baseline,
-    (whitening, rows): (&Whitening, Range<usize>),
-    common: &[Vec<f64>],
-) -> f64 {
-    let log = |share: &f64| {
-        let discrepancy = baseline.discrepancy(observed, *share);
-        let columns: Vec<&Vec<f64>> =
-            baseline.sensitivities.iter().chain(&discrepancy).chain(common).collect();
-        log_evidence(baseline, (whitening, rows.clone()), &columns)
-    };
-    likeliest(&AMPLITUDES, log)
-}
-
-/// The likeliest standard deviation of ground from run to run, as a share of rolling and skid resistance, with its columns.
-fn runs_differ(
-    observed: &Observations<'_>,
-    baseline: &Baseline,
-    (whitening, rows): (&Whitening, Range<usize>),
-    common: &[Vec<f64>],
-) -> (f64, Vec<Vec<f64>>) {
-    let units = run_columns(observed, &baseline.components(observed));
-    if units.is_empty() {
-        return (0.0, units);
-    }
-    let scaled = |share: f64| -> Vec<Vec<f64>> {
-        units.iter().map(|column| column.iter().map(|by| share * by).collect()).collect()
-    };
-    let discrepancy = baseline.discrepancy(observed, RUN_MODEL_ERROR);
-    let log = |share: &f64| {
-        let of_runs = scaled(*share);
-        let columns: Vec<&Vec<f64>> =
-            baseline.sensitivities.iter().chain(&discrepancy).chain(common).chain(&of_runs).collect();
-        log_evidence(baseline, (whitening, rows.clone()), &columns)
-    };
-    let share = likeliest(&RUN_VARIATIONS, log);
-    (share, if share > 0.0 { scaled(share) } else { Vec::new() })
-}
-
-/// Log evidence of some rows under columns, tempered as where no drives tell.
-fn log_evidence(
-    baseline: &Baseline,
-    (whitening, rows): (&Whitening, Range<usize>),
-    columns: &[&Vec<f64>],
-) -> f64 {
-    let divisor = temperature::UNTOLD.sqrt();
-    let white =
-        |column: &Vec<f64>| DVector::from_vec(whitening.apply(column)[rows.clone()].to_vec()) / divisor;
-    let columns: Vec<DVector<f64>> = columns.iter().map(|column| white(column)).collect();
-    let model = LinearModel::new(matrix(rows.len(), &columns), rows.len() as f64 / temperature::UNTOLD);
-    let residual = DMatrix::from_columns(&[white(&baseline.residual)]);
-    model.reduce(&[&model.group(residual)]).evidence(&[]).log
-}
-
-/// The value of a grid with the highest logarithm.
-fn likeliest(grid: &[f64], log: impl Fn(&f64) -> f64 + Sync) -> f64 {
-    let logs: Vec<f64> = grid.iter().map(log).collect();
-    let best = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b]));
-    best.map_or(grid[0], |best| grid[best])
-}
-
 /// Whitening with weights from what the most flexible fit leaves.
 fn weighted(
     observed: &Observations<'_>,
@@ -305,7 +235,7 @@ fn weighted(
 ) -> Whitening {
     let wide: Vec<Vec<f64>> =
         others.iter().map(|column| column.iter().map(|x| FLEXIBLE * x).collect()).collect();
-    let joint = Joint::new(observed, (baseline, file), wide, plain.clone(), 1.0);
+    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0);
     let left = unlisted::left_by_all(&joint);
     let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
     plain.scaled(weight)

@@ -1,5 +1,7 @@
 //! Explanations: sets of mechanisms, with or without something unlisted, and their posterior probabilities.
 
+use std::sync::Arc;
+
 use crate::{
     evidence::linear_model::log_sum,
     fit::joint::Fitted,
@@ -28,7 +30,7 @@ pub(crate) struct Explanation {
     /// Log posterior, without the constant that is the same for all.
     pub(crate) log: f64,
     /// The fit of its mechanisms, none where there are none.
-    pub(crate) fitted: Option<Fitted>,
+    pub(crate) fitted: Option<Arc<Fitted>>,
     /// Unlisted: block and amplitude that are likeliest.
     pub(crate) block: Option<(usize, f64)>,
     /// Posterior probability.

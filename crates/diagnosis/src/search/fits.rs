@@ -1,6 +1,6 @@
 //! The best fit of every set of names.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use crate::fit::joint::Fitted;
 
@@ -11,7 +11,7 @@ pub(crate) type Names = Vec<&'static str>;
 #[derive(Clone)]
 pub(crate) struct Kept {
     /// The fit in its best form and windows.
-    pub(crate) fitted: Fitted,
+    pub(crate) fitted: Arc<Fitted>,
     /// By how much all forms and windows of the names together are likelier than the best, in log evidence.
     pub(crate) spread: f64,
 }

@@ -1,6 +1,6 @@
 //! Refits of the leading sets, their windows moved, their subsets compared, and the unlisted class beside them.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use rayon::prelude::*;
 
@@ -59,7 +59,7 @@ impl Search<'_> {
     /// A surface that the robot does not know; a watch that breaks.
     pub(crate) fn posterior(&self) -> Result<Vec<Explanation>, Error> {
         let mut fits = Fits::default();
-        fits.keep(Vec::new(), Kept { fitted: self.joint.fit(&[])?, spread: 0.0 });
+        fits.keep(Vec::new(), Kept { fitted: self.joint.fit(&[])?.into(), spread: 0.0 });
         let all = self.screen.singles();
         let singles = self.screen.by_names(&all);
         self.refit(&singles, SINGLES, &mut fits)?;
@@ -78,11 +78,12 @@ impl Search<'_> {
         let fit = |one: &&(Names, Scored, f64)| self.joint.fit(&self.screen.members(&one.1.set));
         let fitted: Vec<Fitted> = hopeful.par_iter().map(fit).collect::<Result<_, Error>>()?;
         let best = fitted.iter().map(|fitted| fitted.log).fold(f64::NEG_INFINITY, f64::max);
-        for ((names, _, spread), mut fitted) in hopeful.into_iter().zip(fitted) {
-            if fitted.log > best - BEHIND {
-                fitted = self.with_moved_edges(fitted)?;
-            }
-            fits.keep(names.clone(), Kept { fitted, spread: *spread });
+        let moved = |fitted: Fitted| {
+            if fitted.log > best - BEHIND { self.with_moved_edges(fitted) } else { Ok(fitted) }
+        };
+        let fitted: Vec<Fitted> = fitted.into_par_iter().map(moved).collect::<Result<_, Error>>()?;
+        for ((names, _, spread), fitted) in hopeful.into_iter().zip(fitted) {
+            fits.keep(names.clone(), Kept { fitted: fitted.into(), spread: *spread });
         }
         Ok(())
     }
@@ -111,14 +112,19 @@ impl Search<'_> {
     /// Fits the subsets of every leading set from where it ended: a good pair must not beat a single that is stuck elsewhere.
     fn fit_subsets(&self, fits: &mut Fits) -> Result<(), Error> {
         for size in [3, 2] {
-            for Kept { fitted, spread } in fits.leading(size, BEHIND) {
-                for without in 0..size {
-                    let mut members = fitted.members.clone();
-                    members.remove(without);
-                    let part = self.joint.fit(&members)?;
-                    fits.keep(names(&members), Kept { fitted: part, spread });
-                }
-            }
+            let leading = fits.leading(size, BEHIND);
+            let parts: Vec<(usize, usize)> =
+                (0..leading.len()).flat_map(|i| (0..size).map(move |without| (i, without))).collect();
+            let fit = |(i, without): &(usize, usize)| {
+                let mut members = leading[*i].fitted.members.clone();
+                members.remove(*without);
+                Ok((
+                    names(&members),
+                    Kept { fitted: self.joint.fit(&members)?.into(), spread: leading[*i].spread },
+                ))
+            };
+            let fitted: Vec<(Names, Kept)> = parts.par_iter().map(fit).collect::<Result<_, Error>>()?;
+            fitted.into_iter().for_each(|(names, kept)| fits.keep(names, kept));
         }
         Ok(())
     }
@@ -127,18 +133,24 @@ impl Search<'_> {
     fn with_moved_edges(&self, mut fitted: Fitted) -> Result<Fitted, Error> {
         let piece_s = self.joint.observed.total_s() / self.grid.pieces() as f64;
         for m in 0..fitted.members.len() {
-            for share in EDGE_MOVES {
-                let Some(span) =
-                    moved(self.grid, self.joint.observed, fitted.members[m].span, share * piece_s)
-                else {
-                    break;
-                };
-                let mut members: Vec<Member> = fitted.members.clone();
-                members[m].span = span;
-                let next = self.joint.fit(&members)?;
-                if next.log > fitted.log {
-                    fitted = next;
-                }
+            let span = fitted.members[m].span;
+            let moves = EDGE_MOVES
+                .iter()
+                .filter_map(|share| moved(self.grid, self.joint.observed, span, share * piece_s));
+            let spans: Vec<Span> = std::iter::once(span).chain(moves).collect();
+            if spans.len() == 1 {
+                continue;
+            }
+            let logs = self.joint.in_spans(&fitted.members, m, &spans)?;
+            let best = (1..spans.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b])).unwrap_or(0);
+            if logs[best] <= logs[0] {
+                continue;
+            }
+            let mut members: Vec<Member> = fitted.members.clone();
+            members[m].span = spans[best];
+            let next = self.joint.fit(&members)?;
+            if next.log > fitted.log {
+                fitted = next;
             }
         }
         Ok(fitted)
@@ -169,7 +181,7 @@ impl Search<'_> {
         all
     }
 
-    fn unlisted_beside(&self, names: &Names, log: f64, fitted: &Fitted) -> Explanation {
+    fn unlisted_beside(&self, names: &Names, log: f64, fitted: &Arc<Fitted>) -> Explanation {
         let beside =
             unlisted::Beside { columns: &fitted.columns, halves: &fitted.halves, left: &fitted.left };
         let (mean, each) = unlisted::log_evidence(&self.joint.model, self.blocks, &beside);
@@ -179,7 +191,7 @@ impl Search<'_> {
             names: names.clone(),
             unlisted: true,
             log: log + gain + log_prior(names.len(), true),
-            fitted: Some(fitted.clone()),
+            fitted: Some(Arc::clone(fitted)),
             block: best.map(|one| (one.0, one.1)),
             probability: 0.0,
         }

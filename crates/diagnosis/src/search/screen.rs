@@ -78,7 +78,7 @@ impl<'a> Screen<'a> {
                 }
             }
         }
-        let halves = joint.model.halves(&matrix(joint.model.basis().ncols(), &with_basis));
+        let halves = joint.model.halves(&matrix(joint.model.transposed().nrows(), &with_basis));
         let by_basis = joint.model.with_basis(&DMatrix::from_columns(std::slice::from_ref(&joint.residual)));
         let residual_halves =
             joint.model.halves(&by_basis).into_iter().map(|half| half.column(0).into_owned()).collect();
@@ -265,7 +265,7 @@ mod tests {
         let baseline = Baseline::fit(&observed, &robot).unwrap();
         let white = baseline.noise.whitening(&baseline.predicted, &observed.places);
         let others = baseline.discrepancy(&observed, 0.03);
-        let joint = Joint::new(&observed, (&baseline, &robot), others, white, 4.0);
+        let joint = Joint::new(&observed, (&baseline, &robot), &others, white, 4.0);
         let library = ["payload", "surface_change"].map(|name| mechanism::by_name(name).unwrap());
         let scale = Scale { robot: &robot, meter_zero_w: 7.0, mean_power_w: 90.0, mean_loss_w: 9.0 };
         let (series, robot) = (&series, &baseline.robot);

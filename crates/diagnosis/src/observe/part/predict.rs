@@ -79,7 +79,7 @@ impl Part {
                 self.drives.go_on()?;
                 for (i, seen) in (places.start + piece * ROWS_A_LOOK..).zip(rows) {
                     let loss_w = loss_w.get(i).copied().unwrap_or(self.drives.rows[i].loss_w);
-                    if let Some(on) = &on[phase[i]] {
+                    if let Some(on) = on[phase[i]].as_ref().filter(|_| self.sample.needs(i)) {
                         *seen = self.seen(on, i, loss_w);
                     }
                 }
@@ -168,9 +168,12 @@ impl Part {
                 let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &row.motion(robot));
                 let shapes = &mut shapes[stretch.rows.clone()];
                 let pieces = shapes.par_chunks_mut(ROWS_A_LOOK).zip(rows.par_chunks(ROWS_A_LOOK));
-                pieces.try_for_each(|(shapes, rows)| {
+                pieces.enumerate().try_for_each(|(piece, (shapes, rows))| {
                     self.drives.go_on()?;
-                    shapes.iter_mut().zip(rows).for_each(|(to, row)| *to = shape(row));
+                    let first = stretch.rows.start + piece * ROWS_A_LOOK;
+                    let needed =
+                        shapes.iter_mut().zip(rows).enumerate().filter(|(i, _)| self.sample.needs(first + i));
+                    needed.for_each(|(_, (to, row))| *to = shape(row));
                     Ok::<_, Error>(())
                 })?;
             }
