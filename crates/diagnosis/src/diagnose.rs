@@ -229,6 +229,36 @@ mod tests {
     }
 
     #[test]
+    fn drives_on_level_ground_at_one_speed_say_what_they_cannot_tell_and_how_well_the_file_is_known() {
+        let mut robot = model::builtin::husky_a200();
+        robot.provenance = [("mass_kg".to_owned(), model::knowledge::Provenance::Borrowed)].into();
+        let mut level = drive(&robot, 0.0, &[]);
+        for (channel, value) in [(Channel::LeftSpeed, 0.5), (Channel::RightSpeed, 0.5), (Channel::Pitch, 0.0)]
+        {
+            level.channels.insert(channel, vec![value; level.rows()]);
+        }
+        let [predicted] = [Series::new(&robot, &level, None).unwrap()];
+        let mean_w = predicted.predict(&robot, &[]).unwrap()[10];
+        for side in [Channel::LeftPower, Channel::RightPower] {
+            let noisy = (0..level.rows()).map(|i| mean_w + 0.3 * (1.7 * i as f64).sin());
+            level.channels.insert(side, noisy.collect());
+        }
+        let found = crate::diagnose(&Question::new(&robot, &level, None), &|_, _| {}).unwrap();
+        let notes = found.notes.join("\n");
+        assert!(
+            notes.contains("drive at one speed only and hardly turn and stay on level ground"),
+            "{notes}"
+        );
+        let untold =
+            found.notes.iter().find(|note| note.contains("cannot tell a plausible size of")).unwrap();
+        assert!(untold.contains("`pitch_bias`") || untold.contains("`speed_dependent_friction`"), "{untold}");
+        assert!(notes.contains("mass_kg 100 % (borrowed)"), "{notes}");
+        let hilly =
+            crate::diagnose(&Question::new(&robot, &drive(&robot, 0.0, &[]), None), &|_, _| {}).unwrap();
+        assert!(!hilly.notes.join("").contains("level ground"), "{:?}", hilly.notes);
+    }
+
+    #[test]
     fn a_watch_that_breaks_ends_the_search() {
         let robot = model::builtin::husky_a200();
         let suspect = drive(&robot, 0.0, &[]);

@@ -84,6 +84,7 @@ mod search {
 /// What the posterior says, as a report.
 pub mod report {
     pub(crate) mod about_simulation;
+    pub(crate) mod assumed;
     pub(crate) mod corrected;
     pub(crate) mod detectable;
     pub(crate) mod diagnosis;

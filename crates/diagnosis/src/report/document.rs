@@ -1,22 +1,16 @@
 //! The report put together.
 
-use model::{
-    Robot,
-    knowledge::{ModelError, Regimes},
-};
+use model::Robot;
 use recording::{Channel, Recording};
 
 use crate::{
     Applied, Error,
-    fit::{
-        held_out::{HeldOut, STRAY_SIGMAS},
-        member::Member,
-        temperature::UNTOLD,
-    },
+    fit::member::Member,
     observe::observations::Observations,
     report::{
+        assumed::{assumed, strays},
         corrected::corrected,
-        detectable::detectable,
+        detectable::{detectable, untold},
         diagnosis::{
             BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, FileReport, Finding, FindingFit, Trace,
             Verdict,
@@ -33,9 +27,6 @@ use crate::{
         explanation::{Explanation, credible},
     },
 };
-
-/// Standard deviations from which a parameter is worth a note: among a dozen parameters one in seven robots has one by chance.
-const FAR_OFF_SIGMAS: f64 = 2.5;
 
 /// What a report is about.
 pub(crate) struct Subject<'a> {
@@ -79,6 +70,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let mut notes = subject.doubts.to_vec();
     notes.extend(of_corrected);
     notes.extend(assumed(file, observed, found));
+    notes.extend(untold(&found.detectable, &observed.covered(), file));
     notes.extend(strays(found.held_out[usize::from(!findings.is_empty())]));
     let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
     let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();
@@ -108,80 +100,6 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         notes,
         corrected_robot,
         trace,
-    })
-}
-
-/// What was assumed of the file, and which of its numbers would have to be far off with nothing missing.
-fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<String> {
-    let source = match (observed.series.has_healthy(), &file.model_error) {
-        (true, _) => "by the healthy drives",
-        (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
-        (false, None) => "by where its constants come from",
-    };
-    let share = 100.0 * found.model_error;
-    let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
-    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &observed.covered())));
-    if found.run_variation > 0.0 {
-        let share = 100.0 * found.run_variation;
-        notes.push(format!(
-            "the ground of the healthy drives differs from run to run by {share:.0} % of its resistance"
-        ));
-    }
-    if found.temperature > UNTOLD {
-        let times = (found.temperature / UNTOLD).sqrt();
-        notes.push(format!(
-            "healthy drives lie farther from the model than it and its noise allow, so that everything counts as {times:.1} times less sure"
-        ));
-    }
-    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
-    let parameters = &found.baseline.parameters;
-    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
-    for (parameter, z) in parameters.list.iter().zip(z.iter().flat_map(|z| z.iter())) {
-        if z.abs() > FAR_OFF_SIGMAS {
-            let name = &parameter.name;
-            notes.push(format!(
-                "with nothing missing, `{name}` would lie {z:+.1} standard deviations from its file"
-            ));
-        }
-    }
-    notes
-}
-
-/// That more seconds than chance has lie far off.
-fn strays(held_out: HeldOut) -> Option<String> {
-    /// Share beyond [`STRAY_SIGMAS`] standard deviations of a normal distribution, ten times.
-    const MANY: f64 = 0.0047;
-    (held_out.strays > MANY).then(|| {
-        format!(
-            "{:.1} % of seconds lie more than {STRAY_SIGMAS} standard deviations of the noise off, as quick moves and strays of meters do; \
-             they count as that far off",
-            100.0 * held_out.strays
-        )
-    })
-}
-
-/// What these drives do that those of a calibration did not.
-fn beyond(known: &ModelError, here: &Regimes) -> Option<String> {
-    /// What a smooth curve is good for beyond its ends, as a share of the range that it was fitted in.
-    const REACH: f64 = 0.1;
-    let quantities = [
-        ("speed", "m/s", known.regimes.speed_mps, here.speed_mps),
-        ("difference of the sides' speeds", "m/s", known.regimes.difference_mps, here.difference_mps),
-        ("pitch", "rad", known.regimes.pitch_rad, here.pitch_rad),
-    ];
-    let is_beyond = |[low, high]: [f64; 2], here: [f64; 2]| {
-        let reach = REACH * (high - low);
-        here[0] < low - reach || here[1] > high + reach
-    };
-    let said: Vec<String> = quantities
-        .into_iter()
-        .filter(|(_, _, known, here)| is_beyond(*known, *here))
-        .map(|(name, unit, [low, high], here)| {
-            format!("{name} {:.2} to {:.2} {unit} (calibrated on {low:.2} to {high:.2})", here[0], here[1])
-        })
-        .collect();
-    (!said.is_empty()).then(|| {
-        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", said.join(", "))
     })
 }
 

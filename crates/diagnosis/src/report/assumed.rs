@@ -1,0 +1,113 @@
+//! What a report has to say of its own assumptions: of the file, of its constants, and of seconds far off.
+
+use model::{
+    Robot,
+    knowledge::{ModelError, Provenance, Regimes},
+};
+
+use crate::{
+    fit::{
+        held_out::{HeldOut, STRAY_SIGMAS},
+        parameter::Parameter,
+        temperature::UNTOLD,
+    },
+    observe::observations::Observations,
+    search::engine::Found,
+};
+
+/// Standard deviations from which a parameter is worth a note: among a dozen parameters one in seven robots has one by chance.
+const FAR_OFF_SIGMAS: f64 = 2.5;
+
+/// What was assumed of the file, and which of its numbers would have to be far off with nothing missing.
+pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<String> {
+    let source = match (observed.series.has_healthy(), &file.model_error) {
+        (true, _) => "by the healthy drives",
+        (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
+        (false, None) => "by where its constants come from",
+    };
+    let share = 100.0 * found.model_error;
+    let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
+    notes.push(known_to(file, &found.baseline.parameters.list));
+    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &observed.covered())));
+    if found.run_variation > 0.0 {
+        let share = 100.0 * found.run_variation;
+        notes.push(format!(
+            "the ground of the healthy drives differs from run to run by {share:.0} % of its resistance"
+        ));
+    }
+    if found.temperature > UNTOLD {
+        let times = (found.temperature / UNTOLD).sqrt();
+        notes.push(format!(
+            "healthy drives lie farther from the model than it and its noise allow, so that everything counts as {times:.1} times less sure"
+        ));
+    }
+    let nothing = found.explanations.iter().find(|one| one.names.is_empty() && !one.unlisted);
+    let parameters = &found.baseline.parameters;
+    let z = nothing.and_then(|one| one.fitted.as_ref()).map(|fitted| parameters.z(&fitted.u));
+    for (parameter, z) in parameters.list.iter().zip(z.iter().flat_map(|z| z.iter())) {
+        if z.abs() > FAR_OFF_SIGMAS {
+            let name = &parameter.name;
+            notes.push(format!(
+                "with nothing missing, `{name}` would lie {z:+.1} standard deviations from its file"
+            ));
+        }
+    }
+    notes
+}
+
+/// How well the file's constants are known, and by what.
+fn known_to(file: &Robot, parameters: &[Parameter]) -> String {
+    let one = |parameter: &Parameter| {
+        let name = &parameter.name;
+        let is_fitted = file.posterior.as_ref().is_some_and(|posterior| posterior.parameters.contains(name));
+        let source = match file.provenance_of(name) {
+            _ if is_fitted => "fitted",
+            Some(Provenance::Measured) => "measured",
+            Some(Provenance::Fitted) => "fitted",
+            Some(Provenance::DataSheet) => "data sheet",
+            Some(Provenance::Borrowed) => "borrowed",
+            None => "`uncertainty`",
+        };
+        parameter.relative_sigma().map(|sigma| format!("{name} {:.0} % ({source})", 100.0 * sigma))
+    };
+    let all: Vec<String> = parameters.iter().filter_map(one).collect();
+    format!("the file's constants are taken to be known, one standard deviation, to: {}", all.join(", "))
+}
+
+/// That more seconds than chance has lie far off.
+pub(crate) fn strays(held_out: HeldOut) -> Option<String> {
+    /// Share beyond [`STRAY_SIGMAS`] standard deviations of a normal distribution, ten times.
+    const MANY: f64 = 0.0047;
+    (held_out.strays > MANY).then(|| {
+        format!(
+            "{:.1} % of seconds lie more than {STRAY_SIGMAS} standard deviations of the noise off, as quick moves and strays of meters do; \
+             they count as that far off",
+            100.0 * held_out.strays
+        )
+    })
+}
+
+/// What these drives do that those of a calibration did not.
+fn beyond(known: &ModelError, here: &Regimes) -> Option<String> {
+    /// What a smooth curve is good for beyond its ends, as a share of the range that it was fitted in.
+    const REACH: f64 = 0.1;
+    let quantities = [
+        ("speed", "m/s", known.regimes.speed_mps, here.speed_mps),
+        ("difference of the sides' speeds", "m/s", known.regimes.difference_mps, here.difference_mps),
+        ("pitch", "rad", known.regimes.pitch_rad, here.pitch_rad),
+    ];
+    let is_beyond = |[low, high]: [f64; 2], here: [f64; 2]| {
+        let reach = REACH * (high - low);
+        here[0] < low - reach || here[1] > high + reach
+    };
+    let said: Vec<String> = quantities
+        .into_iter()
+        .filter(|(_, _, known, here)| is_beyond(*known, *here))
+        .map(|(name, unit, [low, high], here)| {
+            format!("{name} {:.2} to {:.2} {unit} (calibrated on {low:.2} to {high:.2})", here[0], here[1])
+        })
+        .collect();
+    (!said.is_empty()).then(|| {
+        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", said.join(", "))
+    })
+}
