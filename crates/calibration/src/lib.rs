@@ -12,6 +12,7 @@ pub mod current_calibration;
 pub mod current_fit;
 pub mod current_judge;
 pub mod dogru_marques;
+pub mod doubt;
 pub mod drives;
 mod error;
 mod field;
@@ -34,6 +35,7 @@ mod stuck;
 mod watch;
 
 pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
+pub use doubt::{Doubt, doubts};
 pub use drives::Drives;
 pub use error::Error;
 pub use field::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use model::{Power, PowerKernel, Robot, Sides};
 use rayon::prelude::*;
-use recording::{Channel, PowerForm, Recording, Watch};
+use recording::{Channel, PowerForm, Recording, Watch, unwatched};
 use serde::Serialize;
 
 use crate::{
-    Drives, Error,
+    Doubt, Drives, Error, doubts,
     power::{PowerModel, columns_by_row, seen_w},
     row::Row,
     score::Tally,
@@ -51,6 +51,8 @@ pub struct Prediction {
     pub runs: Vec<RunPrediction>,
     /// All of them.
     pub total: RunPrediction,
+    /// What is doubtful about the recording.
+    pub doubts: Vec<Doubt>,
 }
 
 /// A prediction with what it was made of, row by row.
@@ -74,7 +76,7 @@ pub struct PredictedDrives {
 /// # Errors
 /// [`Error::NothingToFit`], [`Error::UnknownSurface`] or [`Error::NoForcePerAmpere`].
 pub fn predict(robot: &Robot, recording: &Recording) -> Result<PredictedDrives, Error> {
-    predict_drives(robot, Drives::new(robot, &recording.thinned())?)
+    predict_watched(robot, recording, &unwatched())
 }
 
 /// Predicts as [`predict()`] does, followed by a watch.
@@ -86,7 +88,10 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    predict_drives(robot, Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?)
+    let mut found =
+        predict_drives(robot, Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?)?;
+    found.prediction.doubts = doubts(robot, recording, watch)?;
+    Ok(found)
 }
 
 fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {
@@ -122,7 +127,12 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
     let judged = judge(&drives, &predicted_w, &recorded_w, &stuck, &averages);
     let runs = order.iter().map(|run| judged[*run].named(drives.runs[*run].clone())).collect();
     let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into());
-    Ok(PredictedDrives { prediction: Prediction { runs, total }, drives, predicted_w, recorded_w })
+    Ok(PredictedDrives {
+        prediction: Prediction { runs, total, doubts: Vec::new() },
+        drives,
+        predicted_w,
+        recorded_w,
+    })
 }
 
 /// The same drives with the power that eq. 2 makes of recorded motor currents, for whoever compares powers; a recording that tells

@@ -28,12 +28,18 @@ pub(crate) struct Recorded {
 impl Recorded {
     /// Reads the robot and all recordings; doubts about them go to stderr.
     pub(crate) fn read(&self) -> anyhow::Result<(Robot, Recording)> {
-        Ok((robot(&self.robot)?, self.read_files(&self.recording)?))
+        let robot = robot(&self.robot)?;
+        let recording = self.read_files(&self.recording, &robot)?;
+        Ok((robot, recording))
     }
 
     /// Reads other recordings in the same way.
-    pub(crate) fn read_files(&self, files: &[PathBuf]) -> anyhow::Result<Recording> {
-        let map = self.map.as_deref().map(map).transpose()?;
+    pub(crate) fn read_files(&self, files: &[PathBuf], robot: &Robot) -> anyhow::Result<Recording> {
+        // Topics are a Husky's where nothing else is said, on the wheels of the robot at hand.
+        let map = match self.map.as_deref() {
+            Some(name) => Some(map(name, robot)?),
+            None => Map::built_in_for("husky", robot.wheel_radius_m),
+        };
         let bar = progress::reading(files);
         let told = bar.clone();
         let watch: Watch = Arc::new(move |bytes| {
@@ -75,8 +81,8 @@ fn warn(report: &ReadingReport) {
 }
 
 /// A built-in map by its name, or a map file.
-fn map(name: &str) -> Result<Map, BadInput> {
-    if let Some(map) = Map::built_in(name) {
+fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
+    if let Some(map) = Map::built_in_for(name, robot.wheel_radius_m) {
         return Ok(map);
     }
     let known = Map::BUILT_IN.join(" or ");

@@ -232,6 +232,21 @@ pub enum Error {
         /// What it claims.
         rows: u64,
     },
+    /// Several robots, of which none is named.
+    #[error("it holds several robots, with the namespaces {}; give the one that is meant as `namespace` in a map", namespaces.join(" and "))]
+    SeveralRobots {
+        /// Their namespaces.
+        namespaces: Vec<String>,
+    },
+
+    /// A topic that all rows would come from has one message.
+    #[error(
+        "topic {topic} has one message only, from which power cannot be told; record it for as long as the robot drives"
+    )]
+    OneMessage {
+        /// The topic.
+        topic: String,
+    },
     /// Who asked for it stopped the reading.
     #[error("the reading was stopped")]
     Stopped,

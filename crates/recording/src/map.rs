@@ -41,6 +41,8 @@ pub struct Map {
     pub max_gap_s: Option<f64>,
     /// The surface of the whole drive, where the file does not tell.
     pub surface: Option<String>,
+    /// The namespace of the robot that is meant by `*`, where a file holds several.
+    pub namespace: Option<String>,
     /// Where each channel comes from.
     pub sources: Vec<Source>,
 }
@@ -75,6 +77,13 @@ pub enum Target {
     Channel(Channel),
     /// A column that is no channel, kept under its own name.
     Aside(String),
+}
+
+impl Target {
+    /// Whether it is the rim speed of a side.
+    pub(crate) fn is_wheel_speed(&self) -> bool {
+        matches!(self, Target::Channel(Channel::LeftSpeed | Channel::RightSpeed))
+    }
 }
 
 /// Where a source lies.
@@ -112,6 +121,7 @@ struct MapFile {
     stamp: Stamp,
     max_gap_s: Option<f64>,
     surface: Option<String>,
+    namespace: Option<String>,
     sources: Vec<SourceFile>,
 }
 
@@ -147,6 +157,17 @@ impl Map {
         Map::from_json(text).ok()
     }
 
+    /// A built-in map with the wheels of another robot.
+    pub fn built_in_for(name: &str, wheel_radius_m: f64) -> Option<Map> {
+        let text = match name {
+            "husky" => include_str!("../maps/husky.json"),
+            _ => return Map::built_in(name),
+        };
+        let mut file: serde_json::Value = serde_json::from_str(text).ok()?;
+        file["wheel_radius_m"] = wheel_radius_m.into();
+        Map::from_value(&file).ok()
+    }
+
     /// Reads and checks a map.
     ///
     /// # Errors
@@ -177,8 +198,14 @@ impl Map {
             stamp: file.stamp,
             max_gap_s: file.max_gap_s,
             surface: file.surface,
+            namespace: file.namespace,
             sources: sources.collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Whether any of its sources is a column of a table.
+    pub(crate) fn names_columns(&self) -> bool {
+        self.sources.iter().any(|source| matches!(source.place, Place::Columns(_)))
     }
 
     /// Whether a topic's name is what a source means by `pattern`.

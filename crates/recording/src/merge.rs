@@ -8,6 +8,8 @@ use crate::{
     clock::implausible_steps,
     gap,
     map::{Place, Target},
+    namespace::{self, Others},
+    publishers,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
     stream::{BY_HEADER, Stream},
@@ -29,7 +31,10 @@ impl Topics<'_> {
                 continue;
             }
             let messages = topic.samples.messages();
-            let stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
+            let mut stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
+            let is_wheel = |(source, _): &(usize, usize)| self.map.sources[*source].target.is_wheel_speed();
+            let wheels: Vec<bool> = topic.sources.iter().map(is_wheel).collect();
+            self.repairs.extend(publishers::leave_zeros_out(&topic.name, &mut stream, &wheels));
             let step_s = gap::median_step_s(&stream.t_s(stream.t_ns.first().copied().unwrap_or(0)));
             let rate_hz = step_s.map(|step_s| 1.0 / step_s);
             let step_s = step_s.unwrap_or(f64::INFINITY);
@@ -37,7 +42,8 @@ impl Topics<'_> {
             report.streams.push(StreamReport { topic: topic_name, type_name, messages, rate_hz, clock });
             streams.push(Named { topic: topic.name, sources: topic.sources, stream, step_s });
         }
-        let chosen = self.choose(&streams);
+        let other = namespace::others(self.map, &streams)?;
+        let chosen = self.choose(&streams, other.as_ref());
         if chosen.is_empty() {
             let found = match self.names.as_slice() {
                 [] => "the file names no topic".to_owned(),
@@ -50,6 +56,9 @@ impl Topics<'_> {
             return Err(Error::Empty { found });
         }
         let base = self.base(&streams, &chosen)?;
+        if streams[base].stream.t_ns.len() < 2 {
+            return Err(Error::OneMessage { topic: streams[base].topic.clone() });
+        }
         check_steps(&streams[base])?;
         let recording = self.align(&streams, &chosen, base, name, &mut report)?;
         let looks = self.looks().clone();
@@ -77,7 +86,7 @@ impl Topics<'_> {
     }
 
     /// For each target the first source of the map that has a value: (source, stream, column).
-    fn choose(&mut self, streams: &[Named]) -> Vec<(usize, usize, usize)> {
+    fn choose(&mut self, streams: &[Named], other: Option<&Others>) -> Vec<(usize, usize, usize)> {
         let mut chosen: Vec<(usize, usize, usize)> = Vec::new();
         for (index, source) in self.map.sources.iter().enumerate() {
             for (at, named) in streams.iter().enumerate() {
@@ -86,6 +95,11 @@ impl Topics<'_> {
                 };
                 let taken = chosen.iter().any(|(other, ..)| self.map.sources[*other].target == source.target);
                 let holds = named.stream.columns[column].iter().any(|value| !value.is_nan());
+                if let Some(reason) = other.and_then(|other| other.why_not(&named.topic)) {
+                    let name = format!("{}, {}", named.topic, fields(&source.place));
+                    self.ignored.push(Ignored { name, reason });
+                    continue;
+                }
                 let reason = match (holds, taken) {
                     (true, false) => {
                         chosen.push((index, at, column));
@@ -136,7 +150,9 @@ impl Topics<'_> {
                 values.clone()
             } else {
                 let own_s = named.stream.t_s(origin_ns);
-                let max_gap_s = self.map.max_gap_s.unwrap_or_else(|| gap::threshold_s(&own_s));
+                // Messages without a number of this source, as of an arm on the same topic, are no part of its rhythm.
+                let max_gap_s =
+                    self.map.max_gap_s.unwrap_or_else(|| gap::threshold_s(&with_numbers(&own_s, values)));
                 max_gaps.insert(named.topic.clone(), max_gap_s);
                 let between = if source.target == Target::Channel(Channel::Heading) {
                     Between::ShorterArc
@@ -183,11 +199,16 @@ fn check_steps(base: &Named) -> Result<(), Error> {
     }
 }
 
+/// Times at which there is a number.
+fn with_numbers(t_s: &[f64], values: &[f64]) -> Vec<f64> {
+    t_s.iter().zip(values).filter(|(_, value)| !value.is_nan()).map(|(t, _)| *t).collect()
+}
+
 /// A topic's stream, and the sources of the map that its columns are.
-struct Named {
-    topic: String,
-    sources: Vec<(usize, usize)>,
-    stream: Stream,
+pub(crate) struct Named {
+    pub(crate) topic: String,
+    pub(crate) sources: Vec<(usize, usize)>,
+    pub(crate) stream: Stream,
     /// Its median step \[s\]; infinite for a single message.
     step_s: f64,
 }

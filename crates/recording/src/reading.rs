@@ -105,12 +105,17 @@ pub fn read_file(
     let stopped = file.stopped();
     let budget = Budget { room, looks: Looks::new(watch) };
     let reading = match format {
-        Format::Csv => csv::read(file, name, map, &budget),
-        Format::Parquet => parquet::read(file, name, map, &budget),
+        Format::Csv => csv::read(file, name, of_columns(map), &budget),
+        Format::Parquet => parquet::read(file, name, of_columns(map), &budget),
         Format::Mcap => mcap::read(file, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
+}
+
+/// A map as far as it is of tables: one that names topics only leaves columns to their names.
+fn of_columns(map: Option<&Map>) -> Option<&Map> {
+    map.filter(|map| map.names_columns())
 }
 
 /// A watch that lets everything pass.
@@ -169,8 +174,8 @@ pub(crate) fn read_within(
 ) -> Result<Reading, Error> {
     let budget = Budget { room, looks: Looks::new(&unwatched()) };
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, &budget),
-        Format::Csv => csv::read(Cursor::new(bytes), name, map, &budget),
+        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, of_columns(map), &budget),
+        Format::Csv => csv::read(Cursor::new(bytes), name, of_columns(map), &budget),
         Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
     }

@@ -145,6 +145,8 @@ pub enum SuspicionKind {
     Unsigned,
     /// Wheel speeds and yaw rate that do not belong together.
     Slip,
+    /// Axes of a sensor that are not the robot's.
+    Mounting,
     /// Most of it is gaps.
     Sparse,
 }

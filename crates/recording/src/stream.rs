@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::{Channel, Error, Repair, Source, Stamp, Target, coarse::Coarse};
+use crate::{Channel, Error, Repair, Source, Stamp, Target, coarse::Coarse, gap};
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
 /// messages are delayed by fractions of a second on a robot's own network.
@@ -110,7 +110,10 @@ impl Samples {
         let (t_ns, clock) =
             if by_header { (self.stamp_ns, BY_HEADER) } else { (self.log_ns.clone(), "log time") };
         let other = if by_header { "log" } else { "header" };
-        refuse_jumps(topic, &t_ns, &self.log_ns, other, &self.coarse)?;
+        let stalls = refuse_jumps(topic, (&t_ns, by_header), &self.log_ns, other, &self.coarse)?;
+        if let Some(stall) = stalls.first() {
+            repairs.push(Repair { place: format!("topic {topic}"), what: stall.told(stalls.len()) });
+        }
         let messages = if self.coarse.is_joined() { t_ns.len() } else { 0 };
         let weight = (0..messages).map(|at| self.coarse.weight(at)).collect();
         let mut stream = Stream { t_ns, columns: self.columns, clock, weight };
@@ -125,13 +128,37 @@ impl Samples {
     }
 }
 
+/// Where the recorder's clock moved against stamps that go on evenly.
+struct Stall {
+    message: usize,
+    by_s: f64,
+}
+
+impl Stall {
+    fn told(&self, count: usize) -> String {
+        format!(
+            "the recorder's clock moves by {:.3} s against the header stamps before message {}, and so {count} times in all; the stamps go on \
+             evenly there and were used",
+            -self.by_s, self.message
+        )
+    }
+}
+
+/// Refuses a clock that was set on the way. Of header stamps that go on evenly it is the recorder that stalled, which is told.
 fn refuse_jumps(
     topic: &str,
-    t_ns: &[i64],
+    (t_ns, by_header): (&[i64], bool),
     log_ns: &[i64],
     other: &'static str,
     coarse: &Coarse,
-) -> Result<(), Error> {
+) -> Result<Vec<Stall>, Error> {
+    let even_s = gap::threshold_s(&seconds(t_ns));
+    let goes_on = |at: usize| {
+        let step_s = t_ns[at].saturating_sub(t_ns[at - 1]) as f64 / NS_PER_S;
+        by_header && step_s >= 0.0 && step_s <= even_s
+    };
+    let mut stalls = Vec::new();
+    let usual = t_ns.first().zip(log_ns.first()).map_or(0, |(t, log)| t.saturating_sub(*log));
     let jump = |at: usize, by_ns: i64| {
         let message = coarse.first_in_file(at) + 1;
         let by_s = by_ns as f64 / NS_PER_S;
@@ -145,13 +172,20 @@ fn refuse_jumps(
             let offset = |t: i64, log: i64| t.saturating_sub(log);
             let moved = offset(t, log).saturating_sub(offset(before.0, before.1));
             let back = t.saturating_sub(latest_ns).min(0);
-            if let Some(error) = jump(at, moved).or_else(|| jump(at, back)) {
+            match jump(at, moved) {
+                Some(Error::ClockJump { message, by_s, .. }) if goes_on(at) => {
+                    stalls.push(Stall { message, by_s })
+                }
+                Some(error) => return Err(error),
+                None => {}
+            }
+            if let Some(error) = jump(at, back) {
                 return Err(error);
             }
         }
         latest_ns = latest_ns.max(t);
     }
-    Ok(())
+    Ok(stalls)
 }
 
 impl Stream {
@@ -233,6 +267,17 @@ mod tests {
             assert!(error.to_string().contains("topic /t, message 3: its clock jumps by"), "{error}");
         }
         assert!(samples(&[1.0, 1.1, 500.0]).into_stream("/t", Stamp::Log, &mut Vec::new()).is_ok());
+    }
+
+    #[test]
+    fn a_recorder_that_stalls_while_stamps_go_on_evenly_is_told_and_the_stamps_are_used() {
+        let times: Vec<f64> = (0..40).map(|i| 1.0 + 0.1 * f64::from(i)).collect();
+        let mut stalled = samples(&times);
+        stalled.log_ns.iter_mut().skip(20).for_each(|ns| *ns += 3_000_000_000);
+        let mut repairs = Vec::new();
+        let stream = stalled.into_stream("/t", Stamp::Header, &mut repairs).unwrap();
+        assert_eq!((stream.clock, stream.t_ns.len()), (BY_HEADER, 40));
+        assert!(repairs[0].what.starts_with("the recorder's clock moves by 3.000 s"), "{repairs:?}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod motion;
 mod rhythm;
 
 use absence::{constant, empty, present, saturated, sparse};
-use magnitude::{magnitude, units_of_runs};
+use magnitude::{magnitude, mounting, units_of_runs};
 use motion::{degrees, lone_flips, turning, unsigned};
 use rhythm::slow_motion;
 
@@ -44,6 +44,7 @@ pub(crate) fn suspicions_watched(recording: &Recording, looks: &Looks) -> Result
             continue;
         }
         doubts.extend(saturated(&present).map(|statement| doubt(Kind::Saturated, statement)));
+        doubts.extend(mounting(channel, &present).map(|statement| doubt(Kind::Mounting, statement)));
         doubts.extend(magnitude(channel, &present).map(|statement| doubt(Kind::Unit, statement)));
     }
     for run in &recording.runs {

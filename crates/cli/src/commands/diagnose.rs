@@ -44,8 +44,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { recorded, reference, simulated, ruled_out, out } = arguments;
     let (robot, suspect) = recorded.read()?;
-    let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference)?) };
-    let simulated = if simulated.is_empty() { None } else { Some(recorded.read_files(simulated)?) };
+    let healthy = if reference.is_empty() { None } else { Some(recorded.read_files(reference, &robot)?) };
+    let simulated = if simulated.is_empty() { None } else { Some(recorded.read_files(simulated, &robot)?) };
     let bar = progress::steps();
     let told = |step: &str, share: f64| {
         bar.set_position((share * progress::STEPS as f64) as u64);

@@ -23,6 +23,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found = predict(&robot, &recording);
     sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
+    found.prediction.doubts.iter().for_each(|doubt| output::note(format_args!("doubt: {doubt}")));
     if let Some(path) = &arguments.html {
         let page = report::prediction_page(&robot, &found);
         std::fs::write(path, page)

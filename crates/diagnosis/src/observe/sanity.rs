@@ -1,6 +1,9 @@
 //! Recordings that are not what they seem: sides swapped, signs turned round, another robot's file.
 
-use calibration::Drives;
+use calibration::{
+    Drives,
+    doubt::{CHANGES, Change, speeds},
+};
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
 
@@ -28,11 +31,13 @@ pub(crate) fn mistakes(
     series: &Series,
     of_healthy: &Robot,
 ) -> Result<Vec<String>, Error> {
+    said.extend(speeds(robot, recording).iter().map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { of_healthy } else { robot };
     let given = follows(known, series, true)?;
     let mut mended = Vec::new();
-    let changes = CHANGES.iter().filter_map(|(change, words)| Some((change(recording)?, *words)));
+    let changes = CHANGES.iter().filter(|change| !told_by_turning(change, recording));
+    let changes = changes.filter_map(|change| Some(((change.mended)(recording)?, change.words)));
     for (changed, words) in changes {
         let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
         if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
@@ -176,57 +181,10 @@ fn follows(robot: &Robot, series: &Series, suspect: bool) -> Result<Follows, Err
     Ok(Follows { r2: r * r.abs(), ratio: sums[3] / sums[4].max(1e-300) })
 }
 
-type Change = fn(&Recording) -> Option<Recording>;
-
-const CHANGES: [(Change, &str); 5] = [
-    (swapped_power, "power of the left and the right side seem swapped"),
-    (swapped_currents, "motor currents of the left and the right side seem swapped"),
-    (swapped_speeds, "wheel speeds of the left and the right side seem swapped"),
-    (turned_pitch, "pitch seems to have the wrong sign (nose up must be positive)"),
-    (turned_power, "power seems to have the wrong sign (drawn from the battery must be positive)"),
-];
-
-fn swapped_power(recording: &Recording) -> Option<Recording> {
-    swapped(recording, Channel::LeftPower, Channel::RightPower)
-}
-
-fn swapped_currents(recording: &Recording) -> Option<Recording> {
-    swapped(recording, Channel::LeftMotorCurrent, Channel::RightMotorCurrent)
-}
-
-/// None where how the robot turned tells that they are not.
-fn swapped_speeds(recording: &Recording) -> Option<Recording> {
+/// Whether how the robot turned tells already that sides of wheel speeds are not swapped.
+fn told_by_turning(change: &Change, recording: &Recording) -> bool {
     let turns = [Channel::YawRate, Channel::Heading];
-    if turns.iter().any(|turn| recording.channel(*turn).is_some()) && of_motion(recording).is_empty() {
-        return None;
-    }
-    swapped(recording, Channel::LeftSpeed, Channel::RightSpeed)
-}
-
-fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
-    let mut changed = recording.clone();
-    let (a, b) = (changed.channels.remove(&left)?, changed.channels.remove(&right)?);
-    changed.channels.insert(left, b);
-    changed.channels.insert(right, a);
-    Some(changed)
-}
-
-fn turned_pitch(recording: &Recording) -> Option<Recording> {
-    turned(recording, &[Channel::Pitch])
-}
-
-fn turned_power(recording: &Recording) -> Option<Recording> {
-    turned(recording, &[Channel::LeftPower, Channel::RightPower, Channel::Power, Channel::Current])
-}
-
-fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
-    let mut changed = recording.clone();
-    let mut any = false;
-    for channel in channels {
-        if let Some(values) = changed.channels.get_mut(channel) {
-            values.iter_mut().for_each(|x| *x = -*x);
-            any = true;
-        }
-    }
-    any.then_some(changed)
+    let is_told =
+        turns.iter().any(|turn| recording.channel(*turn).is_some()) && of_motion(recording).is_empty();
+    change.name == "sides_of_speeds" && is_told
 }

@@ -7,7 +7,30 @@ use crate::{
     units::si_unit,
 };
 
+/// An inertial unit whose own axes are told instead of the robot's: no robot drives a quarter or a half turn over.
+pub(super) fn mounting(channel: Channel, present: &[f64]) -> Option<String> {
+    /// Farther over than any robot drives, and nearer to level than a unit on its side (60 degrees).
+    const ASKEW_RAD: f64 = std::f64::consts::FRAC_PI_3;
+    if !matches!(channel, Channel::Roll | Channel::Pitch) {
+        return None;
+    }
+    let mut sizes: Vec<f64> = present.iter().map(|value| value.abs()).collect();
+    let middle = sizes.len() / 2;
+    let typical_rad = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    (ASKEW_RAD..=std::f64::consts::PI).contains(&typical_rad).then(|| {
+        let how = if typical_rad > 2.0 * ASKEW_RAD { "upside down" } else { "on its side" };
+        format!(
+            "it is about {:.0} degrees all the time: the IMU seems mounted {how}, and its orientation is that of its own axes and not the robot's; \
+             leave its topic out of the map, or turn it by its mounting first",
+            typical_rad.to_degrees()
+        )
+    })
+}
+
 pub(super) fn magnitude(channel: Channel, present: &[f64]) -> Option<String> {
+    if mounting(channel, present).is_some() {
+        return None;
+    }
     let [least, greatest] = channel.plausible_magnitude();
     let high = high_magnitude(present)?;
     let unit = si_unit(channel.quantity());

@@ -37,6 +37,8 @@ pub(super) fn degrees(recording: &Recording, run: &Run) -> Option<Suspicion> {
 struct Turns {
     by: Channel,
     pairs: Vec<[f64; 2]>,
+    /// The sum of both speeds beside the rate, which follows it where one side's sign is mirrored.
+    sums: Vec<[f64; 2]>,
 }
 
 impl Turns {
@@ -45,12 +47,15 @@ impl Turns {
         let column = |channel| recording.channel(channel).and_then(|values| values.get(run.rows.clone()));
         let (left, right) = (column(Channel::LeftSpeed)?, column(Channel::RightSpeed)?);
         let difference: Vec<f64> = left.iter().zip(right).map(|(left, right)| right - left).collect();
+        let sum: Vec<f64> = left.iter().zip(right).map(|(left, right)| right + left).collect();
         if let Some(rates) = column(Channel::YawRate) {
-            let pairs = difference.into_iter().zip(rates).map(|(difference, rate)| [difference, *rate]);
-            return Some(Turns { by: Channel::YawRate, pairs: pairs.collect() });
+            let beside =
+                |of: Vec<f64>| of.into_iter().zip(rates).map(|(speed, rate)| [speed, *rate]).collect();
+            return Some(Turns { by: Channel::YawRate, pairs: beside(difference), sums: beside(sum) });
         }
         let (headings, t_s) = (column(Channel::Heading)?, recording.t_s.get(run.rows.clone())?);
-        Some(Turns { by: Channel::Heading, pairs: by_heading(t_s, &difference, headings) })
+        let [pairs, sums] = [difference, sum].map(|speeds| by_heading(t_s, &speeds, headings));
+        Some(Turns { by: Channel::Heading, pairs, sums })
     }
 }
 
@@ -81,21 +86,25 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     const SLIP_TRACK_M: [f64; 2] = [0.1, 6.0];
     /// Least share of the yaw rate's variance that turning wheels explain on firm ground.
     const LEAST_R2: f64 = 0.5;
-    let Turns { by, pairs } = Turns::of(recording, run)?;
-    let (mut n, mut dd, mut dw, mut ww) = (0usize, 0.0, 0.0, 0.0);
-    for [difference, rate] in pairs {
-        // Rows where the wheels do not turn the robot only add the sensor's noise.
-        if difference.abs() > 2.0 * STANDSTILL_MPS && !rate.is_nan() {
-            n += 1;
-            dd += difference * difference;
-            dw += difference * rate;
-            ww += rate * rate;
-        }
+    let Turns { by, pairs, sums } = Turns::of(recording, run)?;
+    let [r2, slip_track_m] = share_and_track(&pairs)?;
+    let dw = slip_track_m;
+    // Of a mirrored side the sum of the speeds turns the robot, to the side of the other.
+    if let Some([of_sum, track_m]) =
+        share_and_track(&sums).filter(|[of_sum, _]| *of_sum > LEAST_R2 && r2 < LEAST_R2)
+    {
+        let (channel, side) = match track_m > 0.0 {
+            true => (Channel::LeftSpeed, "left"),
+            false => (Channel::RightSpeed, "right"),
+        };
+        let statement = format!(
+            "the sign of the {side} side seems mirrored: the sum of both wheel speeds explains {:.0} % of how the robot turns, and their \
+             difference {:.0} %; give its source \"scale\": -1 in a map",
+            100.0 * of_sum,
+            100.0 * r2
+        );
+        return Some(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Opposed, statement });
     }
-    if n < LEAST_ROWS || ww == 0.0 {
-        return None;
-    }
-    let (r2, slip_track_m) = (dw * dw / (dd * ww), dd / dw);
     let (kind, statement) = if dw < 0.0 && r2 > LEAST_R2 {
         (Kind::Opposed, "it is opposed to the wheel speeds: left and right, or its sign, are swapped".into())
     } else if r2 < LEAST_R2 {
@@ -121,6 +130,21 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
         return None;
     };
     Some(Suspicion { channel: by, run: Some(run.name.clone()), kind, statement })
+}
+
+/// The share of the variance of rates that speeds explain, and the track that they mean \[m\].
+fn share_and_track(pairs: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let (mut n, mut dd, mut dw, mut ww) = (0usize, 0.0, 0.0, 0.0);
+    for [speed, rate] in pairs {
+        // Rows where the wheels do not turn the robot only add the sensor's noise.
+        if speed.abs() > 2.0 * STANDSTILL_MPS && !rate.is_nan() {
+            n += 1;
+            dd += speed * speed;
+            dw += speed * rate;
+            ww += rate * rate;
+        }
+    }
+    (n >= LEAST_ROWS && ww > 0.0).then(|| [dw * dw / (dd * ww), dd / dw])
 }
 
 /// Motor currents that are never negative although the wheels turn both ways.

@@ -1,0 +1,159 @@
+//! Recordings that would follow the model if a side, a sign or an axis were another.
+
+use model::Robot;
+use recording::{Channel, Recording, SuspicionKind, Watch, suspicions};
+
+use super::{Doubt, follow, follow::Followed};
+use crate::Error;
+
+/// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
+const CLEARLY_BETTER: f64 = 0.5;
+/// And when predictions then follow the recording at least so well (r²).
+const FOLLOWS: f64 = 0.5;
+/// Recordings that are followed so well are not doubted: half of the rest would be a twentieth of the scatter.
+const FOLLOWS_WELL: f64 = 0.9;
+
+/// What may have been wrong with a recording, and the recording with that mended; none where it lacks the channels.
+pub struct Change {
+    /// Name of the doubt.
+    pub name: &'static str,
+    /// What seems wrong, in words.
+    pub words: &'static str,
+    /// What mends it.
+    pub cure: &'static str,
+    /// The recording with that mended.
+    pub mended: fn(&Recording) -> Option<Recording>,
+}
+
+const SCALE: &str = "give its source \"scale\": -1 in a map";
+
+/// All changes that are tried.
+pub const CHANGES: [Change; 9] = [
+    Change {
+        name: "power_sign",
+        words: "power seems to have the wrong sign (drawn from the battery must be positive, charging negative)",
+        cure: SCALE,
+        mended: |of| turned(of, &[Channel::LeftPower, Channel::RightPower, Channel::Power, Channel::Current]),
+    },
+    Change {
+        name: "left_power_sign",
+        words: "power of the left side seems to have its sign mirrored",
+        cure: SCALE,
+        mended: |of| turned(of, &[Channel::LeftPower]),
+    },
+    Change {
+        name: "right_power_sign",
+        words: "power of the right side seems to have its sign mirrored",
+        cure: SCALE,
+        mended: |of| turned(of, &[Channel::RightPower]),
+    },
+    Change {
+        name: "sides_of_power",
+        words: "power of the left and the right side seem swapped",
+        cure: "swap both sources in a map",
+        mended: |of| swapped(of, Channel::LeftPower, Channel::RightPower),
+    },
+    Change {
+        name: "sides_of_currents",
+        words: "motor currents of the left and the right side seem swapped",
+        cure: "swap both sources in a map",
+        mended: |of| swapped(of, Channel::LeftMotorCurrent, Channel::RightMotorCurrent),
+    },
+    Change {
+        name: "sides_of_speeds",
+        words: "wheel speeds of the left and the right side seem swapped",
+        cure: "swap both sources in a map",
+        mended: |of| swapped(of, Channel::LeftSpeed, Channel::RightSpeed),
+    },
+    Change {
+        name: "pitch_sign",
+        words: "pitch seems to have the wrong sign (nose up must be positive), as of an IMU that is mounted back to front or tells axes north-east-down",
+        cure: SCALE,
+        mended: |of| turned(of, &[Channel::Pitch]),
+    },
+    Change {
+        name: "imu_turned_left",
+        words: "pitch seems to be roll, as of an IMU that is mounted a quarter turn about the vertical",
+        cure: "name `orientation.roll` as the source of `pitch_rad` in a map, and `orientation.pitch` as that of `roll_rad`",
+        mended: |of| exchanged(of, [1.0, -1.0]),
+    },
+    Change {
+        name: "imu_turned_right",
+        words: "pitch seems to be roll of the other sign, as of an IMU that is mounted a quarter turn about the vertical",
+        cure: "name `orientation.roll` with \"scale\": -1 as the source of `pitch_rad` in a map, and `orientation.pitch` as that of `roll_rad`",
+        mended: |of| exchanged(of, [-1.0, 1.0]),
+    },
+];
+
+/// The change that would mend a recording best, if any clearly does.
+pub(super) fn mends(
+    robot: &Robot,
+    recording: &Recording,
+    given: &Followed,
+    watch: &Watch,
+) -> Result<Option<Doubt>, Error> {
+    if given.r2 > FOLLOWS_WELL {
+        return Ok(None);
+    }
+    let mut best: Option<(f64, &Change)> = None;
+    for change in &CHANGES {
+        let Some(mended) = (change.mended)(recording) else { continue };
+        if change.name == "sides_of_speeds" && turns_as_wheels_say(recording) {
+            continue;
+        }
+        let other = follow::of(robot, &mended, watch)?;
+        let is_believed = other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2);
+        if is_believed && best.is_none_or(|(r2, _)| other.r2 > r2) {
+            best = Some((other.r2, change));
+        }
+    }
+    Ok(best.map(|(r2, change)| Doubt {
+        name: change.name,
+        statement: format!(
+            "{}: with that mended the model would follow {:.0} % of the variation {}",
+            change.words,
+            100.0 * r2,
+            if given.r2 > 0.0 {
+                format!("instead of {:.0} %", 100.0 * given.r2)
+            } else {
+                "and not run against it".to_owned()
+            }
+        ),
+        cure: change.cure.to_owned(),
+    }))
+}
+
+/// Whether a gyroscope or compass tells that the sides of wheel speeds are not swapped.
+fn turns_as_wheels_say(recording: &Recording) -> bool {
+    let is_told = [Channel::YawRate, Channel::Heading].iter().any(|turn| recording.channel(*turn).is_some());
+    is_told && !suspicions(recording).iter().any(|doubt| doubt.kind == SuspicionKind::Opposed)
+}
+
+fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let (a, b) = (changed.channels.remove(&left)?, changed.channels.remove(&right)?);
+    changed.channels.insert(left, b);
+    changed.channels.insert(right, a);
+    Some(changed)
+}
+
+fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let mut any = false;
+    for channel in channels {
+        if let Some(values) = changed.channels.get_mut(channel) {
+            values.iter_mut().for_each(|x| *x = -*x);
+            any = true;
+        }
+    }
+    any.then_some(changed)
+}
+
+/// Roll in the place of pitch and pitch in that of roll, each times a sign.
+fn exchanged(recording: &Recording, [of_roll, of_pitch]: [f64; 2]) -> Option<Recording> {
+    let mut changed = recording.clone();
+    let (pitch, roll) = (changed.channels.remove(&Channel::Pitch)?, changed.channels.remove(&Channel::Roll)?);
+    changed.channels.insert(Channel::Pitch, roll.iter().map(|x| of_roll * x).collect());
+    changed.channels.insert(Channel::Roll, pitch.iter().map(|x| of_pitch * x).collect());
+    Some(changed)
+}

@@ -1,0 +1,176 @@
+//! Speeds and powers of a size that another unit would explain.
+
+use model::Robot;
+use recording::{Channel, Recording};
+
+use super::{Doubt, follow::Followed};
+
+/// Slip tracks over the track of the robot: skid-steered robots turn as with 1 to 2.3 times their track (Mandow et al., IROS 2007: 1.5 to
+/// 2.3 on hard ground; BorealTC's Husky: 1.5 to 1.8).
+const SLIP_TRACKS: [f64; 2] = [0.75, 2.6];
+/// Speeds over ground over those of the wheels: wheels slip by a tenth or two, and do not fall behind.
+const OVER_GROUND: [f64; 2] = [0.5, 1.25];
+/// Speeds beyond so many times the fastest that the robot's file has.
+const FASTEST: f64 = 1.5;
+/// Share of the variance that wheels have to explain before their size is compared.
+const LEAST_R2: f64 = 0.5;
+/// Fewer rows tell nothing.
+const LEAST_ROWS: usize = 50;
+/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
+const STANDS_MPS: f64 = 0.016;
+/// How far a factor may be from that of a unit.
+const LIKE_UNIT: f64 = 1.6;
+/// Ratios of recorded to predicted power that no friction explains: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as
+/// much on loam.
+const POWERS: [f64; 2] = [0.1, 3.0];
+
+/// Doubts about the size of wheel speeds, by gyroscope, positions and what the robot can do.
+pub fn speeds(robot: &Robot, recording: &Recording) -> Vec<Doubt> {
+    let by_yaw_rate = slip_track_m(recording).and_then(|found_m| {
+        let times = found_m / robot.track_m;
+        let factor = found_m / robot.slip_track_m;
+        (!(SLIP_TRACKS[0]..=SLIP_TRACKS[1]).contains(&times)).then(|| {
+            let file_m = robot.slip_track_m;
+            doubt(
+                robot,
+                factor,
+                &format!(
+                    "the yaw rate means a slip track of {found_m:.2} m and the robot's file has {file_m:.2} m"
+                ),
+            )
+        })
+    });
+    let by_positions = over_ground(recording).and_then(|share| {
+        (!(OVER_GROUND[0]..=OVER_GROUND[1]).contains(&share)).then(|| {
+            doubt(
+                robot,
+                1.0 / share,
+                &format!("over ground the robot moves {share:.2} times as fast as its wheels say"),
+            )
+        })
+    });
+    let by_robot = fastest_mps(recording).and_then(|found_mps| {
+        let most_mps = robot.max_wheel_speed_mps;
+        (found_mps > FASTEST * most_mps).then(|| {
+            let statement = format!(
+                "wheels turn as fast as {found_mps:.2} m/s and the robot's file has {most_mps:.2} m/s at most"
+            );
+            // How fast it drove is not known: a factor is at least this.
+            doubt(robot, found_mps / most_mps, &statement)
+        })
+    });
+    by_yaw_rate.or(by_positions).or(by_robot).into_iter().collect()
+}
+
+/// A doubt about wheel speeds that are so many times what they should be.
+fn doubt(robot: &Robot, factor: f64, shown: &str) -> Doubt {
+    let per_rad = 1.0 / robot.wheel_radius_m;
+    let units = [
+        ("km/h", 3.6),
+        ("mph", 2.237),
+        ("ft/s", 3.281),
+        ("cm/s", 100.0),
+        ("mm/s", 1000.0),
+        ("rad/s of a wheel", per_rad),
+        ("turns of a wheel per minute", per_rad * 60.0 / std::f64::consts::TAU),
+        ("turns of a wheel per second", per_rad / std::f64::consts::TAU),
+    ];
+    let off = |unit: f64| (factor / unit).ln().abs();
+    let mut near: Vec<&(&str, f64)> = units.iter().filter(|(_, unit)| off(*unit) < LIKE_UNIT.ln()).collect();
+    near.sort_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+    let names: Vec<String> = near.iter().map(|(name, unit)| format!("{name} ({unit:.2})")).collect();
+    let radius_m = robot.wheel_radius_m;
+    let cure = if names.is_empty() {
+        format!(
+            "look at the unit of wheel speeds, at the encoders' scale and at the robot's wheel_radius_m, {radius_m} m"
+        )
+    } else {
+        format!(
+            "are they in {}? Give their unit in a map (wheel_radius_m of the robot's file is {radius_m} m)",
+            names.join(", or in ")
+        )
+    };
+    Doubt {
+        name: "speed_scale",
+        statement: format!("wheel speeds seem {factor:.2} times too large: {shown}"),
+        cure,
+    }
+}
+
+/// The slip track that yaw rate and wheel speeds mean together.
+fn slip_track_m(recording: &Recording) -> Option<f64> {
+    let [left, right, rate] =
+        [Channel::LeftSpeed, Channel::RightSpeed, Channel::YawRate].map(|c| recording.channel(c));
+    let (mut n, mut dd, mut dw, mut ww) = (0_usize, 0.0, 0.0, 0.0);
+    for ((left, right), rate) in left?.iter().zip(right?).zip(rate?) {
+        let difference = right - left;
+        if difference.abs() > 2.0 * STANDS_MPS && rate.is_finite() {
+            n += 1;
+            (dd, dw, ww) = (dd + difference * difference, dw + difference * rate, ww + rate * rate);
+        }
+    }
+    (n >= LEAST_ROWS && dw > 0.0 && dw * dw > LEAST_R2 * dd * ww).then(|| dd / dw)
+}
+
+/// Way by positions over way by wheels, of all seconds that move ahead.
+fn over_ground(recording: &Recording) -> Option<f64> {
+    let [x, y, left, right] =
+        [Channel::X, Channel::Y, Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c));
+    let (x, y, left, right) = (x?, y?, left?, right?);
+    let (mut shares, mut from) = (Vec::new(), 0);
+    for run in &recording.runs {
+        from = from.max(run.rows.start);
+        let mut way_m = 0.0;
+        for i in run.rows.clone().skip(1) {
+            let step_s = recording.t_s[i] - recording.t_s[i - 1];
+            way_m += 0.5 * (left[i] + right[i]) * step_s;
+            let span_s = recording.t_s[i] - recording.t_s[from];
+            if span_s < 1.0 {
+                continue;
+            }
+            let moved_m = (x[i] - x[from]).hypot(y[i] - y[from]);
+            // Positions of a robot that stands or turns on the spot are noise, and gaps tell nothing.
+            if span_s < 2.0 && moved_m.is_finite() && way_m.abs() > 0.1 {
+                shares.push(moved_m / way_m.abs());
+            }
+            (from, way_m) = (i, 0.0);
+        }
+        from = run.rows.end;
+    }
+    let median = shares.len() / 2;
+    (shares.len() >= LEAST_ROWS / 2).then(|| *shares.select_nth_unstable_by(median, f64::total_cmp).1)
+}
+
+/// 99th percentile of the sizes of wheel speeds.
+fn fastest_mps(recording: &Recording) -> Option<f64> {
+    let sides = [Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c));
+    let mut sizes: Vec<f64> =
+        sides.into_iter().flatten().flatten().map(|v| v.abs()).filter(|v| v.is_finite()).collect();
+    let at = sizes.len() * 99 / 100;
+    (sizes.len() >= LEAST_ROWS).then(|| *sizes.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// Doubts about the size of power.
+pub(super) fn power(followed: &Followed) -> Option<Doubt> {
+    let ratio = followed.ratio?;
+    // Of the wrong sign something else is told.
+    if ratio <= 0.0 || (POWERS[0]..POWERS[1]).contains(&ratio) {
+        return None;
+    }
+    let units =
+        [("kilowatts", 1e-3), ("milliwatts", 1e3), ("milliamperes or millivolts", 1e3), ("microwatts", 1e6)];
+    let near: Vec<&str> = units
+        .iter()
+        .filter(|(_, unit)| (ratio / unit).ln().abs() < 2.5_f64.ln())
+        .map(|(name, _)| *name)
+        .collect();
+    let told = if ratio < 0.01 || ratio > 100.0 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") };
+    Some(Doubt {
+        name: "power_scale",
+        statement: format!("recorded power is {told} times what the robot's file predicts"),
+        cure: match near.first() {
+            Some(unit) => format!("is it in {unit}? Give its unit in a map"),
+            None => "the recording may be another robot's, or power in another unit".to_owned(),
+        },
+    })
+}
