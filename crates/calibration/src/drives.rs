@@ -220,6 +220,16 @@ impl Drives {
         Ok(part)
     }
 
+    /// The same drives with rows counted whose slopes are missing, as on level ground.
+    #[must_use]
+    pub fn including_level(mut self) -> Drives {
+        if self.rows.par_iter().any(|row| row.level) {
+            self.rows.par_iter_mut().for_each(|row| row.used |= row.level);
+            self.average();
+        }
+        self
+    }
+
     /// The same drives with stuck rows counted like any other.
     #[must_use]
     pub fn including_stuck(mut self) -> Drives {

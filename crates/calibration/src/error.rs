@@ -10,6 +10,12 @@ pub enum Error {
         /// Why.
         reason: &'static str,
     },
+    /// No two neighbouring rows have all that an energy needs.
+    #[error("the recording cannot be used: no energy comes of it: {why}")]
+    NothingCounted {
+        /// What of it is left out, and why.
+        why: String,
+    },
     /// Runs are too few to hold one back.
     #[error(
         "surface `{surface}` was driven in {runs} run; record two or more, since runs that were not fitted are to judge the fit"

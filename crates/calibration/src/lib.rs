@@ -7,6 +7,7 @@ pub mod average;
 pub mod calibrate;
 mod copies;
 pub mod correlation;
+mod coverage;
 pub mod current;
 pub mod current_calibration;
 pub mod current_fit;
@@ -35,6 +36,7 @@ mod stuck;
 mod watch;
 
 pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
+pub use coverage::{Coverage, LeftOut};
 pub use doubt::{Doubt, doubts};
 pub use drives::Drives;
 pub use error::Error;

@@ -8,7 +8,9 @@ use recording::{Channel, PowerForm, Recording, Watch, unwatched};
 use serde::Serialize;
 
 use crate::{
-    Doubt, Drives, Error, doubts,
+    Coverage, Doubt, Drives, Error,
+    coverage::coverage,
+    doubts,
     power::{PowerModel, columns_by_row, seen_w},
     row::Row,
     score::Tally,
@@ -29,6 +31,8 @@ pub struct RunPrediction {
     pub rmse_w: f64,
     /// R² of power by row; `null` where the recorded power is constant.
     pub r2: Option<f64>,
+    /// How much of the run is counted in energies, and why the rest is not.
+    pub coverage: Coverage,
     /// Recorded energy \[J\].
     pub recorded_j: f64,
     /// Predicted energy \[J\].
@@ -88,16 +92,16 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    let mut found =
-        predict_drives(robot, Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?)?;
+    let recording = &*recording.thinned_watched(watch)?;
+    let mut found = predict_drives(robot, recording, Drives::watched(robot, recording, watch)?)?;
     found.prediction.doubts = doubts(robot, recording, watch)?;
     Ok(found)
 }
 
-fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Error> {
+fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Result<PredictedDrives, Error> {
     let stuck: Vec<bool> = drives.rows.par_iter().map(|row| row.stuck).collect();
     // A prediction is judged on all of a drive; being stuck is part of it.
-    let drives = drives.including_stuck();
+    let drives = drives.including_stuck().including_level();
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let amperes = (form == PowerForm::MotorCurrents).then(|| force_n_per_a(robot)).transpose()?;
     let (predicted_w, recorded_w) = columns_by_row(&drives, robot, |i, power| {
@@ -125,8 +129,16 @@ fn predict_drives(robot: &Robot, drives: Drives) -> Result<PredictedDrives, Erro
         currents_a,
     };
     let judged = judge(&drives, &predicted_w, &recorded_w, &stuck, &averages);
-    let runs = order.iter().map(|run| judged[*run].named(drives.runs[*run].clone())).collect();
-    let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into());
+    let covered = coverage(recording, &drives);
+    let of_all = Coverage::of_all(&covered);
+    if of_all.used_s <= 0.0 && recording.rows() > 1 {
+        return Err(Error::NothingCounted { why: of_all.words().unwrap_or_default() });
+    }
+    let runs = order
+        .iter()
+        .map(|run| judged[*run].named(drives.runs[*run].clone(), covered[*run].clone()))
+        .collect();
+    let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into(), of_all);
     Ok(PredictedDrives {
         prediction: Prediction { runs, total, doubts: Vec::new() },
         drives,
@@ -269,13 +281,14 @@ impl Judged {
         }
     }
 
-    fn named(&self, run: String) -> RunPrediction {
+    fn named(&self, run: String, coverage: Coverage) -> RunPrediction {
         let (by_row, by_second) = (self.by_row.score(), self.by_second.score());
         let currents = self.currents.map(|tally| tally.score());
         RunPrediction {
             run,
             rows: by_row.count,
             stuck_rows: self.stuck_rows,
+            coverage,
             bias_w: by_row.bias,
             rmse_w: by_row.rmse,
             r2: by_row.r2.is_finite().then_some(by_row.r2),

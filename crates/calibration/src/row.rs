@@ -36,6 +36,8 @@ pub struct Row {
     pub motor_c: Sides<f64>,
     /// Enters averages: everything needed is there and the wheels hold the ground.
     pub used: bool,
+    /// Pitch or roll of the row is missing where the recording has the channel: the ground is taken for level.
+    pub level: bool,
     /// The wheels turn against each other and the robot does not (`stuck`).
     pub stuck: bool,
 }
@@ -106,8 +108,9 @@ pub(crate) fn inputs(
         let (pitch_rad, roll_rad) = (at(pitch, i, 0.0), at(roll, i, 0.0));
         let air_c = Some(at(air.as_deref(), i, reference_c)).filter(|c| c.is_finite()).unwrap_or(reference_c);
         let motor_c = Sides { left: at(left_c, i, air_c), right: at(right_c, i, air_c) };
+        let level = !(pitch_rad.is_finite() && roll_rad.is_finite());
         let whole = recorded.iter().all(|column| column[i].is_finite())
-            && [rim_mps.left, rim_mps.right, pitch_rad, roll_rad].iter().all(|x| x.is_finite());
+            && [rim_mps.left, rim_mps.right].iter().all(|x| x.is_finite());
         let or = |x: f64, other: f64| if x.is_finite() { x } else { other };
         Row {
             t_s: recording.t_s[i],
@@ -117,7 +120,8 @@ pub(crate) fn inputs(
             pitch_rad: or(pitch_rad, 0.0),
             roll_rad: or(roll_rad, 0.0),
             motor_c: motor_c.map(|c| or(c, air_c)),
-            used: whole,
+            used: whole && !level,
+            level: whole && level,
             ..Row::default()
         }
     };

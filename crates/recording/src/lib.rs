@@ -9,6 +9,7 @@
 pub mod align;
 mod arrow_schema;
 mod bag;
+mod bridge;
 mod channel;
 mod clock;
 mod coarse;

@@ -11,7 +11,9 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv, mcap, parquet,
+    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag,
+    bridge::bridge,
+    csv, mcap, parquet,
     suspicion::suspicions_watched,
     watch::{Budget, Looks, Watched},
 };
@@ -232,6 +234,7 @@ impl Reading {
         report.format = format.to_owned();
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
+        report.repairs.extend(bridge(&mut recording, looks)?);
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })

@@ -72,7 +72,7 @@ impl PowerForm {
     ];
 
     /// The channels that it needs.
-    pub(crate) fn channels(self) -> [Channel; 2] {
+    pub fn channels(self) -> [Channel; 2] {
         let own = PowerForm::ALL.iter().find(|(form, _)| *form == self);
         own.map_or([Channel::Power; 2], |(_, channels)| *channels)
     }

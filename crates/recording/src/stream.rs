@@ -137,14 +137,14 @@ struct Stall {
 impl Stall {
     fn told(&self, count: usize) -> String {
         format!(
-            "the recorder's clock moves by {:.3} s against the header stamps before message {}, and so {count} times in all; the stamps go on \
-             evenly there and were used",
+            "the recorder's clock moves by {:.3} s against the header stamps before message {} ({count} such moves in all); the stamps themselves \
+             are even and were used",
             -self.by_s, self.message
         )
     }
 }
 
-/// Refuses a clock that was set on the way. Of header stamps that go on evenly it is the recorder that stalled, which is told.
+/// Refuses a clock that was set on the way. Of header stamps that go on evenly it is the recorder that stalled and wrote late, which is told.
 fn refuse_jumps(
     topic: &str,
     (t_ns, by_header): (&[i64], bool),
@@ -152,35 +152,32 @@ fn refuse_jumps(
     other: &'static str,
     coarse: &Coarse,
 ) -> Result<Vec<Stall>, Error> {
-    let even_s = gap::threshold_s(&seconds(t_ns));
-    let goes_on = |at: usize| {
-        let step_s = t_ns[at].saturating_sub(t_ns[at - 1]) as f64 / NS_PER_S;
-        by_header && step_s >= 0.0 && step_s <= even_s
+    let mut sorted = t_ns.to_vec();
+    sorted.sort_unstable();
+    let sorted_s = seconds(&sorted);
+    let (step_s, even_s) = (gap::median_step_s(&sorted_s).unwrap_or(0.0), gap::threshold_s(&sorted_s));
+    let is_even = by_header && sorted_s.windows(2).all(|pair| pair[1] - pair[0] <= even_s);
+    let since_s = |ns: &[i64], at: usize| ns[at].saturating_sub(ns[at - 1]) as f64 / NS_PER_S;
+    // What was held up is written in a burst, with what came meanwhile among it.
+    let is_recorders = |at: usize| {
+        is_even && ((0.0..=even_s).contains(&since_s(t_ns, at)) || since_s(log_ns, at).abs() < 0.5 * step_s)
     };
-    let mut stalls = Vec::new();
-    let usual = t_ns.first().zip(log_ns.first()).map_or(0, |(t, log)| t.saturating_sub(*log));
     let jump = |at: usize, by_ns: i64| {
-        let message = coarse.first_in_file(at) + 1;
         let by_s = by_ns as f64 / NS_PER_S;
-        let topic = topic.to_owned();
-        (by_s.abs() > CLOCK_JUMP_S).then_some(Error::ClockJump { topic, message, by_s, other })
+        (by_s.abs() > CLOCK_JUMP_S).then_some((coarse.first_in_file(at) + 1, by_s))
     };
-    let mut latest_ns = i64::MIN;
+    let (mut latest_ns, mut stalls) = (i64::MIN, Vec::new());
     for (at, (&t, &log)) in t_ns.iter().zip(log_ns).enumerate() {
         if at > 0 {
-            let before = (t_ns[at - 1], log_ns[at - 1]);
             let offset = |t: i64, log: i64| t.saturating_sub(log);
-            let moved = offset(t, log).saturating_sub(offset(before.0, before.1));
+            let moved = offset(t, log).saturating_sub(offset(t_ns[at - 1], log_ns[at - 1]));
             let back = t.saturating_sub(latest_ns).min(0);
-            match jump(at, moved) {
-                Some(Error::ClockJump { message, by_s, .. }) if goes_on(at) => {
-                    stalls.push(Stall { message, by_s })
+            match jump(at, moved).or_else(|| jump(at, back)) {
+                Some((message, by_s)) if is_recorders(at) => stalls.push(Stall { message, by_s }),
+                Some((message, by_s)) => {
+                    return Err(Error::ClockJump { topic: topic.to_owned(), message, by_s, other });
                 }
-                Some(error) => return Err(error),
                 None => {}
-            }
-            if let Some(error) = jump(at, back) {
-                return Err(error);
             }
         }
         latest_ns = latest_ns.max(t);
