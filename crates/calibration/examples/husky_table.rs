@@ -29,7 +29,7 @@ fn main() {
     robot.surfaces.remove("sandy_loam");
     let (recording, _) = recording::read_paths(&SURFACES.map(file), None).unwrap();
     let drives = Drives::new(&robot, &recording).unwrap();
-    let options = Options { reference_surface: std::env::args().nth(1) };
+    let options = Options { reference_surface: std::env::args().nth(1), ..Options::default() };
     let found = fit_currents(&robot, &drives, &options).unwrap();
     print_surfaces(&found);
     print_forces(&found);

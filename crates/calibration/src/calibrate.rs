@@ -5,7 +5,9 @@ use recording::{PowerForm, Recording, Watch};
 use serde::Serialize;
 
 use crate::{
-    Drives, Error, SlipTrack, current_calibration,
+    Drives, Error, SlipTrack,
+    contradiction::contradictions,
+    current_calibration,
     current_judge::SurfaceVerdict,
     fit::NORMAL_975,
     folds,
@@ -22,6 +24,8 @@ pub struct Options {
     /// For motor currents, the surface that what belongs to the robot is fitted on; default: the one that determines force per ampere
     /// best.
     pub reference_surface: Option<String>,
+    /// Names of doubts that are overruled; see [`crate::Doubt`], and `held_out` for a fit that runs it did not see contradict.
+    pub despite: Vec<String>,
 }
 
 /// One fitted number.
@@ -115,6 +119,7 @@ fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
     let held_out = power_held_out(&robot, drives)?;
     let mut notes: Vec<String> = held_note(&parameters).into_iter().collect();
+    notes.extend(contradictions(&found.fit));
     if held_out.is_none() {
         notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
     }

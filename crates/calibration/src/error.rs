@@ -1,5 +1,7 @@
 //! What can be wrong with a recording that a robot is to be fitted to or judged by.
 
+use crate::Doubt;
+
 /// An error of the calibration crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -15,6 +17,27 @@ pub enum Error {
     NothingCounted {
         /// What of it is left out, and why.
         why: String,
+    },
+    /// What a fit would only explain away.
+    #[error(
+        "no robot was written, because the recording is doubtful: {}; if it is right as it is, calibrate {}",
+        doubts.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
+        doubts.iter().map(|doubt| format!("`--despite {}`", doubt.name)).collect::<Vec<_>>().join(" ")
+    )]
+    Doubtful {
+        /// The doubts.
+        doubts: Vec<Doubt>,
+    },
+    /// Runs that were not fitted contradict the fit.
+    #[error(
+        "no robot was written: it predicts runs that it was not fitted to worse than their mean does (R² {r2:.2}, RMSE {rmse_w:.1} W); the runs differ in \
+         ground, load or sensors, or hardly vary: choose runs that belong together, or calibrate `--despite held_out`"
+    )]
+    Contradicted {
+        /// R² of held-out runs.
+        r2: f64,
+        /// Root mean square error \[W\].
+        rmse_w: f64,
     },
     /// Runs are too few to hold one back.
     #[error(

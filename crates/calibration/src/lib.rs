@@ -5,6 +5,7 @@
 
 pub mod average;
 pub mod calibrate;
+mod contradiction;
 mod copies;
 pub mod correlation;
 mod coverage;

@@ -4,7 +4,16 @@ use model::Robot;
 use recording::{Recording, Watch, unwatched};
 use serde::{Deserialize, Serialize};
 
-use crate::{Calibration, Error, Options, calibrate, calibrate_watched, dogru_marques};
+use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubts};
+
+/// Name of the doubt that runs which were not fitted cast on a fit.
+const HELD_OUT: &str = "held_out";
+
+impl Options {
+    fn is_overruled(&self, name: &str) -> bool {
+        self.despite.iter().any(|other| other == name)
+    }
+}
 
 /// A procedure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,10 +37,7 @@ impl Method {
         recording: &Recording,
         options: &Options,
     ) -> Result<Calibration, Error> {
-        match self {
-            Method::Fit => calibrate(robot, recording, options),
-            Method::DogruMarques => dogru_marques::calibrate(robot, recording, &unwatched()),
-        }
+        self.calibrate_watched(robot, recording, options, &unwatched())
     }
 
     /// Fits a robot as [`Method::calibrate`] does, followed by a watch.
@@ -45,9 +51,21 @@ impl Method {
         options: &Options,
         watch: &Watch,
     ) -> Result<Calibration, Error> {
-        match self {
+        let (overruled, open): (Vec<_>, Vec<_>) =
+            doubts(robot, recording, watch)?.into_iter().partition(|doubt| options.is_overruled(doubt.name));
+        if !open.is_empty() {
+            return Err(Error::Doubtful { doubts: open });
+        }
+        let mut found = match self {
             Method::Fit => calibrate_watched(robot, recording, options, watch),
             Method::DogruMarques => dogru_marques::calibrate(robot, recording, watch),
+        }?;
+        found.notes.extend(overruled.iter().map(|doubt| format!("calibrated despite a doubt: {doubt}")));
+        match &found.held_out {
+            Some(judged) if judged.r2 < 0.0 && !options.is_overruled(HELD_OUT) => {
+                Err(Error::Contradicted { r2: judged.r2, rmse_w: judged.rmse_w })
+            }
+            _ => Ok(found),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::{fs, ops::ControlFlow, path::PathBuf, sync::Arc};
 
 use clap::Args;
 use model::{Robot, builtin};
-use recording::{Map, ReadingReport, Recording, Watch, read_paths_watched};
+use recording::{Labels, Map, ReadingReport, Recording, Watch, read_paths_watched};
 
 use crate::{failure::BadInput, output, progress};
 
@@ -20,6 +20,12 @@ pub(crate) struct Recorded {
     /// Map file that names columns or topics and their units, or the built-in husky or borealtc
     #[arg(long)]
     map: Option<String>,
+    /// The surface of ground that the recordings do not label, instead of the robot's default one
+    #[arg(long)]
+    surface: Option<String>,
+    /// Names of the runs that are used, instead of all
+    #[arg(long, num_args = 1..)]
+    runs: Vec<String>,
     /// Print the answer as a JSON document
     #[arg(long)]
     pub(crate) json: bool,
@@ -38,7 +44,7 @@ impl Recorded {
         // Topics are a Husky's where nothing else is said, on the wheels of the robot at hand.
         let map = match self.map.as_deref() {
             Some(name) => Some(map(name, robot)?),
-            None => Map::built_in_for("husky", robot.wheel_radius_m),
+            None => Map::built_in_for("husky", robot.wheel_radius_m, robot.slip_track_m),
         };
         let bar = progress::reading(files);
         let told = bar.clone();
@@ -50,7 +56,39 @@ impl Recorded {
         bar.finish_and_clear();
         let (recording, reports) = read.map_err(|error| BadInput(error.to_string()))?;
         reports.iter().for_each(warn);
+        let mut recording = self.chosen(recording)?;
+        self.label(&mut recording, robot);
         Ok(recording)
+    }
+
+    /// The runs that were asked for.
+    fn chosen(&self, mut recording: Recording) -> Result<Recording, BadInput> {
+        if self.runs.is_empty() {
+            return Ok(recording);
+        }
+        let known: Vec<String> = recording.runs.iter().map(|run| run.name.clone()).collect();
+        if let Some(name) = self.runs.iter().find(|name| !known.contains(name)) {
+            return Err(BadInput(format!(
+                "--runs {name}: there is no such run; there are {}",
+                known.join(", ")
+            )));
+        }
+        recording.runs.retain(|run| self.runs.contains(&run.name));
+        Ok(recording)
+    }
+
+    /// Ground without a label is what was asked for, else the robot's default, which is said.
+    fn label(&self, recording: &mut Recording, robot: &Robot) {
+        if recording.surface.is_some() {
+            return;
+        }
+        match &self.surface {
+            Some(name) => recording.surface = Some(Labels::constant(name, recording.rows())),
+            None => output::note(format_args!(
+                "the recordings do not say on which ground they were made; it is taken for `{}`, the robot's default (--surface NAME for another)",
+                robot.default_surface
+            )),
+        }
     }
 
     /// An error of a fit or a diagnosis, with the files it is about.
@@ -82,7 +120,7 @@ fn warn(report: &ReadingReport) {
 
 /// A built-in map by its name, or a map file.
 fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
-    if let Some(map) = Map::built_in_for(name, robot.wheel_radius_m) {
+    if let Some(map) = Map::built_in_for(name, robot.wheel_radius_m, robot.slip_track_m) {
         return Ok(map);
     }
     let known = Map::BUILT_IN.join(" or ");

@@ -49,6 +49,7 @@ struct Entry {
     target: Target,
     columns: Vec<usize>,
     combine: Combine,
+    separation_m: f64,
     conversion: Conversion,
     unit: String,
     /// Whether a map names the unit.
@@ -104,6 +105,7 @@ impl Plan {
                         target: source.target.clone(),
                         columns,
                         combine: source.combine,
+                        separation_m: source.separation_m,
                         conversion: source.conversion,
                         unit: source.unit.clone(),
                         is_unit_given: source.is_unit_given,
@@ -136,7 +138,16 @@ impl Plan {
             }
             let (combine, conversion) = (Combine::Mean, Conversion::IDENTITY);
             let (columns, unit) = (vec![index], unit.into());
-            self.entries.push(Entry { target, columns, combine, conversion, unit, is_unit_given: false });
+            let separation_m = f64::NAN;
+            self.entries.push(Entry {
+                target,
+                columns,
+                combine,
+                separation_m,
+                conversion,
+                unit,
+                is_unit_given: false,
+            });
         }
         Ok(())
     }
@@ -280,7 +291,7 @@ impl Plan {
             }
         }
         let rows = parts.iter().map(|part| part.len()).min().unwrap_or(0);
-        let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]));
+        let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]), entry.separation_m);
         Ok(Column::Numbers((0..rows).map(|row| entry.conversion.apply(at(row))).collect()))
     }
 }

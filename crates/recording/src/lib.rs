@@ -33,6 +33,7 @@ mod namespace;
 mod pages;
 mod parquet;
 mod publishers;
+mod rate;
 mod reading;
 mod recording;
 mod report;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Channel, Combine, Conversion, Error, Quantity, units};
+use crate::{Channel, Combine, Conversion, Error, Quantity, Recording, rate::rates, units};
 
 /// A checked map. Read from JSON:
 ///
@@ -56,6 +56,12 @@ pub struct Source {
     pub place: Place,
     /// How several columns or fields become one value.
     pub combine: Combine,
+    /// Separation of the wheels that a twist is taken apart by; NaN for anything else \[m\].
+    pub separation_m: f64,
+    /// The values are positions, whose rate of change is meant.
+    pub derivative: bool,
+    /// Where a counter of positions begins again, in the unit of the channel.
+    pub wraps_at: Option<f64>,
     /// What brings it into SI.
     pub conversion: Conversion,
     /// The unit it comes in, for the report.
@@ -116,6 +122,7 @@ pub enum Stamp {
 struct MapFile {
     name: String,
     wheel_radius_m: Option<f64>,
+    wheel_separation_m: Option<f64>,
     base: Option<String>,
     #[serde(default)]
     stamp: Stamp,
@@ -140,6 +147,9 @@ struct SourceFile {
     combine: Combine,
     unit: Option<String>,
     scale: Option<f64>,
+    #[serde(default)]
+    derivative: bool,
+    wraps_at: Option<f64>,
 }
 
 impl Map {
@@ -158,13 +168,14 @@ impl Map {
     }
 
     /// A built-in map with the wheels of another robot.
-    pub fn built_in_for(name: &str, wheel_radius_m: f64) -> Option<Map> {
+    pub fn built_in_for(name: &str, wheel_radius_m: f64, wheel_separation_m: f64) -> Option<Map> {
         let text = match name {
             "husky" => include_str!("../maps/husky.json"),
             _ => return Map::built_in(name),
         };
         let mut file: serde_json::Value = serde_json::from_str(text).ok()?;
         file["wheel_radius_m"] = wheel_radius_m.into();
+        file["wheel_separation_m"] = wheel_separation_m.into();
         Map::from_value(&file).ok()
     }
 
@@ -185,13 +196,18 @@ impl Map {
     }
 
     fn checked(file: MapFile) -> Result<Map, Error> {
-        for (path, value) in [("wheel_radius_m", file.wheel_radius_m), ("max_gap_s", file.max_gap_s)] {
+        let positive = [
+            ("wheel_radius_m", file.wheel_radius_m),
+            ("wheel_separation_m", file.wheel_separation_m),
+            ("max_gap_s", file.max_gap_s),
+        ];
+        for (path, value) in positive {
             if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
                 return Err(Error::Map { path: path.into(), message: "must be positive".into() });
             }
         }
-        let radius_m = file.wheel_radius_m;
-        let sources = file.sources.into_iter().enumerate().map(|(i, source)| source.check(i, radius_m));
+        let wheels = (file.wheel_radius_m, file.wheel_separation_m);
+        let sources = file.sources.into_iter().enumerate().map(|(i, source)| source.check(i, wheels));
         Ok(Map {
             name: file.name,
             base: file.base,
@@ -201,6 +217,24 @@ impl Map {
             namespace: file.namespace,
             sources: sources.collect::<Result<_, _>>()?,
         })
+    }
+
+    /// Takes the rates of columns of positions, run by run; those of topics were taken before they were brought onto one clock.
+    pub(crate) fn derive_columns(&self, recording: &mut Recording) {
+        let Recording { t_s, channels, runs, .. } = recording;
+        for source in self.sources.iter().filter(|source| source.derivative) {
+            let (Target::Channel(channel), Place::Columns(_)) = (&source.target, &source.place) else {
+                continue;
+            };
+            let Some(values) = channels.get_mut(channel) else { continue };
+            for run in runs.iter() {
+                if let (Some(t_s), Some(own)) = (t_s.get(run.rows.clone()), values.get_mut(run.rows.clone()))
+                {
+                    let rates = rates(t_s, own, source.wraps_at);
+                    own.copy_from_slice(&rates);
+                }
+            }
+        }
     }
 
     /// Whether any of its sources is a column of a table.
@@ -218,7 +252,11 @@ impl Map {
 }
 
 impl SourceFile {
-    fn check(self, index: usize, wheel_radius_m: Option<f64>) -> Result<Source, Error> {
+    fn check(
+        self,
+        index: usize,
+        (wheel_radius_m, separation_m): (Option<f64>, Option<f64>),
+    ) -> Result<Source, Error> {
         let wrong = |field: &str, message: &str| Error::Map {
             path: format!("sources[{index}]{field}"),
             message: message.into(),
@@ -252,7 +290,31 @@ impl SourceFile {
         let is_unit_given = self.unit.is_some();
         let (conversion, unit) = conversion(index, &target, self.unit, wheel_radius_m)?;
         let conversion = conversion.scaled(scale);
-        Ok(Source { target, place, combine: self.combine, conversion, unit, is_unit_given })
+        let count = match &place {
+            Place::Columns(names) => names.len(),
+            Place::Topic { fields, .. } => fields.len(),
+        };
+        if self.combine.is_of_twist() && !(count == 2 && target.is_wheel_speed() && separation_m.is_some()) {
+            let message = "of a twist are rim speeds only, from a speed and a yaw rate, with the map's `wheel_separation_m`";
+            return Err(wrong(".combine", message));
+        }
+        if self.derivative && !target.is_wheel_speed() {
+            return Err(wrong(".derivative", "is for rim speeds only"));
+        }
+        if self.wraps_at.is_some_and(|at| !(at.is_finite() && at > 0.0 && self.derivative)) {
+            return Err(wrong(".wraps_at", "must be positive, beside `derivative`"));
+        }
+        Ok(Source {
+            target,
+            place,
+            combine: self.combine,
+            separation_m: separation_m.unwrap_or(f64::NAN),
+            derivative: self.derivative,
+            wraps_at: self.wraps_at.map(|at| (conversion.factor * at).abs()),
+            conversion,
+            unit,
+            is_unit_given,
+        })
     }
 }
 
@@ -291,6 +353,35 @@ mod tests {
             assert_eq!(Map::built_in(name).unwrap().name, name);
         }
         assert_eq!(Map::built_in("rover"), None);
+    }
+
+    #[test]
+    fn rim_speeds_come_of_odometry_and_of_wrapping_counters() {
+        let text = r#"{"name": "lab", "wheel_separation_m": 0.5, "sources": [
+            {"channel": "t_s", "column": "t"},
+            {"channel": "v_left_mps", "columns": ["v", "w"], "combine": "left_of_twist"},
+            {"channel": "v_right_mps", "column": "ticks", "scale": 0.01, "derivative": true, "wraps_at": 100},
+            {"channel": "power_w", "column": "p"}]}"#;
+        let map = Map::from_json(text).unwrap();
+        let mut table = "t,v,w,ticks,p\n".to_owned();
+        for i in 0..60 {
+            table += &format!("{},0.6,0.4,{},{}\n", 0.1 * f64::from(i), (7 * i) % 100, 50 + i % 3);
+        }
+        let read = crate::read(table.into_bytes(), crate::Format::Csv, "lab", Some(&map)).unwrap().recording;
+        let worst = |channel, wanted: f64| {
+            let values = read.channel(channel).unwrap();
+            values.iter().map(|value| (value - wanted).abs()).fold(0.0, f64::max)
+        };
+        // 0.6 − 0.4 · 0.5 / 2, and seven ticks of a centimetre in a tenth of a second.
+        assert!(worst(Channel::LeftSpeed, 0.5) < 1e-12 && worst(Channel::RightSpeed, 0.7) < 1e-9);
+        for (broken, place) in [
+            (text.replace("0.5,", "-1,"), "wheel_separation_m"),
+            (text.replace("\"wheel_separation_m\": 0.5,", ""), "sources[1].combine"),
+            (text.replace("\"derivative\": true, ", ""), "sources[2].wraps_at"),
+        ] {
+            let error = Map::from_json(&broken).unwrap_err().to_string();
+            assert!(error.contains(place), "{error}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::{
     map::{Place, Target},
     namespace::{self, Others},
     publishers,
+    rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
     stream::{BY_HEADER, Stream},
@@ -32,6 +33,13 @@ impl Topics<'_> {
             }
             let messages = topic.samples.messages();
             let mut stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
+            for (column, (source, _)) in stream.columns.iter_mut().zip(&topic.sources) {
+                let source = &self.map.sources[*source];
+                if source.derivative {
+                    let t_s = stream_seconds(&stream.t_ns);
+                    *column = rates(&t_s, column, source.wraps_at);
+                }
+            }
             let is_wheel = |(source, _): &(usize, usize)| self.map.sources[*source].target.is_wheel_speed();
             let wheels: Vec<bool> = topic.sources.iter().map(is_wheel).collect();
             self.repairs.extend(publishers::leave_zeros_out(&topic.name, &mut stream, &wheels));
@@ -166,6 +174,13 @@ impl Topics<'_> {
                 self.ignored.push(Ignored { name: named.topic.clone(), reason });
                 continue;
             }
+            if source.combine.is_of_twist() {
+                let what = format!(
+                    "rim speeds are v ∓ ω b/2 of odometry, with b = {} m; give the controller's `wheel_separation_m` in a map if it has another",
+                    source.separation_m
+                );
+                self.repairs.push(Repair { place: named.topic.clone(), what });
+            }
             match &source.target {
                 Target::Channel(channel) => {
                     let from = format!("{} {}", named.topic, fields(&source.place));
@@ -197,6 +212,12 @@ fn check_steps(base: &Named) -> Result<(), Error> {
             Err(Error::TopicSteps { topic: base.topic.clone(), evidence, other })
         }
     }
+}
+
+/// Times of a stream, from its first on [s].
+fn stream_seconds(t_ns: &[i64]) -> Vec<f64> {
+    let first = t_ns.first().copied().unwrap_or(0);
+    t_ns.iter().map(|t| t.saturating_sub(first) as f64 / 1e9).collect()
 }
 
 /// Times at which there is a number.

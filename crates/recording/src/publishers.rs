@@ -52,12 +52,8 @@ mod tests {
 
     fn stream(speed_mps: &[f64]) -> Stream {
         let ns: Vec<i64> = (1..=speed_mps.len() as i64).map(|i| i * 50_000_000).collect();
-        let samples = Samples {
-            log_ns: ns.clone(),
-            stamp_ns: ns,
-            columns: vec![speed_mps.to_vec()],
-            ..Samples::default()
-        };
+        let mut samples = Samples::new(std::iter::empty());
+        (samples.log_ns, samples.stamp_ns, samples.columns) = (ns.clone(), ns, vec![speed_mps.to_vec()]);
         samples.into_stream("/joints", crate::Stamp::Header, &mut Vec::new()).unwrap()
     }
 

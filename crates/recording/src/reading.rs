@@ -235,6 +235,7 @@ impl Reading {
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
         report.repairs.extend(bridge(&mut recording, looks)?);
+        map.iter().for_each(|map| map.derive_columns(&mut recording));
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })

@@ -177,7 +177,7 @@ impl<'m> Topics<'m> {
         let mut values = topic.values.iter();
         for (column, (source, count)) in topic.samples.columns.iter_mut().zip(&topic.sources) {
             let Some(source) = self.map.sources.get(*source) else { continue };
-            let value = source.combine.of(values.by_ref().take(*count).copied());
+            let value = source.combine.of(values.by_ref().take(*count).copied(), source.separation_m);
             column.push(source.conversion.apply(value));
         }
         self.numbers += topic.samples.width();

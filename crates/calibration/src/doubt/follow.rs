@@ -5,6 +5,7 @@ use recording::{PowerForm, Recording, Watch};
 
 use crate::{
     Drives, Error,
+    field::with_new_ground,
     power::{columns_by_row, seen_w},
 };
 
@@ -23,6 +24,8 @@ pub(crate) struct Followed {
 /// As [`crate::predict_watched()`].
 pub(crate) fn of(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Followed, Error> {
     let drives = Drives::watched(robot, recording, watch)?.including_stuck();
+    // Ground that the file does not know feels like ground of which nothing is known.
+    let robot = &with_new_ground(robot, &drives);
     let form = drives.form.unwrap_or(PowerForm::Battery);
     let sides = columns_by_row(&drives, robot, |i, power| {
         let [first, second] = seen_w(robot, form, &drives.rows[i], power);

@@ -27,6 +27,9 @@ pub(crate) struct Arguments {
     /// For motor currents: the surface that what belongs to the robot is fitted on
     #[arg(long)]
     reference_surface: Option<String>,
+    /// Names of doubts about the recording that are overruled, such as `power_sign`
+    #[arg(long, num_args = 1..)]
+    despite: Vec<String>,
     /// Where to write the fitted robot
     #[arg(long)]
     out: PathBuf,
@@ -50,7 +53,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         MethodName::Fit => Method::Fit,
         MethodName::DogruMarques => Method::DogruMarques,
     };
-    let options = Options { reference_surface: arguments.reference_surface.clone() };
+    let options = Options {
+        reference_surface: arguments.reference_surface.clone(),
+        despite: arguments.despite.clone(),
+    };
     let sign = progress::working("fitting");
     let found = method
         .calibrate(&robot, &recording, &options)

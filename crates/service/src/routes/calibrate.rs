@@ -49,6 +49,10 @@ pub struct CalibrateRequest {
     pub method: Method,
     /// For motor currents: the surface that what belongs to the robot is fitted on. Default: the one that tells most.
     pub reference_surface: Option<String>,
+    /// Names of doubts about the recordings that are overruled, such as `power_sign`. Default: none, so that a doubtful recording is refused.
+    #[serde(default)]
+    #[schema(required = false)]
+    pub despite: Vec<String>,
     /// Name of a built-in map, or a map, to read all recordings with. Default: the one that each was stored with.
     #[schema(value_type = Option<Object>)]
     pub map: Option<Value>,
@@ -114,7 +118,7 @@ struct Work {
 impl Work {
     /// Refuses at once what can be known without reading a recording.
     async fn prepare(engine: &Engine, tenant: &Tenant, request: CalibrateRequest) -> Result<Work, Problem> {
-        let CalibrateRequest { robot, recordings, method, reference_surface, map, lift } = request;
+        let CalibrateRequest { robot, recordings, method, reference_surface, despite, map, lift } = request;
         let count = recordings.len();
         if !(1..=MOST_RECORDINGS).contains(&count) {
             let detail = format!("{count} recordings are named, but it must be 1 to {MOST_RECORDINGS}");
@@ -132,7 +136,7 @@ impl Work {
             notes: notes(engine, tenant, &recordings, "/recordings").await?,
             map: map.as_ref().map(map_from).transpose()?,
             method,
-            options: Options { reference_surface },
+            options: Options { reference_surface, despite },
         })
     }
 }
