@@ -21,7 +21,9 @@ pub enum Error {
     #[error("{0}")]
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
-    #[error("`{ending}` is no recording: the name must end in .csv, .parquet, .mcap or .bag")]
+    #[error(
+        "`{ending}` is no recording: the name must end in .csv, .parquet, .mcap, .db3 or .bag, or be that of a folder of `ros2 bag record`"
+    )]
     UnknownFormat {
         /// The ending found.
         ending: String,
@@ -188,6 +190,28 @@ pub enum Error {
         format: &'static str,
         /// What is there instead.
         reason: String,
+    },
+    /// SQLite refuses a file, or a place in it.
+    #[error("{place}: {reason}; `sqlite3 FILE .recover` saves what is whole")]
+    Database {
+        /// Where, as `table messages, after id 120`.
+        place: String,
+        /// What SQLite says.
+        reason: String,
+    },
+    /// A file that is held or copied as a whole and is longer than any.
+    #[error(
+        "it has more than {most} bytes when unpacked, and is not read so; unpack it with `zstd -d` first"
+    )]
+    TooLong {
+        /// The most that is read \[bytes\].
+        most: u64,
+    },
+    /// A folder that holds no recording.
+    #[error("the folder holds no .mcap or .db3 file: {found}")]
+    NoStorage {
+        /// What it holds, or its `metadata.yaml` names.
+        found: String,
     },
     /// A topic that the map names has no message that could be read.
     #[error(

@@ -93,6 +93,11 @@ impl Layout {
         Ok(Layout { encoding, root, slots, keys: builder.keys, values, stamp })
     }
 
+    /// Whether its messages are CDR, whose header no compressed one has.
+    pub(crate) fn is_cdr(&self) -> bool {
+        self.encoding == Encoding::Cdr
+    }
+
     /// Reads a message into `values`, one per path, NaN where it has none; returns its stamp \[ns\].
     pub(crate) fn read(
         &self,

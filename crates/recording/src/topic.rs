@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::{
     Error, Ignored, Map, Repair,
-    cursor::Encoding,
+    compression::decompress_message,
     definition::Definition,
+    format::ZSTD_MAGIC,
     layout::Layout,
     map::Place,
+    schema::Schema,
     stream::Samples,
     walk::Found,
     watch::{Budget, Looks},
@@ -22,7 +24,11 @@ pub(crate) struct Topics<'m> {
     pub(crate) names: Vec<String>,
     pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
+    /// The file of several that is being read.
+    file: Option<String>,
     found: Found,
+    /// A message that came compressed.
+    plain: Vec<u8>,
     budget: Budget,
     /// Numbers held by all topics.
     numbers: usize,
@@ -40,14 +46,6 @@ pub(crate) struct Topic {
     pub(crate) first_bad: Option<String>,
 }
 
-/// How a container says that its messages are written.
-pub(crate) struct Schema<'s> {
-    pub(crate) type_name: &'s str,
-    /// The definition, or why there is none that can be read.
-    pub(crate) definition: Result<&'s str, String>,
-    pub(crate) encoding: Encoding,
-}
-
 impl<'m> Topics<'m> {
     pub(crate) fn new(map: &'m Map, budget: Budget) -> Self {
         Topics {
@@ -57,7 +55,9 @@ impl<'m> Topics<'m> {
             names: Vec::new(),
             ignored: Vec::new(),
             repairs: Vec::new(),
+            file: None,
             found: Found::default(),
+            plain: Vec::new(),
             budget,
             numbers: 0,
         }
@@ -70,7 +70,32 @@ impl<'m> Topics<'m> {
 
     /// Takes note of what is wrong at a byte of the file.
     pub(crate) fn tell(&mut self, at: u64, what: &str) {
-        self.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
+        self.tell_of(&format!("byte {at}"), what);
+    }
+
+    /// Takes note of what is wrong somewhere in the file.
+    pub(crate) fn tell_of(&mut self, place: &str, what: &str) {
+        let file = self.file.as_ref().map_or(String::new(), |file| format!("{file}, "));
+        self.repairs.push(Repair { place: format!("{file}{place}"), what: what.into() });
+    }
+
+    /// Begins another file of the same recording: its topics go on, its numbers of connections mean something else.
+    pub(crate) fn begin_file(&mut self, file: Option<String>) {
+        self.connections.clear();
+        self.file = file;
+    }
+
+    /// Whether the map wants the messages of a connection.
+    pub(crate) fn wants(&self, id: u32) -> bool {
+        matches!(self.connections.get(&id), Some(Some(_)))
+    }
+
+    /// Takes note of what is not used; the files of one recording say it only once.
+    fn ignore(&mut self, name: String, reason: &str) {
+        let ignored = Ignored { name, reason: reason.into() };
+        if !self.ignored.contains(&ignored) {
+            self.ignored.push(ignored);
+        }
     }
 
     /// Takes note of a connection; containers repeat them.
@@ -99,10 +124,11 @@ impl<'m> Topics<'m> {
             }
         }
         if wanted.is_empty() {
-            self.ignored.push(Ignored { name: topic.into(), reason: "the map does not name it".into() });
+            self.ignore(topic.into(), "the map does not name it");
             return Ok(None);
         }
-        let definition = schema.definition.clone().and_then(|text| Definition::parse(schema.type_name, text));
+        let definition =
+            schema.definition.clone().and_then(|text| Definition::parse(schema.type_name, &text));
         let definition = match definition {
             Ok(definition) => definition,
             Err(reason) => return self.unreadable(topic, &wanted, "", &reason).map(|()| None),
@@ -152,7 +178,7 @@ impl<'m> Topics<'m> {
             if outright && alternatives == 1 {
                 return Err(Error::Field { topic: topic.into(), field, reason: reason.into() });
             }
-            self.ignored.push(Ignored { name: format!("{topic}, {field}"), reason: reason.into() });
+            self.ignore(format!("{topic}, {field}"), reason);
         }
         Ok(())
     }
@@ -161,7 +187,12 @@ impl<'m> Topics<'m> {
     pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) -> Result<(), Error> {
         let Some(Some(index)) = self.connections.get(&id) else { return Ok(()) };
         let Some(topic) = self.topics.get_mut(*index) else { return Ok(()) };
-        let stamp_ns = match topic.layout.read(bytes, &mut self.found, &mut topic.values) {
+        let read = match topic.layout.is_cdr() && bytes.starts_with(&ZSTD_MAGIC) {
+            true => decompress_message(bytes, &mut self.plain),
+            false => Ok(bytes),
+        };
+        let read = read.and_then(|bytes| topic.layout.read(bytes, &mut self.found, &mut topic.values));
+        let stamp_ns = match read {
             Ok(stamp_ns) => stamp_ns,
             Err(reason) => {
                 topic.bad += 1;
