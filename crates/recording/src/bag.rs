@@ -11,7 +11,7 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
-    schema::Schema,
+    schema::{Schema, Text},
     topic::Topics,
     watch::Budget,
 };
@@ -137,7 +137,7 @@ fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) ->
             let text = |bytes: Option<&[u8]>| String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned();
             let (topic, type_name) = (text(header.get("topic")), text(about.get("type")));
             let definition = text(about.get("message_definition"));
-            let (definition, encoding) = (Ok(definition.into()), Encoding::Ros1);
+            let (definition, encoding) = (Ok(Text::Msg(definition.into())), Encoding::Ros1);
             topics.connect(connection, &topic, &Schema { type_name: &type_name, definition, encoding })
         }
         _ => Ok(()),

@@ -65,7 +65,7 @@ pub enum Error {
         reason: String,
     },
     /// Channels without which a recording tells nothing.
-    #[error("{missing} missing; found: {}{}", found.join(", "), hints(nearest))]
+    #[error("{missing} missing; found: {}{}{}", found.join(", "), hints(nearest), reasons(unread))]
     Missing {
         /// What is missing, in words.
         missing: String,
@@ -73,6 +73,8 @@ pub enum Error {
         found: Vec<String>,
         /// The nearest of them, with the name that was looked for.
         nearest: Vec<(String, String)>,
+        /// Topics that the map names, and why they could not be read.
+        unread: Vec<String>,
     },
     /// Two columns of one name, or two columns for one channel.
     #[error("two columns give {channel}: `{first}` and `{second}`; rename one of them or map it `aside`")]
@@ -292,6 +294,14 @@ impl Error {
         Error::InFile { path: path.display().to_string(), source: Box::new(self) }
     }
 
+    /// Says why topics that the map names were not read, where something is missing.
+    pub(crate) fn with_unread(mut self, reasons: Vec<String>) -> Error {
+        if let Error::Missing { unread, .. } = &mut self {
+            *unread = reasons;
+        }
+        self
+    }
+
     /// The missing channels that a recording cannot do without, with the names in the file that come nearest.
     pub(crate) fn missing(lacks: &[Channel], power: bool, found: &[String]) -> Error {
         let mut missing: Vec<String> = lacks.iter().map(|channel| channel.name().to_owned()).collect();
@@ -317,7 +327,12 @@ impl Error {
         };
         let nearest = wanted.iter().filter_map(near).collect();
         let verb = if missing.len() == 1 { "is" } else { "are" };
-        Error::Missing { missing: format!("{} {verb}", missing.join(", ")), found: shortened(found), nearest }
+        Error::Missing {
+            missing: format!("{} {verb}", missing.join(", ")),
+            found: shortened(found),
+            nearest,
+            unread: Vec::new(),
+        }
     }
 }
 
@@ -348,5 +363,12 @@ fn hints(nearest: &[(String, String)]) -> String {
             let hints: Vec<String> = nearest.iter().map(hint).collect();
             format!("; did you mean {}? Rename it, or name it with its unit in a map", hints.join(", "))
         }
+    }
+}
+
+fn reasons(unread: &[String]) -> String {
+    match unread {
+        [] => String::new(),
+        some => format!("; not read: {}", some.join("; ")),
     }
 }

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use crate::{
     Error, Ignored, Map, Repair,
     compression::decompress_message,
-    definition::Definition,
     format::ZSTD_MAGIC,
     layout::Layout,
     map::Place,
@@ -14,6 +13,9 @@ use crate::{
     walk::Found,
     watch::{Budget, Looks},
 };
+
+/// Why most topics are not used.
+const NOT_NAMED: &str = "the map does not name it";
 
 /// The topics of a file while it is read.
 pub(crate) struct Topics<'m> {
@@ -90,6 +92,12 @@ impl<'m> Topics<'m> {
         matches!(self.connections.get(&id), Some(Some(_)))
     }
 
+    /// Topics that the map names and why they are not read.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        let named = self.ignored.iter().filter(|ignored| ignored.reason != NOT_NAMED);
+        named.map(|ignored| format!("{} ({})", ignored.name, ignored.reason)).collect()
+    }
+
     /// Takes note of what is not used; the files of one recording say it only once.
     fn ignore(&mut self, name: String, reason: &str) {
         let ignored = Ignored { name, reason: reason.into() };
@@ -124,14 +132,16 @@ impl<'m> Topics<'m> {
             }
         }
         if wanted.is_empty() {
-            self.ignore(topic.into(), "the map does not name it");
+            self.ignore(topic.into(), NOT_NAMED);
             return Ok(None);
         }
-        let definition =
-            schema.definition.clone().and_then(|text| Definition::parse(schema.type_name, &text));
-        let definition = match definition {
+        let definition = match schema.parse() {
             Ok(definition) => definition,
-            Err(reason) => return self.unreadable(topic, &wanted, "", &reason).map(|()| None),
+            Err(reason) => {
+                self.refuse_outright(topic, &wanted, "", &reason)?;
+                self.ignore(topic.into(), &reason);
+                return Ok(None);
+            }
         };
         // Each source alone first, so that one that does not fit leaves the others be.
         let mut fitting = Vec::new();
@@ -139,7 +149,11 @@ impl<'m> Topics<'m> {
             let paths: Vec<&str> = fields.iter().map(String::as_str).collect();
             match Layout::new(&definition, &paths, schema.encoding) {
                 Ok(_) => fitting.push((index, paths)),
-                Err((field, reason)) => self.unreadable(topic, &[(index, fields)], &field, &reason)?,
+                Err((field, reason)) => {
+                    let source = [(index, fields)];
+                    self.refuse_outright(topic, &source, &field, &reason)?;
+                    self.ignore(format!("{topic}, {}", named(&field, fields)), &reason);
+                }
             }
         }
         let paths: Vec<&str> = fitting.iter().flat_map(|(_, paths)| paths.iter().copied()).collect();
@@ -148,6 +162,13 @@ impl<'m> Topics<'m> {
         }
         let layout = Layout::new(&definition, &paths, schema.encoding);
         let layout = layout.map_err(|(field, reason)| Error::Field { topic: topic.into(), field, reason })?;
+        if layout.is_standard {
+            let what = format!(
+                "the file holds no definition of {}; that of the standard package was taken",
+                definition.name()
+            );
+            self.repairs.push(Repair { place: format!("topic {topic}"), what });
+        }
         self.topics.push(Topic {
             name: topic.to_owned(),
             type_name: schema.type_name.to_owned(),
@@ -162,23 +183,22 @@ impl<'m> Topics<'m> {
     }
 
     /// A topic named outright must be readable; one found through `*` may be something else of the same name.
-    fn unreadable(
-        &mut self,
+    fn refuse_outright(
+        &self,
         topic: &str,
         sources: &[(usize, &[String])],
         field: &str,
         reason: &str,
     ) -> Result<(), Error> {
         for (index, fields) in sources {
-            let field = if field.is_empty() { fields.join(", ") } else { field.to_owned() };
             let source = self.map.sources.get(*index);
             let alternatives =
                 self.map.sources.iter().filter(|s| source.is_some_and(|t| t.target == s.target)).count();
             let outright = matches!(source.map(|s| &s.place), Some(Place::Topic { topic, .. }) if !topic.starts_with('*'));
             if outright && alternatives == 1 {
+                let field = named(field, fields);
                 return Err(Error::Field { topic: topic.into(), field, reason: reason.into() });
             }
-            self.ignore(format!("{topic}, {field}"), reason);
         }
         Ok(())
     }
@@ -232,4 +252,9 @@ impl<'m> Topics<'m> {
         self.numbers = numbers(&self.topics);
         Ok(())
     }
+}
+
+/// The field at fault, or all of a source.
+fn named(field: &str, fields: &[String]) -> String {
+    if field.is_empty() { fields.join(", ") } else { field.to_owned() }
 }
