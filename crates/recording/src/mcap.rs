@@ -23,6 +23,7 @@ pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 pub(crate) const FORMAT: &str = "MCAP";
 
 /// Opcodes of the records that matter here.
+const FOOTER: u8 = 0x02;
 const SCHEMA: u8 = 0x03;
 const CHANNEL: u8 = 0x04;
 const MESSAGE: u8 = 0x05;
@@ -57,42 +58,52 @@ pub(crate) fn read(
     topics.finish(name, FORMAT)
 }
 
-/// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
+/// Reads an MCAP file, and those that were put behind it with `cat`.
 pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
     let mut source = opened(source, MAGIC, FORMAT, "it does not begin with the MCAP magic")?;
-    let mut reader = Reader { schemas: BTreeMap::new(), topics, plain: Vec::new() };
     let mut bytes = Vec::new();
     let mut at = MAGIC.len() as u64;
     loop {
-        let framed = read_up_to(&mut source, FRAME_BYTES, &mut bytes)?;
-        let mut frame = Cursor::packed(&bytes);
-        let Some((opcode, length)) = framed.then(|| frame_of(&mut frame)).and_then(Result::ok) else {
-            reader.tell(at, ENDS_EARLY);
-            break;
-        };
-        if opcode == DATA_END {
-            break;
+        let mut reader = Reader { schemas: BTreeMap::new(), topics, plain: Vec::new() };
+        if !reader.file(&mut source, &mut bytes, &mut at)? || !behind_end(&mut source, &mut at)? {
+            return Ok(());
         }
-        let wanted = matches!(opcode, SCHEMA | CHANNEL | MESSAGE | CHUNK);
-        let whole = if wanted && length <= LONGEST_BYTES {
-            read_up_to(&mut source, length, &mut bytes)?
-        } else {
-            if wanted {
-                reader.tell(at, &format!("a record claims {length} bytes; it was stepped over"));
-            }
-            bytes.clear();
-            std::io::copy(&mut source.by_ref().take(length), &mut std::io::sink())? == length
-        };
-        if wanted && !bytes.is_empty() {
-            reader.record(opcode, &bytes, at, whole)?;
+        if !read_up_to(&mut source, MAGIC.len() as u64, &mut bytes)? && bytes.is_empty() {
+            return Ok(());
         }
-        if !whole {
-            reader.tell(at, BREAKS_OFF);
-            break;
+        if bytes != MAGIC {
+            let rest = bytes.len() as u64 + std::io::copy(&mut source, &mut std::io::sink())?;
+            topics.tell(
+                at,
+                &format!("{rest} bytes follow the end of the file, and begin no other; they were left out"),
+            );
+            return Ok(());
         }
-        at = at.saturating_add(FRAME_BYTES).saturating_add(length);
+        at = at.saturating_add(MAGIC.len() as u64);
+        topics.next_file();
     }
-    Ok(())
+}
+
+/// Steps over the index, which is not needed, up to behind the magic that ends a file. False: the file was cut off in there.
+fn behind_end(source: &mut impl Read, at: &mut u64) -> Result<bool, Error> {
+    let mut bytes = Vec::new();
+    loop {
+        let framed = read_up_to(source, FRAME_BYTES, &mut bytes)?;
+        let Some((opcode, length)) =
+            framed.then(|| frame_of(&mut Cursor::packed(&bytes))).and_then(Result::ok)
+        else {
+            return Ok(false);
+        };
+        let ends = opcode == FOOTER;
+        let rest = length.saturating_add(if ends { MAGIC.len() as u64 } else { 0 });
+        *at = at.saturating_add(FRAME_BYTES).saturating_add(rest);
+        if std::io::copy(&mut source.by_ref().take(rest), &mut std::io::sink())? < rest {
+            return Ok(false);
+        }
+        if ends {
+            return Ok(true);
+        }
+    }
 }
 
 /// When the first message was written \[ns\], if its record or chunk comes whole.
@@ -129,6 +140,40 @@ fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
 impl Reader<'_, '_> {
     fn tell(&mut self, at: u64, what: &str) {
         self.topics.tell(at, what);
+    }
+
+    /// Reads the records of a file front to back up to the end of its data; an index is not needed, so one that was cut off
+    /// is read as far as it goes. False: it was cut off.
+    fn file(&mut self, source: &mut impl Read, bytes: &mut Vec<u8>, at: &mut u64) -> Result<bool, Error> {
+        loop {
+            let framed = read_up_to(source, FRAME_BYTES, bytes)?;
+            let frame = framed.then(|| frame_of(&mut Cursor::packed(bytes))).and_then(Result::ok);
+            let Some((opcode, length)) = frame else {
+                self.tell(*at, ENDS_EARLY);
+                return Ok(false);
+            };
+            let wanted = matches!(opcode, SCHEMA | CHANNEL | MESSAGE | CHUNK);
+            let whole = if wanted && length <= LONGEST_BYTES {
+                read_up_to(source, length, bytes)?
+            } else {
+                if wanted {
+                    self.tell(*at, &format!("a record claims {length} bytes; it was stepped over"));
+                }
+                bytes.clear();
+                std::io::copy(&mut source.by_ref().take(length), &mut std::io::sink())? == length
+            };
+            if wanted && !bytes.is_empty() {
+                self.record(opcode, bytes, *at, whole)?;
+            }
+            if !whole {
+                self.tell(*at, BREAKS_OFF);
+                return Ok(false);
+            }
+            *at = at.saturating_add(FRAME_BYTES).saturating_add(length);
+            if opcode == DATA_END {
+                return Ok(true);
+            }
+        }
     }
 
     /// Reads a record. What a broken one says is told, not trusted.

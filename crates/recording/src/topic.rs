@@ -82,8 +82,13 @@ impl<'m> Topics<'m> {
     }
 
     /// Begins another file of the same recording: its topics go on, its numbers of connections mean something else.
-    pub(crate) fn begin_file(&mut self, file: Option<String>) {
+    pub(crate) fn next_file(&mut self) {
         self.connections.clear();
+    }
+
+    /// Begins another file that has a name of its own.
+    pub(crate) fn begin_file(&mut self, file: Option<String>) {
+        self.next_file();
         self.file = file;
     }
 

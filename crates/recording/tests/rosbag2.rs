@@ -191,3 +191,35 @@ fn a_folder_and_a_file_are_read_behind_one_another() {
     let names: Vec<&str> = recording.runs.iter().map(|run| run.name.as_str()).collect();
     assert_eq!((recording.rows(), names), (50, vec!["bag", "other"]));
 }
+
+#[test]
+fn what_lies_behind_the_end_of_an_mcap_file_is_read_or_told() {
+    let first = mcap(DRIVE, &drive(100, 1..=10));
+    let second = mcap(Type { name: "my_msgs/msg/Other", ..DRIVE }, &drive(101, 11..=20));
+    let read = |bytes: &[u8]| read(bytes.to_vec(), Format::Mcap, "both", Some(&map())).unwrap();
+    let same = [first.clone(), mcap(DRIVE, &drive(101, 11..=20))].concat();
+    let Reading { recording, report } = read(&same);
+    assert_eq!(recording.channel(Channel::Power).unwrap(), up_to(20), "{report}");
+    assert!(report.repairs.is_empty(), "{report}");
+    // The numbers of channels begin anew, so that what they stood for before does not count.
+    let other = read(&[first.clone(), second].concat()).report;
+    let messages: Vec<usize> = other.streams.iter().map(|stream| stream.messages).collect();
+    assert_eq!(messages, [10, 10], "{other}");
+    let Reading { recording, report } = read(&[first.clone(), b"more bytes".to_vec()].concat());
+    assert_eq!(recording.rows(), 10);
+    let told = &report.repairs[0];
+    assert_eq!(told.place, format!("byte {}", first.len()));
+    assert!(told.what.contains("10 bytes follow the end") && told.what.contains("left out"), "{told:?}");
+    let cut = [&same[..same.len() - 60]].concat();
+    assert!(read(&cut).recording.rows() > 15);
+}
+
+#[test]
+fn a_summary_that_was_cut_off_loses_nothing_and_is_not_told() {
+    let whole = mcap(DRIVE, &drive(100, 1..=10));
+    for length in (whole.len() - 30)..whole.len() {
+        let Reading { recording, report } =
+            read(whole[..length].to_vec(), Format::Mcap, "cut", Some(&map())).unwrap();
+        assert_eq!((recording.rows(), report.repairs.len()), (10, 0), "{length}: {report}");
+    }
+}
