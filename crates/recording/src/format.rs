@@ -62,6 +62,16 @@ impl Format {
     }
 }
 
+impl Format {
+    /// The format that an open file's first bytes show; the file is then at its beginning again.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn of_file(file: &mut File) -> Result<Option<Format>, Error> {
+        Ok(Format::of_content(&head(file)?))
+    }
+}
+
 /// The first bytes of an open file, which is then at its beginning again.
 pub(crate) fn head(file: &mut File) -> Result<Vec<u8>, Error> {
     let mut head = Vec::new();

@@ -8,7 +8,7 @@ use std::{
 
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, config::DbConfig, limits::Limit};
 
-use crate::{Error, Watch, compression::LONGEST_BYTES, reading::read_up_to};
+use crate::{Error, Format, Watch, compression::LONGEST_BYTES, reading::read_up_to};
 
 /// Steps of SQLite's machine between two looks at the watch: some milliseconds.
 const STEPS_A_LOOK: c_int = 100_000;
@@ -24,6 +24,9 @@ fn shortfall(path: &Path) -> Option<(u64, u64)> {
         1 => 1 << 16,
         bytes => u64::from(bytes),
     };
+    if Format::of_content(&header) != Some(Format::Db3) {
+        return None;
+    }
     // The count holds only where the last to write knew of it.
     let is_valid = number(24)? == number(92)?;
     let (found, claimed) = (file.metadata().ok()?.len(), u64::from(number(28)?) * page_bytes);
@@ -67,6 +70,9 @@ pub(crate) fn has_table(connection: &Connection, name: &str) -> Result<bool, Err
 pub(crate) fn damage(place: &str, error: &rusqlite::Error) -> Error {
     if error.sqlite_error_code() == Some(ErrorCode::OperationInterrupted) {
         return Error::Stopped;
+    }
+    if error.sqlite_error_code() == Some(ErrorCode::NotADatabase) {
+        return Error::NotTheFormat { format: super::db3::FORMAT, reason: "it is not a database".into() };
     }
     Error::Database { place: place.to_owned(), reason: error.to_string() }
 }
