@@ -109,6 +109,9 @@ impl Definition {
 
     /// The definition of a type that its file leaves out.
     pub(crate) fn standard(type_name: &str) -> Result<Definition, String> {
+        if !type_name.contains('/') {
+            return Err("the file does not say of what type its messages are".into());
+        }
         let root = full_name(type_name, "");
         if standard::fields(&root).is_none() {
             return Err(format!(

@@ -218,7 +218,7 @@ impl Reader<'_, '_> {
         let (topic, encoding) = (String::from_utf8_lossy(topic), String::from_utf8_lossy(encoding));
         let schema = self.schemas.get(&schema_id);
         let described = Described {
-            type_name: schema.map_or("message without a type", |schema| schema.name.as_str()),
+            type_name: schema.map_or("", |schema| schema.name.as_str()),
             message_encoding: &encoding,
             schema_encoding: schema.map_or("", |schema| schema.encoding.as_str()),
             definition: schema.map_or(&[], |schema| schema.text.as_slice()),
