@@ -96,6 +96,8 @@ fn what_is_no_recording_is_refused_by_place_and_leaves_nothing_behind() {
         ("application/vnd.apache.parquet", b"PAR1".as_slice(), "not a readable Parquet file"),
         ("application/mcap", good.as_bytes(), "no MCAP file"),
         ("application/mcap", b"\x89MCAP0\r\n".as_slice(), "nothing to read"),
+        ("application/vnd.sqlite3", good.as_bytes(), "not a database"),
+        ("text/csv", b"#ROSBAG V2.0\n".as_slice(), "nothing to read"),
         ("application/x-rosbag", good.as_bytes(), "no ROS 1 bag"),
         ("application/x-rosbag", b"#ROSBAG V2.0\n".as_slice(), "nothing to read"),
     ] {

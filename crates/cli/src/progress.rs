@@ -7,7 +7,7 @@ use prove::Stage;
 
 /// A bar over the bytes of files that are about to be read.
 pub(crate) fn reading(files: &[PathBuf]) -> ProgressBar {
-    let bytes = files.iter().filter_map(|file| file.metadata().ok()).map(|file| file.len()).sum();
+    let bytes = files.iter().map(|file| recording::bytes_on_disk(file)).sum();
     let style = ProgressStyle::with_template("reading {wide_bar} {bytes} of {total_bytes}");
     ProgressBar::new(bytes).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -11,7 +11,8 @@ use crate::{
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
     reading::{Reading, read_up_to},
-    topic::{Schema, Topics},
+    schema::{Schema, Text},
+    topic::Topics,
     watch::Budget,
 };
 
@@ -47,16 +48,25 @@ impl<'b> Header<'b> {
     }
 }
 
-/// Reads a bag front to back; its index is not needed, so one that was cut off is read as far as it goes.
+/// The format's name in reports.
+pub(crate) const FORMAT: &str = "ROS 1 bag";
+
+/// Reads a bag.
 pub(crate) fn read(
     source: impl Read,
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
 ) -> Result<Reading, Error> {
-    let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
-    let mut source = opened(source, MAGIC, "ROS 1 bag", older)?;
     let mut topics = topics(map, budget)?;
+    read_into(source, &mut topics)?;
+    topics.finish(name, FORMAT)
+}
+
+/// Reads a bag front to back; its index is not needed, so one that was cut off is read as far as it goes.
+pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
+    let older = "it does not begin with `#ROSBAG V2.0`; convert older bags with `rosbag fix`";
+    let mut source = opened(source, MAGIC, FORMAT, older)?;
     let mut header = Vec::new();
     let (mut body, mut plain) = (Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
@@ -72,19 +82,19 @@ pub(crate) fn read(
         };
         let Ended::Not(body_bytes) = part(&mut source, &mut body)? else {
             if Header(&header).operation() == Some(CHUNK) {
-                chunk(&Header(&header), &body, at, false, &mut plain, &mut topics)?;
+                chunk(&Header(&header), &body, at, false, &mut plain, topics)?;
             }
             topics.tell(at, BREAKS_OFF);
             break;
         };
         match Header(&header).operation() {
-            Some(CHUNK) => chunk(&Header(&header), &body, at, true, &mut plain, &mut topics)?,
-            Some(_) => record(&Header(&header), &body, at, &mut topics)?,
+            Some(CHUNK) => chunk(&Header(&header), &body, at, true, &mut plain, topics)?,
+            Some(_) => record(&Header(&header), &body, at, topics)?,
             None => topics.tell(at, "a record does not say what it is; it was left out"),
         }
         at = at.saturating_add(8).saturating_add(header_bytes).saturating_add(body_bytes);
     }
-    topics.finish(name, "ROS 1 bag")
+    Ok(())
 }
 
 /// Whether the file ended while a part of a record was read.
@@ -127,7 +137,7 @@ fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) ->
             let text = |bytes: Option<&[u8]>| String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned();
             let (topic, type_name) = (text(header.get("topic")), text(about.get("type")));
             let definition = text(about.get("message_definition"));
-            let (definition, encoding) = (Ok(definition.as_str()), Encoding::Ros1);
+            let (definition, encoding) = (Ok(Text::Msg(definition.into())), Encoding::Ros1);
             topics.connect(connection, &topic, &Schema { type_name: &type_name, definition, encoding })
         }
         _ => Ok(()),

@@ -51,6 +51,21 @@ pub(crate) fn decompress(
     }))
 }
 
+/// Decompresses one message of a recording made with `--compression-mode message`.
+///
+/// # Errors
+/// In words, when it is no whole Zstandard frame or longer than [`LONGEST_BYTES`].
+pub(crate) fn decompress_message<'p>(packed: &[u8], plain: &'p mut Vec<u8>) -> Result<&'p [u8], String> {
+    plain.clear();
+    let broken = |_| "its compression with zstd is broken".to_owned();
+    let decoder = zstd::stream::read::Decoder::with_buffer(packed).map_err(broken)?;
+    decoder.take(LONGEST_BYTES + 1).read_to_end(plain).map_err(broken)?;
+    match plain.len() as u64 > LONGEST_BYTES {
+        true => Err(format!("it is longer than {LONGEST_BYTES} bytes when decompressed")),
+        false => Ok(plain),
+    }
+}
+
 /// Length of an LZ4 frame by its own account [bytes]: the decoder reads a little further. LZ4 Frame Format 1.6.
 fn lz4_frame_bytes(packed: &[u8]) -> Option<usize> {
     const HEAD_BYTES: usize = 7;

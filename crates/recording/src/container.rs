@@ -1,11 +1,11 @@
-//! What MCAP files and ROS 1 bags have in common: a beginning that says what they are, and records up to where they break off.
+//! What MCAP files, SQLite files and ROS 1 bags have in common: a beginning that says what they are, and records up to where they break off.
 
 use std::{
     io::{BufReader, Read},
     sync::LazyLock,
 };
 
-use crate::{Error, Map, reading::read_up_to, topic::Topics, watch::Budget};
+use crate::{Error, Map, format::ZSTD_MAGIC, reading::read_up_to, topic::Topics, watch::Budget};
 
 /// Bytes read at a time.
 const BUFFER_BYTES: usize = 1 << 20;
@@ -33,7 +33,12 @@ pub(crate) fn opened<R: Read>(
     if begins == magic {
         return Ok(source);
     }
-    let reason = if begins.is_empty() { "it is empty".to_owned() } else { otherwise.to_owned() };
+    let reason = match begins.as_slice() {
+        [] => "it is empty",
+        packed if packed.starts_with(&ZSTD_MAGIC) => "it is compressed as a whole: unpack it with `zstd -d`",
+        _ => otherwise,
+    };
+    let reason = reason.to_owned();
     Err(Error::NotTheFormat { format, reason })
 }
 

@@ -13,6 +13,25 @@ pub(crate) enum Encoding {
     Cdr,
 }
 
+/// How many bytes a character of a wide text has: no standard says so, and writers differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wide {
+    /// Four, as in Fast CDR 1 and Cyclone.
+    Four,
+    /// Two, as in Fast CDR 2.
+    Two,
+    /// The count is one of bytes, as in DDS-XTypes 1.3.
+    Counted,
+}
+
+/// What the header of a message leaves open of how it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Dialect {
+    pub(crate) wide: Wide,
+    /// Whether collections of anything but numbers have their length before them, where the encoding is CDR's second version.
+    pub(crate) collection_lengths: bool,
+}
+
 /// A place in bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'a> {
@@ -25,12 +44,27 @@ pub(crate) struct Cursor<'a> {
     origin: usize,
     /// Bytes that end every text: CDR closes it with a zero that its length counts.
     pub(crate) text_terminator: usize,
+    /// Whether it is CDR's second version.
+    pub(crate) is_second: bool,
+    /// Whether every struct has its length before it.
+    struct_lengths: bool,
+    pub(crate) dialect: Dialect,
 }
 
 impl<'a> Cursor<'a> {
     /// Packed little-endian bytes.
     pub(crate) fn packed(bytes: &'a [u8]) -> Self {
-        Cursor { bytes, at: 0, big_endian: false, alignment: 1, origin: 0, text_terminator: 0 }
+        Cursor {
+            bytes,
+            at: 0,
+            big_endian: false,
+            alignment: 1,
+            origin: 0,
+            text_terminator: 0,
+            is_second: false,
+            struct_lengths: false,
+            dialect: Dialect { wide: Wide::Four, collection_lengths: true },
+        }
     }
 
     /// The bytes of a message. The encapsulation of CDR is that of OMG DDSI-RTPS 2.5, section 10.5, and DDS-XTypes 1.3,
@@ -43,18 +77,49 @@ impl<'a> Cursor<'a> {
         let Some(&[kind_high, kind_low, ..]) = bytes.first_chunk::<HEADER>() else {
             return Err(format!("{} bytes are too few for the header of CDR", bytes.len()));
         };
-        let (big_endian, alignment) = match (kind_high, kind_low) {
-            (0, 0) => (true, 8),
-            (0, 1) => (false, 8),
-            (0, 6) => (true, 4),
-            (0, 7) => (false, 4),
+        // The numbers of the second version were 0x10 to 0x15 before DDS-XTypes 1.3.
+        let (is_second, struct_lengths) = match (kind_high, kind_low) {
+            (0, 0 | 1) => (false, false),
+            (0, 0x06 | 0x07 | 0x10 | 0x11) => (true, false),
+            (0, 0x08 | 0x09 | 0x14 | 0x15) => (true, true),
             _ => {
                 return Err(format!(
                     "CDR encapsulation 0x{kind_high:02x}{kind_low:02x} is none of plain CDR"
                 ));
             }
         };
-        Ok(Cursor { bytes, at: HEADER, big_endian, alignment, origin: HEADER, text_terminator: 1 })
+        Ok(Cursor {
+            at: HEADER,
+            big_endian: kind_low & 1 == 0,
+            alignment: if is_second { 4 } else { 8 },
+            origin: HEADER,
+            text_terminator: 1,
+            is_second,
+            struct_lengths,
+            ..Cursor::packed(bytes)
+        })
+    }
+
+    /// Moves over the length that stands before a collection of anything but numbers.
+    pub(crate) fn collection_length(&mut self) -> Result<(), Short> {
+        if self.is_second && self.dialect.collection_lengths { self.u32().map(|_| ()) } else { Ok(()) }
+    }
+
+    /// Moves over the length that stands before a struct.
+    pub(crate) fn struct_length(&mut self) -> Result<(), Short> {
+        if self.struct_lengths { self.u32().map(|_| ()) } else { Ok(()) }
+    }
+
+    /// Moves over a wide text; returns whether it holds anything.
+    pub(crate) fn wide_text(&mut self) -> Result<bool, Short> {
+        let count = self.u32()? as usize;
+        let character_bytes = match self.dialect.wide {
+            Wide::Four => 4,
+            Wide::Two => 2,
+            Wide::Counted => 1,
+        };
+        self.skip(count.checked_mul(character_bytes).ok_or(Short)?)?;
+        Ok(count > 0)
     }
 
     /// Bytes left.

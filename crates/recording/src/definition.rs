@@ -1,4 +1,9 @@
-//! Message definitions of ROS 1 and ROS 2 (`.msg` text with its dependencies behind lines of `=`).
+//! Message definitions of ROS 1 and ROS 2: `.msg` text with its dependencies behind lines of `=`, IDL, and a library of standard
+//! packages for what a file leaves out.
+
+pub(crate) mod idl;
+mod standard;
+mod token;
 
 use std::collections::BTreeMap;
 
@@ -38,6 +43,8 @@ impl Primitive {
 pub(crate) enum Base {
     Number(Primitive),
     Text,
+    /// A text of wide characters, whose width the bytes of a message have to tell.
+    WideText,
     /// Two numbers of four bytes: seconds and nanoseconds.
     Time,
     /// Another message, by full name.
@@ -68,11 +75,21 @@ pub(crate) struct Definition {
 }
 
 impl Definition {
-    /// Parses a definition with its dependencies.
-    pub(crate) fn parse(type_name: &str, text: &str) -> Result<Definition, String> {
+    /// One of a message without fields.
+    fn empty(type_name: &str) -> Definition {
         let root = full_name(type_name, "");
-        let mut name = root.clone();
-        let mut messages = BTreeMap::from([(root.clone(), Vec::new())]);
+        Definition { messages: BTreeMap::from([(root.clone(), Vec::new())]), root }
+    }
+
+    /// Begins the fields of a message. One may be defined once more behind a separator; the later text stands for itself.
+    fn begin(&mut self, message: &str) {
+        self.messages.insert(message.to_owned(), Vec::new());
+    }
+
+    /// Parses `.msg` text with its dependencies.
+    pub(crate) fn parse(type_name: &str, text: &str) -> Result<Definition, String> {
+        let mut definition = Definition::empty(type_name);
+        let mut name = definition.root.clone();
         for line in text.lines() {
             let line = line.trim();
             if line.len() > 2 && line.bytes().all(|byte| byte == b'=') {
@@ -80,25 +97,34 @@ impl Definition {
             }
             if let Some(next) = line.strip_prefix("MSG:") {
                 name = full_name(next.trim(), "");
-                // The root may be defined once more behind a separator; the later text stands for itself.
-                messages.insert(name.clone(), Vec::new());
+                definition.begin(&name);
                 continue;
             }
             if let Some(field) = field(line, &name)? {
-                let fields: &mut Vec<Field> = messages.entry(name.clone()).or_default();
-                if fields.iter().any(|other| other.name == field.name) {
-                    return Err(format!(
-                        "its definition has two fields `{}` in {name}",
-                        excerpt(&field.name)
-                    ));
-                }
-                if fields.len() == MOST_FIELDS {
-                    return Err(format!("its definition has more than {MOST_FIELDS} fields in {name}"));
-                }
-                fields.push(field);
+                add(&mut definition, &name, field)?;
             }
         }
-        Ok(Definition { root, messages })
+        Ok(definition)
+    }
+
+    /// The definition of a type that its file leaves out.
+    pub(crate) fn standard(type_name: &str) -> Result<Definition, String> {
+        if !type_name.contains('/') {
+            return Err("the file does not say of what type its messages are".into());
+        }
+        let root = full_name(type_name, "");
+        if standard::fields(&root).is_none() {
+            return Err(format!(
+                "the file holds no definition of {root}, which is of no standard package; MCAP files of `ros2 bag record` hold them, \
+                 and so does what `ros2 bag convert` writes where the package is installed"
+            ));
+        }
+        Ok(Definition { messages: BTreeMap::new(), root })
+    }
+
+    /// Full name of the message itself.
+    pub(crate) fn name(&self) -> &str {
+        &self.root
     }
 
     /// Fields of the message itself.
@@ -106,9 +132,37 @@ impl Definition {
         self.fields(&self.root).unwrap_or_default()
     }
 
-    /// Fields of a message within it.
+    /// Fields of a message within it, or of one of a standard package.
     pub(crate) fn fields(&self, message: &str) -> Option<&[Field]> {
-        self.messages.get(message).map(Vec::as_slice)
+        self.messages.get(message).map(Vec::as_slice).or_else(|| standard::fields(message))
+    }
+
+    /// Whether the file itself defines a message.
+    pub(crate) fn holds(&self, message: &str) -> bool {
+        self.messages.contains_key(message)
+    }
+}
+
+/// Adds a field to a message.
+fn add(definition: &mut Definition, message: &str, field: Field) -> Result<(), String> {
+    let fields = definition.messages.entry(message.to_owned()).or_default();
+    if fields.iter().any(|other| other.name == field.name) {
+        return Err(format!("its definition has two fields `{}` in {message}", excerpt(&field.name)));
+    }
+    if fields.len() == MOST_FIELDS {
+        return Err(format!("its definition has more than {MOST_FIELDS} fields in {message}"));
+    }
+    fields.push(field);
+    Ok(())
+}
+
+impl Base {
+    /// A message, or the time that it is.
+    fn of_message(name: String) -> Base {
+        match name.as_str() {
+            "builtin_interfaces/Time" | "builtin_interfaces/Duration" => Base::Time,
+            _ => Base::Message(name),
+        }
     }
 }
 
@@ -166,12 +220,9 @@ fn parse_base(name: &str, within: &str) -> Result<Base, String> {
         "float32" => Base::Number(Primitive::F32),
         "float64" => Base::Number(Primitive::F64),
         "string" => Base::Text,
-        "wstring" => return Err("wide strings are not read: their width is not standardised".into()),
+        "wstring" => Base::WideText,
         "time" | "duration" => Base::Time,
-        _ => match full_name(plain, within) {
-            name if name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration" => Base::Time,
-            name => Base::Message(name),
-        },
+        _ => Base::of_message(full_name(plain, within)),
     })
 }
 

@@ -21,7 +21,9 @@ pub enum Error {
     #[error("{0}")]
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
-    #[error("`{ending}` is no recording: the name must end in .csv, .parquet, .mcap or .bag")]
+    #[error(
+        "`{ending}` is no recording: the name must end in .csv, .parquet, .mcap, .db3 or .bag, or be that of a folder of `ros2 bag record`"
+    )]
     UnknownFormat {
         /// The ending found.
         ending: String,
@@ -63,7 +65,7 @@ pub enum Error {
         reason: String,
     },
     /// Channels without which a recording tells nothing.
-    #[error("{missing} missing; found: {}{}", found.join(", "), hints(nearest))]
+    #[error("{missing} missing; found: {}{}{}", found.join(", "), hints(nearest), reasons(unread))]
     Missing {
         /// What is missing, in words.
         missing: String,
@@ -71,6 +73,8 @@ pub enum Error {
         found: Vec<String>,
         /// The nearest of them, with the name that was looked for.
         nearest: Vec<(String, String)>,
+        /// Topics that the map names, and why they could not be read.
+        unread: Vec<String>,
     },
     /// Two columns of one name, or two columns for one channel.
     #[error("two columns give {channel}: `{first}` and `{second}`; rename one of them or map it `aside`")]
@@ -189,6 +193,28 @@ pub enum Error {
         /// What is there instead.
         reason: String,
     },
+    /// SQLite refuses a file, or a place in it.
+    #[error("{place}: {reason}; `sqlite3 FILE .recover` saves what is whole")]
+    Database {
+        /// Where, as `table messages, after id 120`.
+        place: String,
+        /// What SQLite says.
+        reason: String,
+    },
+    /// A file that is held or copied as a whole and is longer than any.
+    #[error(
+        "it has more than {most} bytes when unpacked, and is not read so; unpack it with `zstd -d` first"
+    )]
+    TooLong {
+        /// The most that is read \[bytes\].
+        most: u64,
+    },
+    /// A folder that holds no recording.
+    #[error("the folder holds no .mcap or .db3 file: {found}")]
+    NoStorage {
+        /// What it holds, or its `metadata.yaml` names.
+        found: String,
+    },
     /// A topic that the map names has no message that could be read.
     #[error(
         "topic {topic}: none of its {messages} messages is a {type_name} as its definition says: {reason}"
@@ -283,6 +309,14 @@ impl Error {
         Error::InFile { path: path.display().to_string(), source: Box::new(self) }
     }
 
+    /// Says why topics that the map names were not read, where something is missing.
+    pub(crate) fn with_unread(mut self, reasons: Vec<String>) -> Error {
+        if let Error::Missing { unread, .. } = &mut self {
+            *unread = reasons;
+        }
+        self
+    }
+
     /// The missing channels that a recording cannot do without, with the names in the file that come nearest.
     pub(crate) fn missing(lacks: &[Channel], power: bool, found: &[String]) -> Error {
         let mut missing: Vec<String> = lacks.iter().map(|channel| channel.name().to_owned()).collect();
@@ -308,7 +342,12 @@ impl Error {
         };
         let nearest = wanted.iter().filter_map(near).collect();
         let verb = if missing.len() == 1 { "is" } else { "are" };
-        Error::Missing { missing: format!("{} {verb}", missing.join(", ")), found: shortened(found), nearest }
+        Error::Missing {
+            missing: format!("{} {verb}", missing.join(", ")),
+            found: shortened(found),
+            nearest,
+            unread: Vec::new(),
+        }
     }
 }
 
@@ -339,5 +378,12 @@ fn hints(nearest: &[(String, String)]) -> String {
             let hints: Vec<String> = nearest.iter().map(hint).collect();
             format!("; did you mean {}? Rename it, or name it with its unit in a map", hints.join(", "))
         }
+    }
+}
+
+fn reasons(unread: &[String]) -> String {
+    match unread {
+        [] => String::new(),
+        some => format!("; not read: {}", some.join("; ")),
     }
 }

@@ -1,7 +1,7 @@
 //! A walk through a message's bytes that stops at the numbers wanted and steps over everything else.
 
 use crate::{
-    cursor::{Cursor, Encoding, Short},
+    cursor::{Cursor, Dialect, Encoding, Short, Wide},
     definition::{Base, Count, Definition, Field, Primitive},
     field::{Angle, Pick, Resolved, Segment, resolve},
     walk::{Found, Node, Picked},
@@ -15,13 +15,20 @@ const MOST_NODES: usize = 20_000;
 #[derive(Debug)]
 pub(crate) struct Layout {
     encoding: Encoding,
-    root: Vec<Node>,
+    root: Node,
     slots: usize,
     keys: usize,
     values: Vec<Value>,
     /// Slots of the header's seconds and nanoseconds.
     stamp: Option<[usize; 2]>,
+    /// Whether it has wide texts, whose width only the end of a message tells.
+    is_wide: bool,
+    /// Whether the file leaves out a definition that it needs, so that only the end of a message tells whether it is right.
+    pub(crate) is_standard: bool,
 }
+
+/// Bytes up to which a message is padded by its writer.
+const PADDING_BYTES: usize = 3;
 
 #[derive(Clone, Copy, Debug)]
 struct Value {
@@ -88,9 +95,16 @@ impl Layout {
             [slots - 2, slots - 1]
         });
         let wants = plan.iter().map(|(path, slots)| Want { path, slots: *slots }).collect::<Vec<_>>();
-        let mut builder = Builder { definition, encoding, nodes: 0, keys: 0 };
+        let is_standard = !definition.holds(definition.name());
+        let mut builder = Builder { definition, encoding, nodes: 0, keys: 0, is_wide: false, is_standard };
         let root = builder.message(definition.root(), &wants, 0).map_err(|reason| (String::new(), reason))?;
-        Ok(Layout { encoding, root, slots, keys: builder.keys, values, stamp })
+        let Builder { keys, is_wide, is_standard, .. } = builder;
+        Ok(Layout { encoding, root: Node::Message(root), slots, keys, values, stamp, is_wide, is_standard })
+    }
+
+    /// Whether its messages are CDR, whose header no compressed one has.
+    pub(crate) fn is_cdr(&self) -> bool {
+        self.encoding == Encoding::Cdr
     }
 
     /// Reads a message into `values`, one per path, NaN where it has none; returns its stamp \[ns\].
@@ -100,19 +114,8 @@ impl Layout {
         found: &mut Found,
         values: &mut [f64],
     ) -> Result<Option<i64>, String> {
-        found.slots.clear();
-        found.slots.resize(self.slots, f64::NAN);
-        found.keys.clear();
-        found.keys.resize(self.keys, None);
-        found.wanted = self.slots;
-        let mut cursor = Cursor::message(bytes, self.encoding)?;
-        for node in &self.root {
-            let short = |Short| format!("its {} bytes end too soon", bytes.len());
-            node.walk(&mut cursor, found).map_err(short)?;
-            if found.wanted == 0 {
-                break;
-            }
-        }
+        let cursor = Cursor::message(bytes, self.encoding)?;
+        self.find(cursor, bytes.len(), found)?;
         for (value, wanted) in values.iter_mut().zip(&self.values) {
             *value = wanted.of(&found.slots);
         }
@@ -123,6 +126,48 @@ impl Layout {
             .zip(whole(nanoseconds))
             .and_then(|(s, ns)| s.checked_mul(1_000_000_000)?.checked_add(ns));
         Ok(stamp.filter(|_| self.stamp.is_some()))
+    }
+}
+
+impl Layout {
+    /// Finds the numbers wanted. Where more than one way of writing fits the header, that one which meets the message's end.
+    fn find(&self, cursor: Cursor<'_>, bytes: usize, found: &mut Found) -> Result<(), String> {
+        let short = |Short| format!("its {bytes} bytes end too soon");
+        if !self.is_wide && !self.is_standard && !cursor.is_second {
+            return self.walk(cursor, found, false).map(|_| ()).map_err(short);
+        }
+        let widths = if self.is_wide { &[Wide::Four, Wide::Two, Wide::Counted][..] } else { &[Wide::Four] };
+        let lengths = if cursor.is_second { &[true, false][..] } else { &[true] };
+        for (&wide, &collection_lengths) in widths.iter().flat_map(|w| lengths.iter().map(move |l| (w, l))) {
+            let mut tried = cursor;
+            tried.dialect = Dialect { wide, collection_lengths };
+            if self.walk(tried, found, true).is_ok_and(|left| left <= PADDING_BYTES) {
+                return Ok(());
+            }
+        }
+        if self.is_standard {
+            return Err(format!(
+                "its {bytes} bytes are not those of the standard definition, and the file holds none of its own"
+            ));
+        }
+        // What is wanted may lie before all that is open.
+        self.walk(cursor, found, false).map_err(short)?;
+        match found.is_guess {
+            true => Err("it has a `wstring` before what is wanted, of a width that is not known".into()),
+            false => Ok(()),
+        }
+    }
+
+    /// Walks to the last number wanted, or to the message's end; returns how many bytes are left.
+    fn walk(&self, mut cursor: Cursor<'_>, found: &mut Found, to_the_end: bool) -> Result<usize, Short> {
+        found.slots.clear();
+        found.slots.resize(self.slots, f64::NAN);
+        found.keys.clear();
+        found.keys.resize(self.keys, None);
+        found.wanted = self.slots + usize::from(to_the_end);
+        found.is_guess = false;
+        self.root.walk(&mut cursor, found)?;
+        Ok(cursor.left())
     }
 }
 
@@ -161,6 +206,8 @@ struct Builder<'d> {
     encoding: Encoding,
     nodes: usize,
     keys: usize,
+    is_wide: bool,
+    is_standard: bool,
 }
 
 impl Builder<'_> {
@@ -239,10 +286,15 @@ impl Builder<'_> {
         Ok(match base {
             Base::Number(primitive) => Node::Number(*primitive, slots.map(|slots| slots[0])),
             Base::Text => Node::Text,
+            Base::WideText => {
+                self.is_wide = true;
+                Node::WideText
+            }
             Base::Time => Node::Time(slots),
             Base::Message(name) => {
                 let fields = self.definition.fields(name);
                 let fields = fields.ok_or_else(|| format!("its definition lacks {name}"))?;
+                self.is_standard |= !self.definition.holds(name);
                 Node::Message(self.message(fields, wants, depth + 1)?)
             }
         })

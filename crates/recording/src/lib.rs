@@ -1,6 +1,6 @@
 //! Drive logs of a robot as one table of channels on one clock.
 //!
-//! CSV and Parquet hold rows already; ROS 2 MCAP files and ROS 1 bags hold streams, which a [`Map`] names and [`align`]
+//! CSV and Parquet hold rows already; ROS 2 recordings (MCAP, SQLite) and ROS 1 bags hold streams, which a [`Map`] names and [`align`]
 //! brings onto one clock. Every reading comes with a [`ReadingReport`]: what was found, used, left aside, repaired, missing
 //! and suspicious. Axes and signs, for the whole program: heading counter-clockwise from +x (east), pitch positive nose-up,
 //! roll positive left side up, yaw rate positive turning left, power positive when drawn from the battery. A gap is NaN and
@@ -23,6 +23,7 @@ mod definition;
 mod divide;
 mod error;
 mod field;
+mod format;
 mod gap;
 mod label_column;
 mod layout;
@@ -38,7 +39,9 @@ mod reading;
 mod recording;
 mod report;
 mod room;
+mod rosbag2;
 mod sampled;
+mod schema;
 mod stream;
 mod suspicion;
 mod table;
@@ -52,9 +55,11 @@ pub use channel::{Channel, Quantity};
 pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, TimeUnit};
 pub use combine::Combine;
 pub use error::Error;
+pub use format::Format;
 pub use map::{Map, Place, Source, Stamp, Target};
 pub use reading::{
-    Format, Reading, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched, unwatched,
+    Reading, bytes_on_disk, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
+    unwatched,
 };
 pub use recording::{Labels, PowerForm, Recording, Run};
 pub use report::{

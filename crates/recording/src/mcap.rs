@@ -9,15 +9,21 @@ use crate::{
     Error, Map,
     compression::{LONGEST_BYTES, decompress},
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
-    cursor::{Cursor, Encoding, Short},
+    cursor::{Cursor, Short},
     reading::{Reading, read_up_to},
-    topic::{Schema, Topics},
+    schema::{Described, Schema},
+    topic::Topics,
     watch::Budget,
 };
 
-const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+/// The first bytes of a file.
+pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// The format's name in reports.
+pub(crate) const FORMAT: &str = "MCAP";
 
 /// Opcodes of the records that matter here.
+const FOOTER: u8 = 0x02;
 const SCHEMA: u8 = 0x03;
 const CHANNEL: u8 = 0x04;
 const MESSAGE: u8 = 0x05;
@@ -34,53 +40,96 @@ struct StoredSchema {
     text: Vec<u8>,
 }
 
-struct Reader<'m> {
+struct Reader<'t, 'm> {
     schemas: BTreeMap<u16, StoredSchema>,
-    topics: Topics<'m>,
+    topics: &'t mut Topics<'m>,
     plain: Vec<u8>,
 }
 
-/// Reads an MCAP file front to back; an index is not needed, so one that was cut off is read as far as it goes.
+/// Reads an MCAP file.
 pub(crate) fn read(
     source: impl Read,
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
 ) -> Result<Reading, Error> {
-    let mut source = opened(source, MAGIC, "MCAP", "it does not begin with the MCAP magic")?;
-    let mut reader = Reader { schemas: BTreeMap::new(), topics: topics(map, budget)?, plain: Vec::new() };
+    let mut topics = topics(map, budget)?;
+    read_into(source, &mut topics)?;
+    topics.finish(name, FORMAT)
+}
+
+/// Reads an MCAP file, and those that were put behind it with `cat`.
+pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
+    let mut source = opened(source, MAGIC, FORMAT, "it does not begin with the MCAP magic")?;
     let mut bytes = Vec::new();
     let mut at = MAGIC.len() as u64;
     loop {
-        let framed = read_up_to(&mut source, FRAME_BYTES, &mut bytes)?;
-        let mut frame = Cursor::packed(&bytes);
-        let Some((opcode, length)) = framed.then(|| frame_of(&mut frame)).and_then(Result::ok) else {
-            reader.tell(at, ENDS_EARLY);
-            break;
-        };
-        if opcode == DATA_END {
-            break;
+        let mut reader = Reader { schemas: BTreeMap::new(), topics, plain: Vec::new() };
+        if !reader.file(&mut source, &mut bytes, &mut at)? || !behind_end(&mut source, &mut at)? {
+            return Ok(());
         }
-        let wanted = matches!(opcode, SCHEMA | CHANNEL | MESSAGE | CHUNK);
-        let whole = if wanted && length <= LONGEST_BYTES {
-            read_up_to(&mut source, length, &mut bytes)?
-        } else {
-            if wanted {
-                reader.tell(at, &format!("a record claims {length} bytes; it was stepped over"));
-            }
-            bytes.clear();
-            std::io::copy(&mut source.by_ref().take(length), &mut std::io::sink())? == length
-        };
-        if wanted && !bytes.is_empty() {
-            reader.record(opcode, &bytes, at, whole)?;
+        if !read_up_to(&mut source, MAGIC.len() as u64, &mut bytes)? && bytes.is_empty() {
+            return Ok(());
         }
-        if !whole {
-            reader.tell(at, BREAKS_OFF);
-            break;
+        if bytes != MAGIC {
+            let rest = bytes.len() as u64 + std::io::copy(&mut source, &mut std::io::sink())?;
+            topics.tell(
+                at,
+                &format!("{rest} bytes follow the end of the file, and begin no other; they were left out"),
+            );
+            return Ok(());
         }
-        at = at.saturating_add(FRAME_BYTES).saturating_add(length);
+        at = at.saturating_add(MAGIC.len() as u64);
+        topics.next_file();
     }
-    reader.topics.finish(name, "MCAP")
+}
+
+/// Steps over the index, which is not needed, up to behind the magic that ends a file. False: the file was cut off in there.
+fn behind_end(source: &mut impl Read, at: &mut u64) -> Result<bool, Error> {
+    let mut bytes = Vec::new();
+    loop {
+        let framed = read_up_to(source, FRAME_BYTES, &mut bytes)?;
+        let Some((opcode, length)) =
+            framed.then(|| frame_of(&mut Cursor::packed(&bytes))).and_then(Result::ok)
+        else {
+            return Ok(false);
+        };
+        let ends = opcode == FOOTER;
+        let rest = length.saturating_add(if ends { MAGIC.len() as u64 } else { 0 });
+        *at = at.saturating_add(FRAME_BYTES).saturating_add(rest);
+        if std::io::copy(&mut source.by_ref().take(rest), &mut std::io::sink())? < rest {
+            return Ok(false);
+        }
+        if ends {
+            return Ok(true);
+        }
+    }
+}
+
+/// When the first message was written \[ns\], if its record or chunk comes whole.
+pub(crate) fn first_ns(source: impl Read) -> Option<i64> {
+    let mut source = opened(source, MAGIC, FORMAT, "").ok()?;
+    let mut bytes = Vec::new();
+    loop {
+        let framed = read_up_to(&mut source, FRAME_BYTES, &mut bytes).ok()?;
+        let (opcode, length) = framed.then(|| frame_of(&mut Cursor::packed(&bytes)))?.ok()?;
+        // Of a chunk the time of its first message comes first, which is 0 where it has none.
+        let skipped = match opcode {
+            MESSAGE => 6,
+            CHUNK => 0,
+            DATA_END => return None,
+            _ => length,
+        };
+        let mut body = source.by_ref().take(length);
+        std::io::copy(&mut body.by_ref().take(skipped), &mut std::io::sink()).ok()?;
+        if skipped < length && read_up_to(&mut body, 8, &mut bytes).ok()? {
+            let first_ns = Cursor::packed(&bytes).u64().ok()?;
+            if first_ns > 0 {
+                return i64::try_from(first_ns).ok();
+            }
+        }
+        std::io::copy(&mut body, &mut std::io::sink()).ok()?;
+    }
 }
 
 fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
@@ -88,9 +137,43 @@ fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
     Ok((opcode, cursor.u64()?))
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn tell(&mut self, at: u64, what: &str) {
         self.topics.tell(at, what);
+    }
+
+    /// Reads the records of a file front to back up to the end of its data; an index is not needed, so one that was cut off
+    /// is read as far as it goes. False: it was cut off.
+    fn file(&mut self, source: &mut impl Read, bytes: &mut Vec<u8>, at: &mut u64) -> Result<bool, Error> {
+        loop {
+            let framed = read_up_to(source, FRAME_BYTES, bytes)?;
+            let frame = framed.then(|| frame_of(&mut Cursor::packed(bytes))).and_then(Result::ok);
+            let Some((opcode, length)) = frame else {
+                self.tell(*at, ENDS_EARLY);
+                return Ok(false);
+            };
+            let wanted = matches!(opcode, SCHEMA | CHANNEL | MESSAGE | CHUNK);
+            let whole = if wanted && length <= LONGEST_BYTES {
+                read_up_to(source, length, bytes)?
+            } else {
+                if wanted {
+                    self.tell(*at, &format!("a record claims {length} bytes; it was stepped over"));
+                }
+                bytes.clear();
+                std::io::copy(&mut source.by_ref().take(length), &mut std::io::sink())? == length
+            };
+            if wanted && !bytes.is_empty() {
+                self.record(opcode, bytes, *at, whole)?;
+            }
+            if !whole {
+                self.tell(*at, BREAKS_OFF);
+                return Ok(false);
+            }
+            *at = at.saturating_add(FRAME_BYTES).saturating_add(length);
+            if opcode == DATA_END {
+                return Ok(true);
+            }
+        }
     }
 
     /// Reads a record. What a broken one says is told, not trusted.
@@ -134,21 +217,13 @@ impl Reader<'_> {
         };
         let (topic, encoding) = (String::from_utf8_lossy(topic), String::from_utf8_lossy(encoding));
         let schema = self.schemas.get(&schema_id);
-        let text =
-            schema.map(|schema| std::str::from_utf8(&schema.text).unwrap_or_default()).unwrap_or_default();
-        let schema_encoding = schema.map_or("none", |schema| schema.encoding.as_str());
-        let (encoding, definition) = match (encoding.as_ref(), schema_encoding) {
-            ("cdr", "ros2msg") => (Encoding::Cdr, Ok(text)),
-            ("ros1", "ros1msg") => (Encoding::Ros1, Ok(text)),
-            (message, schema) => {
-                let reason = format!(
-                    "its messages are `{message}` by a `{schema}` schema; cdr by ros2msg can be read"
-                );
-                (Encoding::Cdr, Err(reason))
-            }
+        let described = Described {
+            type_name: schema.map_or("", |schema| schema.name.as_str()),
+            message_encoding: &encoding,
+            schema_encoding: schema.map_or("", |schema| schema.encoding.as_str()),
+            definition: schema.map_or(&[], |schema| schema.text.as_slice()),
         };
-        let type_name = schema.map_or("message without a type", |schema| schema.name.as_str());
-        self.topics.connect(u32::from(id), &topic, &Schema { type_name, definition, encoding })
+        self.topics.connect(u32::from(id), &topic, &Schema::of(&described))
     }
 
     fn message(&mut self, body: &[u8]) -> Result<Result<(), Error>, Short> {

@@ -53,13 +53,18 @@ impl Topics<'_> {
         let other = namespace::others(self.map, &streams)?;
         let chosen = self.choose(&streams, other.as_ref());
         if chosen.is_empty() {
-            let found = match self.names.as_slice() {
-                [] => "the file names no topic".to_owned(),
-                names => format!(
-                    "the file has {}, but map `{}` reads none of them",
-                    names.join(", "),
-                    self.map.name
-                ),
+            let map = &self.map.name;
+            let found = match (self.names.as_slice(), self.unread().as_slice()) {
+                ([], _) => "the file names no topic".to_owned(),
+                (names, []) => {
+                    format!("the file has {}, but map `{map}` reads none of them", names.join(", "))
+                }
+                (_, unread) => {
+                    format!(
+                        "map `{map}` names topics of the file, but none can be read: {}",
+                        unread.join("; ")
+                    )
+                }
             };
             return Err(Error::Empty { found });
         }
@@ -70,10 +75,11 @@ impl Topics<'_> {
         check_steps(&streams[base])?;
         let recording = self.align(&streams, &chosen, base, name, &mut report)?;
         let looks = self.looks().clone();
+        let unread = self.unread();
         report.ignored = self.ignored;
         report.repairs = self.repairs;
         let part = Part { recording, report, found: self.names, format };
-        Reading::finish(part, name, Some(self.map), &looks)
+        Reading::finish(part, name, Some(self.map), &looks).map_err(|error| error.with_unread(unread))
     }
 
     fn refuse_or_tell(&mut self, topic: &Topic, reason: &str) -> Result<(), Error> {

@@ -8,12 +8,13 @@ use std::{
     sync::{Arc, atomic::Ordering},
 };
 
-use serde::{Deserialize, Serialize};
-
 use crate::{
-    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag,
+    Channel, Error, Format, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag,
     bridge::bridge,
-    csv, mcap, parquet,
+    csv,
+    format::{self, ZSTD_MAGIC},
+    mcap, parquet,
+    rosbag2::{db3, folder, storage},
     suspicion::suspicions_watched,
     watch::{Budget, Looks, Watched},
 };
@@ -27,40 +28,9 @@ pub struct Reading {
     pub report: ReadingReport,
 }
 
-/// A file format of recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Format {
-    /// Comma-, semicolon- or tab-separated text with a header line.
-    Csv,
-    /// Parquet with the same columns.
-    Parquet,
-    /// A ROS 2 MCAP file.
-    Mcap,
-    /// A ROS 1 bag, version 2.0.
-    Bag,
-}
-
-impl Format {
-    /// The format that a file name's ending stands for.
-    ///
-    /// # Errors
-    /// The ending, when it stands for none.
-    pub fn of(path: &Path) -> Result<Format, Error> {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        match ending.as_str() {
-            "csv" | "tsv" | "txt" => Ok(Format::Csv),
-            "parquet" => Ok(Format::Parquet),
-            "mcap" => Ok(Format::Mcap),
-            "bag" => Ok(Format::Bag),
-            _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),
-        }
-    }
-}
-
-/// Reads a file; its ending says which format it is in. Without a map, a table's columns are what their names say and a
-/// bag's topics are taken for a Husky's.
+/// Reads a file, or the folder that `ros2 bag record` leaves. Its first bytes say which format it is in, and its ending where
+/// they say nothing, as in CSV. Without a map, a table's columns are what their names say and a bag's topics are taken for a
+/// Husky's.
 ///
 /// The file is read once, front to back, and of it only the numbers of the channels are held, in the [`Room`] that there is: where they
 /// fill it, neighbouring rows become means, as the report then says.
@@ -81,13 +51,33 @@ pub fn read_path_watched(path: &Path, map: Option<&Map>, watch: &Watch) -> Resul
 
 fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Reading, Error> {
     let read = || {
-        let format = Format::of(path)?;
-        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
-        read_file(File::open(path)?, format, name, map, watch, room)
+        let budget = Budget { room, looks: Looks::new(watch) };
+        let name = &run_name(path);
+        if path.is_dir() {
+            return folder::read(path, name, map, watch, &budget);
+        }
+        let mut file = File::open(path)?;
+        let head = format::head(&mut file)?;
+        match Format::of_content(&head) {
+            Some(Format::Db3) => storage::read(path, name, map, watch, &budget),
+            None if head.starts_with(&ZSTD_MAGIC) => storage::read(path, name, map, watch, &budget),
+            Some(format) => read_file(file, format, name, map, watch, room),
+            None => read_file(file, Format::of(path)?, name, map, watch, room),
+        }
     };
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
     reading.report.source = path.display().to_string();
     Ok(reading)
+}
+
+/// The name of a run: that of the file without its ending, or of the folder.
+fn run_name(path: &Path) -> String {
+    let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let path = if path.file_name().is_some() { path } else { &whole };
+    let is_packed = path.extension().is_some_and(|ending| ending == "zstd" || ending == "zst");
+    let packed = if is_packed { path.with_extension("") } else { path.to_owned() };
+    let name = if path.is_dir() { path.file_name() } else { packed.file_stem() };
+    name.and_then(|name| name.to_str()).unwrap_or("recording").to_owned()
 }
 
 /// Reads an open file of a known format, followed by a watch. The name becomes that of the run where the recording has
@@ -111,6 +101,7 @@ pub fn read_file(
         Format::Parquet => parquet::read(file, name, of_columns(map), &budget),
         Format::Mcap => mcap::read(file, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
+        Format::Db3 => db3::read_copy(file, name, map, &budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
 }
@@ -145,7 +136,7 @@ pub fn read_paths_watched<P: AsRef<Path>>(
     map: Option<&Map>,
     watch: &Watch,
 ) -> Result<(Recording, Vec<ReadingReport>), Error> {
-    let bytes_of = |path: &P| fs::metadata(path).map_or(0, |data| data.len());
+    let bytes_of = |path: &P| bytes_on_disk(path.as_ref());
     let all_bytes = paths.iter().map(bytes_of).sum();
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for path in paths {
@@ -155,6 +146,15 @@ pub fn read_paths_watched<P: AsRef<Path>>(
         reports.push(reading.report);
     }
     Ok((Recording::join(recordings), reports))
+}
+
+/// The length of a file, or of all files of a folder \[bytes\]; 0 for what cannot be looked at.
+pub fn bytes_on_disk(path: &Path) -> u64 {
+    let bytes = |path: &Path| fs::metadata(path).map_or(0, |data| data.len());
+    match fs::read_dir(path) {
+        Ok(entries) => entries.flatten().map(|entry| bytes(&entry.path())).sum(),
+        Err(_) => bytes(path),
+    }
 }
 
 /// Reads what is already in memory, as the body of a request. The name becomes that of the run where the recording has
@@ -180,6 +180,7 @@ pub(crate) fn read_within(
         Format::Csv => csv::read(Cursor::new(bytes), name, of_columns(map), &budget),
         Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
+        Format::Db3 => db3::read_copy(Cursor::new(bytes), name, map, &budget),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::{Channel, Error, PowerForm, Recording, gap, watch::Looks};
 pub struct ReadingReport {
     /// The file, or the name that the reader was given.
     pub source: String,
-    /// `CSV`, `Parquet`, `MCAP` or `ROS 1 bag`.
+    /// `CSV`, `Parquet`, `MCAP`, `ROS 2 SQLite bag` or `ROS 1 bag`.
     pub format: String,
     /// The map that named the channels, where there was one.
     pub map: Option<String>,

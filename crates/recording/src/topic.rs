@@ -4,14 +4,18 @@ use std::collections::BTreeMap;
 
 use crate::{
     Error, Ignored, Map, Repair,
-    cursor::Encoding,
-    definition::Definition,
+    compression::decompress_message,
+    format::ZSTD_MAGIC,
     layout::Layout,
     map::Place,
+    schema::Schema,
     stream::Samples,
     walk::Found,
     watch::{Budget, Looks},
 };
+
+/// Why most topics are not used.
+const NOT_NAMED: &str = "the map does not name it";
 
 /// The topics of a file while it is read.
 pub(crate) struct Topics<'m> {
@@ -22,7 +26,11 @@ pub(crate) struct Topics<'m> {
     pub(crate) names: Vec<String>,
     pub(crate) ignored: Vec<Ignored>,
     pub(crate) repairs: Vec<Repair>,
+    /// The file of several that is being read.
+    file: Option<String>,
     found: Found,
+    /// A message that came compressed.
+    plain: Vec<u8>,
     budget: Budget,
     /// Numbers held by all topics.
     numbers: usize,
@@ -40,14 +48,6 @@ pub(crate) struct Topic {
     pub(crate) first_bad: Option<String>,
 }
 
-/// How a container says that its messages are written.
-pub(crate) struct Schema<'s> {
-    pub(crate) type_name: &'s str,
-    /// The definition, or why there is none that can be read.
-    pub(crate) definition: Result<&'s str, String>,
-    pub(crate) encoding: Encoding,
-}
-
 impl<'m> Topics<'m> {
     pub(crate) fn new(map: &'m Map, budget: Budget) -> Self {
         Topics {
@@ -57,7 +57,9 @@ impl<'m> Topics<'m> {
             names: Vec::new(),
             ignored: Vec::new(),
             repairs: Vec::new(),
+            file: None,
             found: Found::default(),
+            plain: Vec::new(),
             budget,
             numbers: 0,
         }
@@ -70,7 +72,43 @@ impl<'m> Topics<'m> {
 
     /// Takes note of what is wrong at a byte of the file.
     pub(crate) fn tell(&mut self, at: u64, what: &str) {
-        self.repairs.push(Repair { place: format!("byte {at}"), what: what.into() });
+        self.tell_of(&format!("byte {at}"), what);
+    }
+
+    /// Takes note of what is wrong somewhere in the file.
+    pub(crate) fn tell_of(&mut self, place: &str, what: &str) {
+        let file = self.file.as_ref().map_or(String::new(), |file| format!("{file}, "));
+        self.repairs.push(Repair { place: format!("{file}{place}"), what: what.into() });
+    }
+
+    /// Begins another file of the same recording: its topics go on, its numbers of connections mean something else.
+    pub(crate) fn next_file(&mut self) {
+        self.connections.clear();
+    }
+
+    /// Begins another file that has a name of its own.
+    pub(crate) fn begin_file(&mut self, file: Option<String>) {
+        self.next_file();
+        self.file = file;
+    }
+
+    /// Whether the map wants the messages of a connection.
+    pub(crate) fn wants(&self, id: u32) -> bool {
+        matches!(self.connections.get(&id), Some(Some(_)))
+    }
+
+    /// Topics that the map names and why they are not read.
+    pub(crate) fn unread(&self) -> Vec<String> {
+        let named = self.ignored.iter().filter(|ignored| ignored.reason != NOT_NAMED);
+        named.map(|ignored| format!("{} ({})", ignored.name, ignored.reason)).collect()
+    }
+
+    /// Takes note of what is not used; the files of one recording say it only once.
+    fn ignore(&mut self, name: String, reason: &str) {
+        let ignored = Ignored { name, reason: reason.into() };
+        if !self.ignored.contains(&ignored) {
+            self.ignored.push(ignored);
+        }
     }
 
     /// Takes note of a connection; containers repeat them.
@@ -99,13 +137,16 @@ impl<'m> Topics<'m> {
             }
         }
         if wanted.is_empty() {
-            self.ignored.push(Ignored { name: topic.into(), reason: "the map does not name it".into() });
+            self.ignore(topic.into(), NOT_NAMED);
             return Ok(None);
         }
-        let definition = schema.definition.clone().and_then(|text| Definition::parse(schema.type_name, text));
-        let definition = match definition {
+        let definition = match schema.parse() {
             Ok(definition) => definition,
-            Err(reason) => return self.unreadable(topic, &wanted, "", &reason).map(|()| None),
+            Err(reason) => {
+                self.refuse_outright(topic, &wanted, "", &reason)?;
+                self.ignore(topic.into(), &reason);
+                return Ok(None);
+            }
         };
         // Each source alone first, so that one that does not fit leaves the others be.
         let mut fitting = Vec::new();
@@ -113,7 +154,11 @@ impl<'m> Topics<'m> {
             let paths: Vec<&str> = fields.iter().map(String::as_str).collect();
             match Layout::new(&definition, &paths, schema.encoding) {
                 Ok(_) => fitting.push((index, paths)),
-                Err((field, reason)) => self.unreadable(topic, &[(index, fields)], &field, &reason)?,
+                Err((field, reason)) => {
+                    let source = [(index, fields)];
+                    self.refuse_outright(topic, &source, &field, &reason)?;
+                    self.ignore(format!("{topic}, {}", named(&field, fields)), &reason);
+                }
             }
         }
         let paths: Vec<&str> = fitting.iter().flat_map(|(_, paths)| paths.iter().copied()).collect();
@@ -122,6 +167,13 @@ impl<'m> Topics<'m> {
         }
         let layout = Layout::new(&definition, &paths, schema.encoding);
         let layout = layout.map_err(|(field, reason)| Error::Field { topic: topic.into(), field, reason })?;
+        if layout.is_standard {
+            let what = format!(
+                "the file holds no definition of {}; that of the standard package was taken",
+                definition.name()
+            );
+            self.repairs.push(Repair { place: format!("topic {topic}"), what });
+        }
         self.topics.push(Topic {
             name: topic.to_owned(),
             type_name: schema.type_name.to_owned(),
@@ -136,23 +188,22 @@ impl<'m> Topics<'m> {
     }
 
     /// A topic named outright must be readable; one found through `*` may be something else of the same name.
-    fn unreadable(
-        &mut self,
+    fn refuse_outright(
+        &self,
         topic: &str,
         sources: &[(usize, &[String])],
         field: &str,
         reason: &str,
     ) -> Result<(), Error> {
         for (index, fields) in sources {
-            let field = if field.is_empty() { fields.join(", ") } else { field.to_owned() };
             let source = self.map.sources.get(*index);
             let alternatives =
                 self.map.sources.iter().filter(|s| source.is_some_and(|t| t.target == s.target)).count();
             let outright = matches!(source.map(|s| &s.place), Some(Place::Topic { topic, .. }) if !topic.starts_with('*'));
             if outright && alternatives == 1 {
+                let field = named(field, fields);
                 return Err(Error::Field { topic: topic.into(), field, reason: reason.into() });
             }
-            self.ignored.push(Ignored { name: format!("{topic}, {field}"), reason: reason.into() });
         }
         Ok(())
     }
@@ -161,7 +212,12 @@ impl<'m> Topics<'m> {
     pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) -> Result<(), Error> {
         let Some(Some(index)) = self.connections.get(&id) else { return Ok(()) };
         let Some(topic) = self.topics.get_mut(*index) else { return Ok(()) };
-        let stamp_ns = match topic.layout.read(bytes, &mut self.found, &mut topic.values) {
+        let read = match topic.layout.is_cdr() && bytes.starts_with(&ZSTD_MAGIC) {
+            true => decompress_message(bytes, &mut self.plain),
+            false => Ok(bytes),
+        };
+        let read = read.and_then(|bytes| topic.layout.read(bytes, &mut self.found, &mut topic.values));
+        let stamp_ns = match read {
             Ok(stamp_ns) => stamp_ns,
             Err(reason) => {
                 topic.bad += 1;
@@ -201,4 +257,9 @@ impl<'m> Topics<'m> {
         self.numbers = numbers(&self.topics);
         Ok(())
     }
+}
+
+/// The field at fault, or all of a source.
+fn named(field: &str, fields: &[String]) -> String {
+    if field.is_empty() { fields.join(", ") } else { field.to_owned() }
 }

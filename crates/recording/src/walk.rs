@@ -10,6 +10,7 @@ use crate::{
 pub(crate) enum Node {
     Number(Primitive, Option<usize>),
     Text,
+    WideText,
     /// Seconds and nanoseconds; wanted together.
     Time(Option<[usize; 2]>),
     Message(Vec<Node>),
@@ -36,6 +37,8 @@ pub(crate) struct Found {
     pub(crate) keys: Vec<Option<usize>>,
     /// Slots that are still to be filled.
     pub(crate) wanted: usize,
+    /// Whether a wide text was stepped over, by a width that may be wrong.
+    pub(crate) is_guess: bool,
 }
 
 impl Node {
@@ -52,7 +55,12 @@ impl Node {
                 Ok(())
             }
             Node::Text => cursor.text().map(|_| ()),
+            Node::WideText => {
+                found.is_guess |= cursor.wide_text()?;
+                Ok(())
+            }
             Node::Time(slots) => {
+                cursor.struct_length()?;
                 let (seconds, nanoseconds) = (cursor.u32()?, cursor.u32()?);
                 if let Some([first, second]) = slots {
                     found.keep(*first, f64::from(seconds));
@@ -61,6 +69,7 @@ impl Node {
                 Ok(())
             }
             Node::Message(nodes) => {
+                cursor.struct_length()?;
                 for node in nodes {
                     node.walk(cursor, found)?;
                     if found.wanted == 0 {
@@ -70,6 +79,9 @@ impl Node {
                 Ok(())
             }
             Node::Array { count, element, picks, keys } => {
+                if !matches!(**element, Node::Number(..)) {
+                    cursor.collection_length()?;
+                }
                 let count = match count {
                     Some(count) => *count,
                     None => cursor.u32()? as usize,
@@ -135,7 +147,7 @@ impl Node {
             Node::Array { count, element, .. } => {
                 *count == Some(0) || (count.is_some() && element.is_empty())
             }
-            Node::Number(..) | Node::Text | Node::Time(_) => false,
+            Node::Number(..) | Node::Text | Node::WideText | Node::Time(_) => false,
         }
     }
 }

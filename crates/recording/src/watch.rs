@@ -40,10 +40,23 @@ impl Looks {
     /// # Errors
     /// [`Error::Stopped`] when it breaks.
     pub(crate) fn go_on(&self) -> Result<(), Error> {
-        match (self.watch)(0) {
+        self.read(0)
+    }
+
+    /// Takes note of bytes that were read by other means than a [`Watched`] source.
+    ///
+    /// # Errors
+    /// As [`Looks::go_on`].
+    pub(crate) fn read(&self, bytes: u64) -> Result<(), Error> {
+        match (self.watch)(bytes) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Error::Stopped),
         }
+    }
+
+    /// The watch itself.
+    pub(crate) fn watch(&self) -> Watch {
+        Arc::clone(&self.watch)
     }
 
     /// Takes note of rows that were worked on, and asks the watch once there are [`ROWS_A_LOOK`] of them.

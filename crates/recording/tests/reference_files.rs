@@ -1,4 +1,4 @@
-//! MCAP files and ROS 1 bags written by the formats' own tools (PyPI `mcap`, `mcap-ros2-support`, `rosbags`) are read back
+//! MCAP files, folders of rosbag2 and ROS 1 bags written by the formats' own tools (PyPI `mcap`, `mcap-ros2-support`, `rosbags`) are read back
 //! equal, cut off or damaged ones as far as they can be read.
 //!
 //! Needs the Python environment that `tests/run` makes in `target/python`; without it the tests say that they skip.
@@ -66,7 +66,9 @@ fn assert_equal(reading: &Reading, folder: &Path, map_adds: &[(&str, &str)]) {
 #[test]
 fn files_of_the_reference_tools_are_read_back_equal_in_every_compression() {
     let Some(folder) = files() else { return };
-    for name in ["zstd.mcap", "lz4.mcap", "plain.mcap", "plain.bag", "lz4.bag", "bz2.bag"] {
+    let folders = ["sqlite", "sqlite-file", "sqlite-message", "mcap", "mcap-file", "mcap-message"];
+    let files = ["zstd.mcap", "lz4.mcap", "plain.mcap", "plain.bag", "lz4.bag", "bz2.bag"];
+    for name in files.into_iter().chain(folders) {
         let reading = read_path(&folder.join(name), None).unwrap();
         assert_equal(&reading, folder, &[]);
         let report = &reading.report;
@@ -93,7 +95,7 @@ fn custom_messages_are_read_by_field_path_and_unit() {
         {"aside": "absent", "topic": "/battery_state", "fields": ["cell_voltage[7]"]},
         {"aside": "charge_percent", "topic": "/status", "fields": ["charge_estimate"]}]}"#;
     let map = Map::from_json(map).unwrap();
-    for name in ["zstd.mcap", "bz2.bag"] {
+    for name in ["zstd.mcap", "bz2.bag", "sqlite", "sqlite-message"] {
         let Reading { recording, report } = read_path(&folder.join(name), Some(&map)).unwrap();
         assert_eq!(recording.rows(), 200);
         let left = recording.channel(Channel::LeftSpeed).unwrap();
@@ -168,11 +170,11 @@ proptest! {
 
     #[test]
     fn damaged_files_never_panic(
-        which in 0usize..6,
+        which in 0usize..7,
         flips in proptest::collection::vec((0.0..1.0f64, 0u8..8), 1..20),
         length in 0.3..1.0f64,
     ) {
-        let names = ["zstd.mcap", "lz4.mcap", "plain.mcap", "plain.bag", "lz4.bag", "bz2.bag"];
+        let names = ["zstd.mcap", "lz4.mcap", "plain.mcap", "plain.bag", "lz4.bag", "bz2.bag", "sqlite/sqlite.db3"];
         if let Some(folder) = files() {
             let (mut bytes, format) = bytes(folder, names[which]);
             bytes.truncate((bytes.len() as f64 * length) as usize);

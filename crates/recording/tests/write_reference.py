@@ -1,4 +1,4 @@
-"""Writes the same drive as ROS 2 MCAP files and ROS 1 bags with the formats' own tools, and its values as JSON.
+"""Writes the same drive as ROS 2 MCAP files, folders of rosbag2 and ROS 1 bags with the formats' own tools, and its values as JSON.
 
     python write_reference.py FOLDER [SECONDS]
 
@@ -14,6 +14,8 @@ from pathlib import Path
 from mcap.writer import CompressionType
 from mcap_ros2.writer import Writer as McapWriter
 from rosbags.rosbag1 import Writer as BagWriter
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
+from rosbags.rosbag2 import Writer as Rosbag2Writer
 from rosbags.typesys import Stores, get_typestore, get_types_from_msg
 
 START_NS = 1_700_000_000_000_000_000
@@ -187,6 +189,22 @@ def write_mcap(path, compression):
         writer.finish()
 
 
+def write_rosbag2(path, plugin, mode=None):
+    """A folder as `ros2 bag record` leaves it."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(STATUS, "husky_msgs/msg/HuskyStatus"))
+    writer = Rosbag2Writer(path, version=9, storage_plugin=plugin)
+    if mode:
+        writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connections = {}
+        for sequence, (topic, name, ns, body) in enumerate(messages()):
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, name, typestore=store)
+            message = build(store, name, body, sequence)
+            writer.write(connections[topic], ns, store.serialize_cdr(message, name))
+
+
 def expected():
     """Values at the stamps of the power topic, which the built-in map takes for the rows."""
     rows = []
@@ -213,4 +231,10 @@ if __name__ == "__main__":
     write_bag(folder / "plain.bag", None)
     write_bag(folder / "lz4.bag", BagWriter.CompressionFormat.LZ4)
     write_bag(folder / "bz2.bag", BagWriter.CompressionFormat.BZ2)
+    write_rosbag2(folder / "sqlite", StoragePlugin.SQLITE3)
+    write_rosbag2(folder / "sqlite-file", StoragePlugin.SQLITE3, CompressionMode.FILE)
+    write_rosbag2(folder / "sqlite-message", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
+    write_rosbag2(folder / "mcap", StoragePlugin.MCAP)
+    write_rosbag2(folder / "mcap-file", StoragePlugin.MCAP, CompressionMode.FILE)
+    write_rosbag2(folder / "mcap-message", StoragePlugin.MCAP, CompressionMode.MESSAGE)
     (folder / "expected.json").write_text(json.dumps(expected()))

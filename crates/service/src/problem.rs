@@ -144,7 +144,9 @@ impl Problem {
             E::Unit { index, .. } => Problem::new(ProblemType::InvalidRequest, error.to_string())
                 .at(format!("/map/sources/{index}/unit")),
             E::Io(_) => Problem::new(ProblemType::Internal, format!("the stored recording: {error}")),
-            E::TooLarge { .. } | E::Claims { .. } => Problem::new(ProblemType::TooLarge, error.to_string()),
+            E::TooLarge { .. } | E::TooLong { .. } | E::Claims { .. } => {
+                Problem::new(ProblemType::TooLarge, error.to_string())
+            }
             _ => Problem::new(ProblemType::InvalidRecording, error.to_string()),
         }
     }

@@ -93,8 +93,9 @@ impl From<Note> for RecordingAnswer {
     }
 }
 
-/// Store a recording: CSV (text/csv), Parquet (application/vnd.apache.parquet), MCAP (application/mcap) or a ROS 1 bag
-/// (application/x-rosbag). The body goes to disk as it comes, and is read once to be checked.
+/// Store a recording: CSV (text/csv), Parquet (application/vnd.apache.parquet), MCAP (application/mcap), a SQLite file of
+/// ROS 2 (application/vnd.sqlite3) or a ROS 1 bag (application/x-rosbag). The body goes to disk as it comes, and is read once
+/// to be checked; where its first bytes show another of these than was said, it is read as what it is.
 #[utoipa::path(
     post, path = "/v1/recordings", tag = "recordings",
     params(ReadingQuery),
@@ -102,6 +103,7 @@ impl From<Note> for RecordingAnswer {
         (String = "text/csv"),
         (Vec<u8> = "application/vnd.apache.parquet"),
         (Vec<u8> = "application/mcap"),
+        (Vec<u8> = "application/vnd.sqlite3"),
         (Vec<u8> = "application/x-rosbag")
     )),
     responses(
@@ -119,12 +121,13 @@ pub(crate) async fn create(
     tenant: Tenant,
     request: Request,
 ) -> Result<(StatusCode, Json<RecordingAnswer>), Problem> {
-    let format = format_of(&content_type(&request))?;
+    let said = format_of(&content_type(&request))?;
     let ReadingQuery { map, name } = query(request.uri())?;
     let map = map.map(map_choice).transpose()?;
     map.as_ref().map(map_from).transpose()?;
     let (parts, body) = request.into_parts();
     let received = receive(&engine, &tenant, &parts.headers, body).await?;
+    let format = content_of(&received)?.unwrap_or(said);
     let reading = Reading::of(&engine, format, received.bytes);
     hold(Arc::new(engine.admission().reserve(reading.bytes)?));
     let name = name.unwrap_or_else(|| "recording".into());
@@ -195,6 +198,12 @@ fn query(uri: &Uri) -> Result<ReadingQuery, Problem> {
     })
 }
 
+/// The format that the first bytes of what was received show.
+fn content_of(received: &Received) -> Result<Option<Format>, Problem> {
+    let mut file = received.file.reader().map_err(|error| cannot("read from", &error))?;
+    Format::of_file(&mut file).map_err(|error| Problem::invalid_recording(&error))
+}
+
 /// The format that a content type stands for.
 fn format_of(kind: &str) -> Result<Format, Problem> {
     Ok(match kind {
@@ -202,11 +211,12 @@ fn format_of(kind: &str) -> Result<Format, Problem> {
         "application/vnd.apache.parquet" | "application/x-parquet" | "application/parquet" => Format::Parquet,
         "application/mcap" | "application/x-mcap" => Format::Mcap,
         "application/x-rosbag" | "application/rosbag" => Format::Bag,
+        "application/vnd.sqlite3" | "application/x-sqlite3" => Format::Db3,
         _ => {
             let found = if kind.is_empty() { "no content type".to_owned() } else { format!("`{kind}`") };
             let detail = format!(
-                "a recording is text/csv, application/vnd.apache.parquet, application/mcap or application/x-rosbag, but \
-                 the request has {found}"
+                "a recording is text/csv, application/vnd.apache.parquet, application/mcap, application/vnd.sqlite3 or \
+                 application/x-rosbag, but the request has {found}"
             );
             return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
         }

@@ -32,6 +32,7 @@ export function mapType(name: string): string {
 export function recordingType(name: string): string {
   if (/\.parquet$/i.test(name)) return "application/vnd.apache.parquet";
   if (/\.mcap$/i.test(name)) return "application/mcap";
+  if (/\.db3$/i.test(name)) return "application/vnd.sqlite3";
   if (/\.bag$/i.test(name)) return "application/x-rosbag";
   return "text/csv";
 }

@@ -8,7 +8,7 @@ import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
 import { job, leave, problem, take, taken, takeStored, type Role, type Taken } from "./state";
 
-const ENDINGS = ".csv,.tsv,.parquet,.mcap,.bag";
+const ENDINGS = ".csv,.tsv,.parquet,.mcap,.db3,.bag";
 
 const POWER_FORMS: Record<string, string> = {
   sides: "both sides",
@@ -18,7 +18,7 @@ const POWER_FORMS: Record<string, string> = {
 };
 
 const ROLES: { role: Role; label: string; about: string }[] = [
-  { role: "suspect", label: "Drop the suspect drives here", about: "CSV, Parquet, MCAP or ROS 1 bag, two minutes of driving at least" },
+  { role: "suspect", label: "Drop the suspect drives here", about: "CSV, Parquet, MCAP, .db3 or .bag, two minutes of driving at least" },
   { role: "healthy", label: "Drop healthy drives here", about: "Optional: the same robot when all was well. Makes it far sharper" },
 ];
 

@@ -1,0 +1,9 @@
+#![no_main]
+//! Any bytes are read as a SQLite file of ROS 2 or refused.
+
+use libfuzzer_sys::fuzz_target;
+use recording::{Format, read};
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = read(bytes.to_vec(), Format::Db3, "fuzz", None);
+});
