@@ -60,7 +60,7 @@ impl Plan {
     /// kept aside.
     pub(crate) fn new(headers: Vec<String>, map: Option<&Map>) -> Result<Plan, Error> {
         for (index, header) in headers.iter().enumerate() {
-            if headers[..index].contains(header) {
+            if !header.is_empty() && headers[..index].contains(header) {
                 let (channel, first) = (header.clone(), header.clone());
                 return Err(Error::Duplicate { channel, first, second: header.clone() });
             }
@@ -120,6 +120,11 @@ impl Plan {
             if self.entries.iter().any(|entry| entry.columns.contains(&index)) {
                 continue;
             }
+            if header.is_empty() {
+                let name = format!("column {}", index + 1);
+                self.ignored.push(Ignored { name, reason: "it has no name".into() });
+                continue;
+            }
             let (target, unit) = match header.as_str() {
                 "t_s" => (Target::Time, "s"),
                 "run" => (Target::Run, ""),
@@ -145,6 +150,33 @@ impl Plan {
     pub(crate) fn time(&self) -> Option<usize> {
         let entry = self.entries.iter().find(|entry| entry.target == Target::Time)?;
         entry.columns.first().copied()
+    }
+
+    /// Whether a column alone tells time.
+    pub(crate) fn is_time(&self, column: usize) -> bool {
+        let alone = |entry: &Entry| entry.target == Target::Time && entry.columns == [column];
+        self.entries.iter().any(alone)
+    }
+
+    /// The columns that have to hold numbers.
+    pub(crate) fn needed(&self) -> impl Iterator<Item = usize> {
+        self.kinds.iter().enumerate().filter(|(_, kind)| **kind == Kind::Number).map(|(column, _)| column)
+    }
+
+    /// What a column alone is taken to measure, and in which unit; `None` where others belong to it.
+    pub(crate) fn unit_of(&self, column: usize) -> Option<(Quantity, &str)> {
+        let entry = self.entries.iter().find(|entry| entry.columns == [column])?;
+        let quantity = match entry.target {
+            Target::Time => Quantity::Time,
+            Target::Channel(channel) => channel.quantity(),
+            Target::Run | Target::Surface | Target::Aside(_) => return None,
+        };
+        Some((quantity, &entry.unit))
+    }
+
+    /// The name of a column.
+    pub(crate) fn header(&self, column: usize) -> &str {
+        self.headers.get(column).map_or("", String::as_str)
     }
 
     /// By column, where its numbers begin again, in their own unit: those of headings do.

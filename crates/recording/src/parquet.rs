@@ -236,7 +236,8 @@ impl Source {
             let new = &values[values.len() - rows..];
             if let Some(row) = new.iter().position(|value| value.is_infinite()) {
                 let (position, column) = (Position::Row(before + row as u64 + 1), self.name.clone());
-                return Err(Error::Number { position, column, found: format!("{}", new[row]) });
+                let (found, remedy) = (format!("{}", new[row]), "write null for a gap".into());
+                return Err(Error::Number { position, column, found, remedy });
             }
         }
         Ok(rows)

@@ -30,7 +30,7 @@ pub struct Reading {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Format {
-    /// Comma-, semicolon- or tab-separated text with a header line.
+    /// Comma-, semicolon-, tab- or space-separated text with a header line, packed with gzip or zstd or not.
     Csv,
     /// Parquet with the same columns.
     Parquet,
@@ -41,20 +41,32 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file name's ending stands for.
+    /// The format that a file name's ending stands for; text may be packed, as `drive.csv.gz`.
     ///
     /// # Errors
     /// The ending, when it stands for none.
     pub fn of(path: &Path) -> Result<Format, Error> {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let inner = unpacked_name(path);
+        let (ending, is_packed) = (ending_of(inner), inner != path);
         match ending.as_str() {
             "csv" | "tsv" | "txt" => Ok(Format::Csv),
-            "parquet" => Ok(Format::Parquet),
-            "mcap" => Ok(Format::Mcap),
-            "bag" => Ok(Format::Bag),
+            "parquet" if !is_packed => Ok(Format::Parquet),
+            "mcap" if !is_packed => Ok(Format::Mcap),
+            "bag" if !is_packed => Ok(Format::Bag),
+            _ if is_packed => Err(Error::UnknownFormat { ending: format!(".{ending}.{}", ending_of(path)) }),
             _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),
         }
     }
+}
+
+/// The name of a file without the ending of what it is packed with.
+fn unpacked_name(path: &Path) -> &Path {
+    let inner = path.file_stem().map(Path::new);
+    if matches!(ending_of(path).as_str(), "gz" | "zst") { inner.unwrap_or(path) } else { path }
+}
+
+fn ending_of(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
 /// Reads a file; its ending says which format it is in. Without a map, a table's columns are what their names say and a
@@ -80,7 +92,7 @@ pub fn read_path_watched(path: &Path, map: Option<&Map>, watch: &Watch) -> Resul
 fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Reading, Error> {
     let read = || {
         let format = Format::of(path)?;
-        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
+        let name = unpacked_name(path).file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
         read_file(File::open(path)?, format, name, map, watch, room)
     };
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
