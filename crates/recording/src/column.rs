@@ -10,7 +10,9 @@ use crate::{
     error::Position,
     label_column::LabelColumn,
     map::{Place, Target},
+    own_clocks::onto_one_clock,
     report::{ChannelReport, ReadingReport},
+    same_time::merge_same_times,
     table::Table,
     units,
 };
@@ -43,6 +45,7 @@ pub(crate) struct Plan {
     entries: Vec<Entry>,
     ignored: Vec<Ignored>,
     surface: Option<String>,
+    max_gap_s: Option<f64>,
 }
 
 struct Entry {
@@ -70,6 +73,7 @@ impl Plan {
             entries: Vec::new(),
             ignored: Vec::new(),
             surface: map.and_then(|map| map.surface.clone()),
+            max_gap_s: map.and_then(|map| map.max_gap_s),
             headers,
         };
         plan.add_mapped(map);
@@ -235,7 +239,9 @@ impl Plan {
             recording.surface = Some(Labels::constant(surface, recording.rows()));
         }
         let order = divide(&mut recording, runs, name, &mut report, &looks)?;
-        let in_table = |row: usize| order.as_ref().map_or(row, |order| order[row]);
+        let merged = merge_same_times(&mut recording, &mut report.repairs, &looks)?;
+        let before = |row: usize| merged.as_ref().map_or(row, |rows| rows[row]);
+        let in_table = |row: usize| order.as_ref().map_or(before(row), |order| order[before(row)]);
         let source = TimeSource {
             column: &time_column,
             map_unit: map_unit.as_deref(),
@@ -243,6 +249,7 @@ impl Plan {
             position: &|row| position(in_table(row)),
         };
         check_time(&recording, &source)?;
+        onto_one_clock(&mut recording, self.max_gap_s, &mut report.repairs, &looks)?;
         report.ignored = self.ignored;
         report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
