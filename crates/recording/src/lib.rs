@@ -36,6 +36,7 @@ mod merge;
 mod own_clocks;
 mod pages;
 mod parquet;
+mod parquet_type;
 mod plain_text;
 mod reading;
 mod recording;
