@@ -3,11 +3,13 @@
 use std::mem;
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair,
+    bursts::Bursts,
     clock::{TimeSource, check_time},
     coarse::period,
     divide::divide,
     error::Position,
+    gap,
     label_column::LabelColumn,
     map::{Place, Target},
     own_clocks::onto_one_clock,
@@ -248,6 +250,7 @@ impl Plan {
             weight: &|row| coarse.weight(in_table(row)),
             position: &|row| position(in_table(row)),
         };
+        spread_bursts(&mut recording, &mut report.repairs);
         check_time(&recording, &source)?;
         onto_one_clock(&mut recording, self.max_gap_s, &mut report.repairs, &looks)?;
         report.ignored = self.ignored;
@@ -321,5 +324,24 @@ impl Plan {
         let rows = parts.iter().map(|part| part.len()).min().unwrap_or(0);
         let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]));
         Ok(Column::Numbers((0..rows).map(|row| entry.conversion.apply(at(row))).collect()))
+    }
+}
+
+/// Spreads the rows of runs that came in bursts. Rows that hold some channels each are not of one source.
+fn spread_bursts(recording: &mut Recording, repairs: &mut Vec<Repair>) {
+    if recording.channels.values().any(|values| values.iter().any(|value| value.is_nan())) {
+        return;
+    }
+    for run in &mut recording.runs {
+        let t_s = &mut recording.t_s[run.rows.clone()];
+        // Times that repeat are rounded, or those of several drives.
+        if t_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+            continue;
+        }
+        if let Some(bursts) = Bursts::of(t_s) {
+            repairs.push(Repair { place: format!("run `{}`", run.name), what: bursts.told("rows") });
+            t_s.copy_from_slice(&bursts.t_s);
+            run.gap_s = gap::threshold_s(t_s);
+        }
     }
 }

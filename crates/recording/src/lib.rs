@@ -9,6 +9,7 @@
 pub mod align;
 mod arrow_schema;
 mod bag;
+mod bursts;
 mod calendar;
 mod cell;
 mod channel;
