@@ -10,7 +10,7 @@ use crate::{
     csv_text::CsvText,
     error::Position,
     label_column::MOST_NAMES,
-    reading::{Part, Reading},
+    reading::Part,
     table::Table,
     watch::Budget,
 };
@@ -21,7 +21,7 @@ pub(crate) fn read(
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
+) -> Result<Part, Error> {
     let mut text = CsvText::open(source)?;
     if text.advance()?.is_none() {
         return Err(Error::Empty { found: "an empty file".into() });
@@ -81,8 +81,7 @@ pub(crate) fn read(
     }
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(rows.repairs());
-    let found = headers;
-    Reading::finish(Part { recording, report, found, format: "CSV" }, name, map, &budget.looks)
+    Ok(Part { recording, report, found: headers, format: "CSV" })
 }
 
 fn number_error(column: &str, cell: &[u8], line: u64, remedy: String) -> Error {

@@ -74,6 +74,53 @@ pub enum Error {
         /// The nearest of them, with the name that was looked for.
         nearest: Vec<(String, String)>,
     },
+    /// A file among those to be joined on time that is no table.
+    #[error(
+        "only tables, .csv or .parquet, can be joined by `+`, and this is .{ending}; a bag holds all of its topics"
+    )]
+    NoTable {
+        /// The ending of its name.
+        ending: String,
+    },
+    /// Tables to be joined that have different drives.
+    #[error(
+        "{first} has the runs {first_runs} and {second} has {second_runs}; give both the same names in a column `run`, or one run each"
+    )]
+    JoinedRuns {
+        /// A table.
+        first: String,
+        /// Its runs.
+        first_runs: String,
+        /// Another.
+        second: String,
+        /// Its runs.
+        second_runs: String,
+    },
+    /// Tables to be joined that were not recorded at the same time.
+    #[error(
+        "the times of {first} ({} to {} s) and {second} ({} to {} s) do not meet; both must count from the same moment",
+        first_s[0], first_s[1], second_s[0], second_s[1]
+    )]
+    Apart {
+        /// A table.
+        first: String,
+        /// Its first and last time \[s\].
+        first_s: [f64; 2],
+        /// Another.
+        second: String,
+        /// Its first and last time \[s\].
+        second_s: [f64; 2],
+    },
+    /// Tables to be joined that give the same channel.
+    #[error("both {first} and {second} give {channel}; remove or rename one of the columns")]
+    GivenTwice {
+        /// The channel.
+        channel: Channel,
+        /// A table.
+        first: String,
+        /// Another.
+        second: String,
+    },
     /// Two columns of one name, or two columns for one channel.
     #[error("two columns give {channel}: `{first}` and `{second}`; rename one of them or map it `aside`")]
     Duplicate {

@@ -29,6 +29,7 @@ mod divide;
 mod error;
 mod field;
 mod gap;
+mod joined;
 mod label_column;
 mod layout;
 mod map;
@@ -53,6 +54,7 @@ mod thinned;
 mod topic;
 mod units;
 mod units_row;
+mod unused_runs;
 mod walk;
 mod watch;
 

@@ -20,7 +20,7 @@ use crate::{
     label_column::{LabelColumn, MOST_NAMES},
     pages::Pages,
     parquet_type::{decimal_factor, is_unsigned, refuse_type, time_unit},
-    reading::{Part, Reading},
+    reading::Part,
     table::Table,
     watch::Budget,
 };
@@ -38,7 +38,7 @@ pub(crate) fn read(
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
+) -> Result<Part, Error> {
     // The library asserts some of what a damaged file may say (negative offsets among it). Nothing of it outlives the
     // closure, so that stopping in the middle leaves nothing half done.
     let read = AssertUnwindSafe(|| read_file(source, name, map, budget));
@@ -55,7 +55,7 @@ fn read_file(
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
+) -> Result<Part, Error> {
     let file_bytes = source.len();
     let file = SerializedFileReader::new(source)?;
     refuse_contradictions(&file, file_bytes)?;
@@ -98,8 +98,7 @@ fn read_file(
         }
     }
     let (recording, report) = plan.assemble(table, name, |row| Position::Row(row as u64 + 1))?;
-    let part = Part { recording, report, found: headers, format: "Parquet" };
-    Reading::finish(part, name, map, &budget.looks)
+    Ok(Part { recording, report, found: headers, format: "Parquet" })
 }
 
 /// The duration columns of a file that Arrow wrote, with their units.

@@ -11,8 +11,11 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv, mcap, parquet,
+    Channel, Error, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv,
+    joined::{join_in_time, tables_of},
+    mcap, parquet,
     suspicion::suspicions_watched,
+    unused_runs::tell_unused_runs,
     watch::{Budget, Looks, Watched},
 };
 
@@ -65,6 +68,11 @@ fn unpacked_name(path: &Path) -> &Path {
     if matches!(ending_of(path).as_str(), "gz" | "zst") { inner.unwrap_or(path) } else { path }
 }
 
+/// The name of a run that its file does not name.
+pub(crate) fn run_name(path: &Path) -> &str {
+    unpacked_name(path).file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording")
+}
+
 fn ending_of(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
@@ -92,8 +100,7 @@ pub fn read_path_watched(path: &Path, map: Option<&Map>, watch: &Watch) -> Resul
 fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Reading, Error> {
     let read = || {
         let format = Format::of(path)?;
-        let name = unpacked_name(path).file_stem().and_then(|stem| stem.to_str()).unwrap_or("recording");
-        read_file(File::open(path)?, format, name, map, watch, room)
+        read_file(File::open(path)?, format, run_name(path), map, watch, room)
     };
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
     reading.report.source = path.display().to_string();
@@ -116,13 +123,32 @@ pub fn read_file(
     let file = Watched::new(file, Arc::clone(watch));
     let stopped = file.stopped();
     let budget = Budget { room, looks: Looks::new(watch) };
+    let finish = |part| Reading::finish(part, name, map, &budget.looks);
     let reading = match format {
-        Format::Csv => csv::read(file, name, map, &budget),
-        Format::Parquet => parquet::read(file, name, map, &budget),
+        Format::Csv => csv::read(file, name, map, &budget).and_then(finish),
+        Format::Parquet => parquet::read(file, name, map, &budget).and_then(finish),
         Format::Mcap => mcap::read(file, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
+}
+
+/// Reads a table that may lack what a recording needs, since others hold it.
+fn read_table(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Part, Error> {
+    let budget = Budget { room, looks: Looks::new(watch) };
+    let name = run_name(path);
+    let read = || {
+        let format = Format::of(path)?;
+        let file = Watched::new(File::open(path)?, Arc::clone(watch));
+        let stopped = file.stopped();
+        let part = match format {
+            Format::Csv => csv::read(file, name, map, &budget),
+            Format::Parquet => parquet::read(file, name, map, &budget),
+            Format::Mcap | Format::Bag => Err(Error::NoTable { ending: ending_of(path) }),
+        };
+        if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { part }
+    };
+    read().map_err(|error: Error| error.in_file(path))
 }
 
 /// A watch that lets everything pass.
@@ -130,7 +156,8 @@ pub fn unwatched() -> Watch {
     Arc::new(|_| ControlFlow::Continue(()))
 }
 
-/// Reads several files and puts their runs behind one another.
+/// Reads several files and puts their runs behind one another. Tables of one drive that are joined by `+`, as
+/// `wheels.csv+power.csv`, become one recording on one clock.
 ///
 /// # Errors
 /// The first file's that cannot be read.
@@ -150,16 +177,27 @@ pub fn read_paths_watched<P: AsRef<Path>>(
     map: Option<&Map>,
     watch: &Watch,
 ) -> Result<(Recording, Vec<ReadingReport>), Error> {
-    let bytes_of = |path: &P| fs::metadata(path).map_or(0, |data| data.len());
-    let all_bytes = paths.iter().map(bytes_of).sum();
+    let bytes_of = |path: &Path| fs::metadata(path).map_or(0, |data| data.len());
+    let all_bytes = paths
+        .iter()
+        .map(|path| tables_of(path.as_ref()).iter().map(|path| bytes_of(path)).sum::<u64>())
+        .sum();
+    let room = |path: &Path| Room::default().share(bytes_of(path), all_bytes);
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for path in paths {
-        let room = Room::default().share(bytes_of(path), all_bytes);
-        let reading = read_path_within(path.as_ref(), map, watch, room)?;
+        let reading = match tables_of(path.as_ref()).as_slice() {
+            [path] => read_path_within(path, map, watch, room(path))?,
+            tables => {
+                let parts = tables.iter().map(|path| Ok((path.clone(), read_table(path, map, watch, room(path))?)));
+                join_in_time(parts.collect::<Result<_, Error>>()?, map, &Looks::new(watch))?
+            }
+        };
         recordings.push(reading.recording);
         reports.push(reading.report);
     }
-    Ok((Recording::join(recordings), reports))
+    let joined = Recording::join(recordings);
+    tell_unused_runs(&joined, &mut reports);
+    Ok((joined, reports))
 }
 
 /// Reads what is already in memory, as the body of a request. The name becomes that of the run where the recording has
@@ -180,9 +218,10 @@ pub(crate) fn read_within(
     room: Room,
 ) -> Result<Reading, Error> {
     let budget = Budget { room, looks: Looks::new(&unwatched()) };
+    let finish = |part| Reading::finish(part, name, map, &budget.looks);
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, &budget),
-        Format::Csv => csv::read(Cursor::new(bytes), name, map, &budget),
+        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, map, &budget).and_then(finish),
+        Format::Csv => csv::read(Cursor::new(bytes), name, map, &budget).and_then(finish),
         Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
     }
