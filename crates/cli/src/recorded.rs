@@ -14,7 +14,8 @@ pub(crate) struct Recorded {
     /// Name of a built-in robot, or a robot file
     #[arg(long, default_value = "husky-a200")]
     robot: String,
-    /// Recordings: .csv, .parquet, .mcap, .db3 or .bag, or folders of `ros2 bag record`
+    /// Recordings: .csv (.gz, .zst), .parquet, .mcap, .db3 or .bag, or folders of `ros2 bag record`; wheels.csv+power.csv joins tables of one
+    /// drive on time
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
     /// Map file that names columns or topics and their units, or the built-in husky or borealtc

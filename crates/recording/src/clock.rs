@@ -9,6 +9,7 @@ use crate::{
     Error, Recording, Run,
     error::Position,
     gap::{median, median_step_s},
+    repeats::Repeats,
 };
 
 /// Longest median step of a run \[s\]: robots start, turn and stop within seconds, so that longer steps show none of it. Slow fleet
@@ -186,6 +187,17 @@ fn check_magnitude(recording: &Recording, run: &Run, source: &TimeSource<'_>) ->
 fn check_order(recording: &Recording, run: &Run, source: &TimeSource<'_>) -> Result<(), Error> {
     let t_s = times(recording, run);
     let Some(at) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
+    if let Some(Repeats { times, step_s }) = Repeats::of(t_s) {
+        return Err(Error::RoundedTimes {
+            position: (source.position)(run.rows.start + at + 1),
+            run: run.name.clone(),
+            column: source.column.to_owned(),
+            t_s: t_s[at],
+            rows: t_s.len(),
+            times,
+            resolution_s: step_s.map(rounded),
+        });
+    }
     Err(Error::TimeOrder {
         position: (source.position)(run.rows.start + at + 1),
         run: run.name.clone(),

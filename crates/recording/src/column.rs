@@ -3,14 +3,18 @@
 use std::mem;
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair,
+    bursts::Bursts,
     clock::{TimeSource, check_time},
     coarse::period,
     divide::divide,
     error::Position,
+    gap,
     label_column::LabelColumn,
     map::{Place, Target},
+    own_clocks::onto_one_clock,
     report::{ChannelReport, ReadingReport},
+    same_time::merge_same_times,
     table::Table,
     units,
 };
@@ -43,6 +47,7 @@ pub(crate) struct Plan {
     entries: Vec<Entry>,
     ignored: Vec<Ignored>,
     surface: Option<String>,
+    max_gap_s: Option<f64>,
 }
 
 struct Entry {
@@ -61,7 +66,7 @@ impl Plan {
     /// kept aside.
     pub(crate) fn new(headers: Vec<String>, map: Option<&Map>) -> Result<Plan, Error> {
         for (index, header) in headers.iter().enumerate() {
-            if headers[..index].contains(header) {
+            if !header.is_empty() && headers[..index].contains(header) {
                 let (channel, first) = (header.clone(), header.clone());
                 return Err(Error::Duplicate { channel, first, second: header.clone() });
             }
@@ -71,6 +76,7 @@ impl Plan {
             entries: Vec::new(),
             ignored: Vec::new(),
             surface: map.and_then(|map| map.surface.clone()),
+            max_gap_s: map.and_then(|map| map.max_gap_s),
             headers,
         };
         plan.add_mapped(map);
@@ -122,6 +128,11 @@ impl Plan {
             if self.entries.iter().any(|entry| entry.columns.contains(&index)) {
                 continue;
             }
+            if header.is_empty() {
+                let name = format!("column {}", index + 1);
+                self.ignored.push(Ignored { name, reason: "it has no name".into() });
+                continue;
+            }
             let (target, unit) = match header.as_str() {
                 "t_s" => (Target::Time, "s"),
                 "run" => (Target::Run, ""),
@@ -156,6 +167,33 @@ impl Plan {
     pub(crate) fn time(&self) -> Option<usize> {
         let entry = self.entries.iter().find(|entry| entry.target == Target::Time)?;
         entry.columns.first().copied()
+    }
+
+    /// Whether a column alone tells time.
+    pub(crate) fn is_time(&self, column: usize) -> bool {
+        let alone = |entry: &Entry| entry.target == Target::Time && entry.columns == [column];
+        self.entries.iter().any(alone)
+    }
+
+    /// The columns that have to hold numbers.
+    pub(crate) fn needed(&self) -> impl Iterator<Item = usize> {
+        self.kinds.iter().enumerate().filter(|(_, kind)| **kind == Kind::Number).map(|(column, _)| column)
+    }
+
+    /// What a column alone is taken to measure, and in which unit; `None` where others belong to it.
+    pub(crate) fn unit_of(&self, column: usize) -> Option<(Quantity, &str)> {
+        let entry = self.entries.iter().find(|entry| entry.columns == [column])?;
+        let quantity = match entry.target {
+            Target::Time => Quantity::Time,
+            Target::Channel(channel) => channel.quantity(),
+            Target::Run | Target::Surface | Target::Aside(_) => return None,
+        };
+        Some((quantity, &entry.unit))
+    }
+
+    /// The name of a column.
+    pub(crate) fn header(&self, column: usize) -> &str {
+        self.headers.get(column).map_or("", String::as_str)
     }
 
     /// By column, where its numbers begin again, in their own unit: those of headings do.
@@ -214,14 +252,18 @@ impl Plan {
             recording.surface = Some(Labels::constant(surface, recording.rows()));
         }
         let order = divide(&mut recording, runs, name, &mut report, &looks)?;
-        let in_table = |row: usize| order.as_ref().map_or(row, |order| order[row]);
+        let merged = merge_same_times(&mut recording, &mut report.repairs, &looks)?;
+        let before = |row: usize| merged.as_ref().map_or(row, |rows| rows[row]);
+        let in_table = |row: usize| order.as_ref().map_or(before(row), |order| order[before(row)]);
         let source = TimeSource {
             column: &time_column,
             map_unit: map_unit.as_deref(),
             weight: &|row| coarse.weight(in_table(row)),
             position: &|row| position(in_table(row)),
         };
+        spread_bursts(&mut recording, &mut report.repairs);
         check_time(&recording, &source)?;
+        onto_one_clock(&mut recording, self.max_gap_s, &mut report.repairs, &looks)?;
         report.ignored = self.ignored;
         report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
@@ -293,5 +335,24 @@ impl Plan {
         let rows = parts.iter().map(|part| part.len()).min().unwrap_or(0);
         let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]), entry.separation_m);
         Ok(Column::Numbers((0..rows).map(|row| entry.conversion.apply(at(row))).collect()))
+    }
+}
+
+/// Spreads the rows of runs that came in bursts. Rows that hold some channels each are not of one source.
+fn spread_bursts(recording: &mut Recording, repairs: &mut Vec<Repair>) {
+    if recording.channels.values().any(|values| values.iter().any(|value| value.is_nan())) {
+        return;
+    }
+    for run in &mut recording.runs {
+        let t_s = &mut recording.t_s[run.rows.clone()];
+        // Times that repeat are rounded, or those of several drives.
+        if t_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+            continue;
+        }
+        if let Some(bursts) = Bursts::of(t_s) {
+            repairs.push(Repair { place: format!("run `{}`", run.name), what: bursts.told("rows") });
+            t_s.copy_from_slice(&bursts.t_s);
+            run.gap_s = gap::threshold_s(t_s);
+        }
     }
 }

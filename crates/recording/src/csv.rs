@@ -1,146 +1,91 @@
-//! Comma-separated text.
+//! Text with a header line and cells separated by commas, semicolons, tabs, bars or spaces.
 
-use std::io::{BufRead, BufReader, Read};
-
-use ::csv::{ByteRecord, ErrorKind, ReaderBuilder};
+use std::io::Read;
 
 use crate::{
-    Error, Map, Repair,
+    Error, Map,
+    cell::shown,
     column::{Column, Kind, Plan},
-    error::{Position, excerpt},
+    csv_rows::{Role, Rows},
+    csv_text::CsvText,
+    error::Position,
     label_column::MOST_NAMES,
-    reading::{Part, Reading},
+    reading::Part,
     table::Table,
     watch::Budget,
 };
 
-/// Bytes read at a time: large enough that calls to the system do not matter, small against any file that takes long.
-const BUFFER_BYTES: usize = 1 << 20;
-
-/// Reads comma-, semicolon- or tab-separated text with a header line, in one pass.
+/// Reads a text table in one pass, whatever it is packed with, encoded in and separated by.
 pub(crate) fn read(
-    source: impl Read,
+    source: impl Read + 'static,
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
-    let mut source = BufReader::with_capacity(BUFFER_BYTES, source);
-    let beginning = source.fill_buf()?;
-    let delimiter = delimiter(beginning);
-    // The parser ends a line at the carriage return and counts the newline with the next line.
-    let returns = first_line(beginning).ends_with(b"\r");
-    let mut reader =
-        ReaderBuilder::new().delimiter(delimiter).has_headers(false).flexible(true).from_reader(source);
-    let mut record = ByteRecord::new();
-    let headers = match reader.read_byte_record(&mut record) {
-        Ok(true) => headers(&record)?,
-        Ok(false) => return Err(Error::Empty { found: "an empty file".into() }),
-        Err(error) => return Err(csv_error(&error)),
-    };
-    let plan = Plan::new(headers.clone(), map)?;
+) -> Result<Part, Error> {
+    let mut text = CsvText::open(source)?;
+    if text.advance()?.is_none() {
+        return Err(Error::Empty { found: "an empty file".into() });
+    }
+    let headers = text.headers();
+    let mut plan = Plan::new(headers.clone(), map)?;
     let mut table = Table::new(&plan, budget.clone());
+    let mut rows = Rows::new(text.dialect(), &headers);
     let mut lines = Lines::default();
-    let mut repairs = Vec::new();
-    while reader.read_byte_record(&mut record).map_err(|error| csv_error(&error))? {
-        let line = line_of(&record, reader.position().line()) + u64::from(returns);
-        if record.len() != headers.len() {
-            let (found, expected) = (record.len(), headers.len());
-            // A line that breaks off at the end of the file is what a full disk or a lost battery leaves behind.
-            if found < expected && !reader.read_byte_record(&mut ByteRecord::new()).unwrap_or(true) {
-                repairs.push(Repair {
-                    place: format!("line {line}, the last"),
-                    what: format!("it breaks off after {found} of {expected} cells; it was left out"),
-                });
+    let is_time: Vec<bool> = (0..headers.len()).map(|column| plan.is_time(column)).collect();
+    while let Some(line) = text.advance()? {
+        match rows.role(&plan, text.record(), line)? {
+            Role::Row => {}
+            Role::Passed => continue,
+            Role::Short(found, error) => {
+                // A line that breaks off at the end of the file is what a full disk or a lost battery leaves behind.
+                if text.advance().is_ok_and(|next| next.is_some()) {
+                    return Err(error);
+                }
+                rows.breaks_off(found, line);
                 break;
             }
-            let message = format!("{found} cells, but the header has {expected}; mend or remove the line");
-            return Err(Error::Csv { line, message });
         }
         lines.push(line);
-        for (index, cell) in record.iter().enumerate() {
-            push(&mut table.columns[index], plan.kinds[index], cell, &headers[index], line)?;
+        for (index, column) in table.columns.iter_mut().enumerate() {
+            let cell = text.record().get(index).unwrap_or_default();
+            let kind = plan.kinds[index];
+            match column {
+                Column::Numbers(values) if kind == Kind::Perhaps => match rows.spelling.perhaps(cell) {
+                    Some(value) => values.push(value),
+                    None => {
+                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"))
+                    }
+                },
+                Column::Numbers(values) => {
+                    let read = if is_time[index] {
+                        rows.spelling.time(cell, line)
+                    } else {
+                        rows.spelling.number(cell, line)
+                    };
+                    values.push(read.map_err(|remedy| number_error(&headers[index], cell, line, remedy))?);
+                }
+                Column::Labels(labels) => {
+                    if !labels.push(String::from_utf8_lossy(cell).trim()) {
+                        let (position, column) = (Position::Line(line), headers[index].clone());
+                        return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
+                    }
+                }
+                Column::Unusable(_) => {}
+            }
         }
         table.end_rows(1)?;
     }
+    let calendar = rows.spelling.calendar();
+    if let Some(time) = plan.time().filter(|_| calendar.is_some()) {
+        plan.typed_time(time, "s")?;
+    }
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
-    report.repairs.extend(repairs);
-    let found = headers;
-    Reading::finish(Part { recording, report, found, format: "CSV" }, name, map, &budget.looks)
+    report.repairs.extend(rows.repairs());
+    Ok(Part { recording, report, found: headers, format: "CSV" })
 }
 
-/// The delimiter that the header line has most of; the comma when it has none.
-fn delimiter(beginning: &[u8]) -> u8 {
-    let header = first_line(beginning);
-    let count = |delimiter: u8| header.iter().filter(|byte| **byte == delimiter).count();
-    let most = [b'\t', b';', b','].into_iter().max_by_key(|delimiter| count(*delimiter));
-    most.filter(|delimiter| count(*delimiter) > 0).unwrap_or(b',')
-}
-
-fn first_line(beginning: &[u8]) -> &[u8] {
-    beginning.split(|byte| *byte == b'\n').next().unwrap_or_default()
-}
-
-/// The line that a record begins in. Where the parser began to look for it comes before blank lines; the line that it
-/// stopped at comes behind breaks within quotes.
-fn line_of(record: &ByteRecord, next_line: u64) -> u64 {
-    let began = record.position().map_or(0, ::csv::Position::line);
-    let breaks = record.as_slice().iter().filter(|byte| **byte == b'\n').count() as u64;
-    began.max(next_line.saturating_sub(1 + breaks))
-}
-
-fn headers(record: &ByteRecord) -> Result<Vec<String>, Error> {
-    let text = |cell: &[u8]| {
-        let text = std::str::from_utf8(cell).map_err(|_| Error::NotTheFormat {
-            format: "CSV",
-            reason: "its first line is not UTF-8 text".into(),
-        })?;
-        Ok(text.trim_start_matches('\u{feff}').trim().to_owned())
-    };
-    record.iter().map(text).collect()
-}
-
-fn push(column: &mut Column, kind: Kind, cell: &[u8], name: &str, line: u64) -> Result<(), Error> {
-    match column {
-        Column::Numbers(values) => match number(cell) {
-            Some(value) => values.push(value),
-            None if kind == Kind::Perhaps => {
-                *column = Column::Unusable(format!("no channel, and not a number in line {line}"));
-            }
-            None => {
-                return Err(Error::Number {
-                    position: Position::Line(line),
-                    column: name.to_owned(),
-                    found: excerpt(&String::from_utf8_lossy(cell)),
-                });
-            }
-        },
-        Column::Labels(labels) => {
-            if !labels.push(String::from_utf8_lossy(cell).trim()) {
-                let (position, column) = (Position::Line(line), name.to_owned());
-                return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
-            }
-        }
-        Column::Unusable(_) => {}
-    }
-    Ok(())
-}
-
-/// A finite number, or NaN for an empty cell and for `nan`.
-fn number(cell: &[u8]) -> Option<f64> {
-    let cell = cell.trim_ascii();
-    if cell.is_empty() {
-        return Some(f64::NAN);
-    }
-    let value: f64 = std::str::from_utf8(cell).ok()?.parse().ok()?;
-    (!value.is_infinite()).then_some(value)
-}
-
-fn csv_error(error: &::csv::Error) -> Error {
-    let line = error.position().map_or(1, ::csv::Position::line);
-    match error.kind() {
-        ErrorKind::Io(io) => Error::Io(std::io::Error::new(io.kind(), io.to_string())),
-        _ => Error::Csv { line, message: error.to_string() },
-    }
+fn number_error(column: &str, cell: &[u8], line: u64, remedy: String) -> Error {
+    Error::Number { position: Position::Line(line), column: column.to_owned(), found: shown(cell), remedy }
 }
 
 /// The line of each row, kept only where blank lines or breaks within quotes shift it.

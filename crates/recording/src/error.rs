@@ -22,7 +22,8 @@ pub enum Error {
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
     #[error(
-        "`{ending}` is no recording: the name must end in .csv, .parquet, .mcap, .db3 or .bag, or be that of a folder of `ros2 bag record`"
+        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap, .db3 or .bag, or be that of a folder of \
+         `ros2 bag record`"
     )]
     UnknownFormat {
         /// The ending found.
@@ -76,6 +77,53 @@ pub enum Error {
         /// Topics that the map names, and why they could not be read.
         unread: Vec<String>,
     },
+    /// A file among those to be joined on time that is no table.
+    #[error(
+        "only tables, .csv or .parquet, can be joined by `+`, and this is .{ending}; a bag holds all of its topics"
+    )]
+    NoTable {
+        /// The ending of its name.
+        ending: String,
+    },
+    /// Tables to be joined that have different drives.
+    #[error(
+        "{first} has the runs {first_runs} and {second} has {second_runs}; give both the same names in a column `run`, or one run each"
+    )]
+    JoinedRuns {
+        /// A table.
+        first: String,
+        /// Its runs.
+        first_runs: String,
+        /// Another.
+        second: String,
+        /// Its runs.
+        second_runs: String,
+    },
+    /// Tables to be joined that were not recorded at the same time.
+    #[error(
+        "the times of {first} ({} to {} s) and {second} ({} to {} s) do not meet; both must count from the same moment",
+        first_s[0], first_s[1], second_s[0], second_s[1]
+    )]
+    Apart {
+        /// A table.
+        first: String,
+        /// Its first and last time \[s\].
+        first_s: [f64; 2],
+        /// Another.
+        second: String,
+        /// Its first and last time \[s\].
+        second_s: [f64; 2],
+    },
+    /// Tables to be joined that give the same channel.
+    #[error("both {first} and {second} give {channel}; remove or rename one of the columns")]
+    GivenTwice {
+        /// The channel.
+        channel: Channel,
+        /// A table.
+        first: String,
+        /// Another.
+        second: String,
+    },
     /// Two columns of one name, or two columns for one channel.
     #[error("two columns give {channel}: `{first}` and `{second}`; rename one of them or map it `aside`")]
     Duplicate {
@@ -87,7 +135,7 @@ pub enum Error {
         second: String,
     },
     /// A cell of a numeric column that holds no number.
-    #[error("{position}, column `{column}`: `{found}` is no finite number; leave the cell empty for a gap")]
+    #[error("{position}, column `{column}`: `{found}` is no finite number; {remedy}")]
     Number {
         /// Line or row.
         position: Position,
@@ -95,11 +143,35 @@ pub enum Error {
         column: String,
         /// What stands there.
         found: String,
+        /// How to mend it.
+        remedy: String,
+    },
+    /// A row of units below the header that contradicts what the columns are taken to be in.
+    #[error(
+        "line {line}, column `{column}`: the row of units says `{found}`, {}",
+        if *is_known {
+            format!("but the column is taken to be in `{taken}`; name it with its unit in a map, and remove the line if that agrees")
+        } else {
+            format!("which is no unit that is known, where `{taken}` was expected; remove the line if the column is in `{taken}`")
+        }
+    )]
+    UnitsRow {
+        /// Line of the row.
+        line: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        found: String,
+        /// The unit that its name or a map says.
+        taken: String,
+        /// Whether it is a unit of the quantity.
+        is_known: bool,
     },
     /// Time that does not increase within a run.
     #[error(
-        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; sort the rows, or number the drives in a column `run`",
-        if t_s == previous_s { "repeats" } else { "goes back" }
+        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; {}, or number the drives in a column `run`",
+        if t_s == previous_s { "repeats" } else { "goes back" },
+        if t_s == previous_s { "remove one of the rows" } else { "sort the rows" }
     )]
     TimeOrder {
         /// Line or row.
@@ -110,6 +182,31 @@ pub enum Error {
         t_s: f64,
         /// The time before it \[s\].
         previous_s: f64,
+    },
+    /// Times of which many are equal.
+    #[error(
+        "{position}: time repeats {t_s} s in run `{run}`, whose {rows} rows have {}: its times are rounded; write `{column}` with more \
+         digits, or number the drives in a column `run` if there are several",
+        match resolution_s {
+            Some(resolution_s) => format!("{times} different times, {resolution_s} s apart"),
+            None => "one time in all".to_owned(),
+        }
+    )]
+    RoundedTimes {
+        /// Line or row of the first repeat.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time column.
+        column: String,
+        /// The time that repeats \[s\].
+        t_s: f64,
+        /// Rows of the run.
+        rows: usize,
+        /// Different times among them.
+        times: usize,
+        /// Median step from one to the next \[s\].
+        resolution_s: Option<f64>,
     },
     /// Times that cannot be in seconds.
     #[error(

@@ -1,6 +1,10 @@
 //! The formats of recordings, by a file's first bytes or its name.
 
-use std::{fs::File, io::Seek, path::Path};
+use std::{
+    fs::File,
+    io::Seek,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +24,7 @@ pub(crate) const HEAD_BYTES: u64 = SQLITE_MAGIC.len() as u64;
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Format {
-    /// Comma-, semicolon- or tab-separated text with a header line.
+    /// Comma-, semicolon-, tab- or space-separated text with a header line, packed with gzip or zstd or not.
     Csv,
     /// Parquet with the same columns.
     Parquet,
@@ -33,18 +37,20 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file name's ending stands for.
+    /// The format that a file name's ending stands for; text may be packed, as `drive.csv.gz`.
     ///
     /// # Errors
     /// The ending, when it stands for none.
     pub fn of(path: &Path) -> Result<Format, Error> {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let inner = unpacked_name(path);
+        let (ending, is_packed) = (ending_of(&inner), inner != path);
         match ending.as_str() {
             "csv" | "tsv" | "txt" => Ok(Format::Csv),
-            "parquet" => Ok(Format::Parquet),
-            "mcap" => Ok(Format::Mcap),
-            "bag" => Ok(Format::Bag),
-            "db3" => Ok(Format::Db3),
+            "parquet" if !is_packed => Ok(Format::Parquet),
+            "mcap" if !is_packed => Ok(Format::Mcap),
+            "bag" if !is_packed => Ok(Format::Bag),
+            "db3" if !is_packed => Ok(Format::Db3),
+            _ if is_packed => Err(Error::UnknownFormat { ending: format!(".{ending}.{}", ending_of(path)) }),
             _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),
         }
     }
@@ -70,6 +76,25 @@ impl Format {
     pub fn of_file(file: &mut File) -> Result<Option<Format>, Error> {
         Ok(Format::of_content(&head(file)?))
     }
+}
+
+/// The name of a file without the ending of what it is packed with.
+fn unpacked_name(path: &Path) -> PathBuf {
+    let is_packed = matches!(ending_of(path).as_str(), "gz" | "zst" | "zstd");
+    if is_packed { path.with_extension("") } else { path.to_owned() }
+}
+
+pub(crate) fn ending_of(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+/// The name of a run that its file does not name: that of the file without its ending, or of the folder.
+pub(crate) fn run_name(path: &Path) -> String {
+    let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let path = if path.file_name().is_some() { path } else { &whole };
+    let unpacked = unpacked_name(path);
+    let name = if path.is_dir() { path.file_name() } else { unpacked.file_stem() };
+    name.and_then(|name| name.to_str()).unwrap_or("recording").to_owned()
 }
 
 /// The first bytes of an open file, which is then at its beginning again.

@@ -1,12 +1,12 @@
 //! Parquet with the columns of the CSV format.
 
 use std::{
+    cell::Cell,
     collections::HashMap,
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
 use ::parquet::{
-    basic::{ConvertedType, LogicalType, TimeUnit, Type as Physical},
     column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader},
     data_type::{ByteArray, DataType},
     file::reader::{ChunkReader, FileReader, SerializedFileReader},
@@ -19,7 +19,8 @@ use crate::{
     error::Position,
     label_column::{LabelColumn, MOST_NAMES},
     pages::Pages,
-    reading::{Part, Reading},
+    parquet_type::{decimal_factor, is_unsigned, refuse_type, time_unit},
+    reading::Part,
     table::Table,
     watch::Budget,
 };
@@ -37,7 +38,7 @@ pub(crate) fn read(
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
+) -> Result<Part, Error> {
     // The library asserts some of what a damaged file may say (negative offsets among it). Nothing of it outlives the
     // closure, so that stopping in the middle leaves nothing half done.
     let read = AssertUnwindSafe(|| read_file(source, name, map, budget));
@@ -54,7 +55,7 @@ fn read_file(
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
-) -> Result<Reading, Error> {
+) -> Result<Part, Error> {
     let file_bytes = source.len();
     let file = SerializedFileReader::new(source)?;
     refuse_contradictions(&file, file_bytes)?;
@@ -97,8 +98,7 @@ fn read_file(
         }
     }
     let (recording, report) = plan.assemble(table, name, |row| Position::Row(row as u64 + 1))?;
-    let part = Part { recording, report, found: headers, format: "Parquet" };
-    Reading::finish(part, name, map, &budget.looks)
+    Ok(Part { recording, report, found: headers, format: "Parquet" })
 }
 
 /// The duration columns of a file that Arrow wrote, with their units.
@@ -106,34 +106,6 @@ fn durations_of<R: ChunkReader + 'static>(file: &SerializedFileReader<R>) -> Has
     let pairs = file.metadata().file_metadata().key_value_metadata();
     let schema = pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == arrow_schema::KEY));
     schema.and_then(|pair| pair.value.as_deref()).map(arrow_schema::durations).unwrap_or_default()
-}
-
-/// The unit that a column of integers stores times in by its type, whatever the writer says it by; `None` for plain numbers.
-fn time_unit(
-    descriptor: &ColumnDescriptor,
-    durations: &HashMap<String, &'static str>,
-) -> Option<&'static str> {
-    if descriptor.physical_type() == Physical::INT96 {
-        return Some("ns");
-    }
-    if !matches!(descriptor.physical_type(), Physical::INT32 | Physical::INT64) {
-        return None;
-    }
-    let symbol = |unit: &TimeUnit| match unit {
-        TimeUnit::MILLIS => "ms",
-        TimeUnit::MICROS => "us",
-        TimeUnit::NANOS => "ns",
-    };
-    match (descriptor.logical_type_ref(), descriptor.converted_type()) {
-        (Some(LogicalType::Timestamp(stamp)), _) => Some(symbol(&stamp.unit)),
-        (Some(LogicalType::Time(time)), _) => Some(symbol(&time.unit)),
-        (None, ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS) => Some("ms"),
-        (None, ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS) => Some("us"),
-        _ => {
-            let [name] = descriptor.path().parts() else { return None };
-            durations.get(name).copied()
-        }
-    }
 }
 
 /// Refuses columns that lie outside the file before anything of their size is allocated.
@@ -169,6 +141,7 @@ struct Source {
     full: i16,
     /// What a stored number is multiplied with.
     scale: f64,
+    is_unsigned: bool,
 }
 
 impl Source {
@@ -180,22 +153,16 @@ impl Source {
     ) -> Result<Source, Error> {
         let (name, full) = (descriptor.path().string(), descriptor.max_def_level());
         let in_seconds = unit.and_then(|unit| Conversion::from_unit(Quantity::Time, unit, None));
-        let scale = match refuse_type(descriptor, kind) {
-            Ok(()) => in_seconds.map_or(1.0, |unit| unit.factor),
-            Err(found) if kind == Kind::Perhaps => {
-                *column = Column::Unusable(found);
-                1.0
+        if let Err(found) = refuse_type(descriptor, kind) {
+            if kind != Kind::Perhaps {
+                let remedy = if kind == Kind::Label { "text or an integer" } else { "a double" };
+                let (topic, reason) = ("of the table".into(), format!("{found}; write it as {remedy}"));
+                return Err(Error::Field { topic, field: name, reason });
             }
-            Err(found) => {
-                let topic = "of the table".into();
-                return Err(Error::Field {
-                    topic,
-                    field: name,
-                    reason: format!("{found}; write it as a double"),
-                });
-            }
-        };
-        Ok(Source { name, kind, full, scale })
+            *column = Column::Unusable(found);
+        }
+        let scale = in_seconds.map_or_else(|| decimal_factor(descriptor), |unit| unit.factor);
+        Ok(Source { name, kind, full, scale, is_unsigned: is_unsigned(descriptor) })
     }
 
     /// Reads the next rows into the column and says how many; so many were read before.
@@ -204,6 +171,12 @@ impl Source {
             (ColumnReader::DoubleColumnReader(r), Column::Numbers(v)) => self.numbers(r, v, |x| *x)?,
             (ColumnReader::FloatColumnReader(r), Column::Numbers(v)) => {
                 self.numbers(r, v, |x| f64::from(*x))?
+            }
+            (ColumnReader::Int32ColumnReader(r), Column::Numbers(v)) if self.is_unsigned => {
+                self.numbers(r, v, |x| f64::from(x.cast_unsigned()))?
+            }
+            (ColumnReader::Int64ColumnReader(r), Column::Numbers(v)) if self.is_unsigned => {
+                self.numbers(r, v, |x| x.cast_unsigned() as f64)?
             }
             (ColumnReader::Int32ColumnReader(r), Column::Numbers(v)) => {
                 self.numbers(r, v, |x| f64::from(*x))?
@@ -227,6 +200,12 @@ impl Source {
             (ColumnReader::Int64ColumnReader(r), Column::Labels(labels)) => {
                 self.labels(r, labels, before, i64::to_string)?
             }
+            (ColumnReader::DoubleColumnReader(r), Column::Labels(labels)) => {
+                self.whole_labels(r, labels, before, |x| *x)?
+            }
+            (ColumnReader::FloatColumnReader(r), Column::Labels(labels)) => {
+                self.whole_labels(r, labels, before, |x| f64::from(*x))?
+            }
             _ => {
                 *column = Column::Unusable("its type changes within the file".into());
                 return Ok(0);
@@ -236,7 +215,8 @@ impl Source {
             let new = &values[values.len() - rows..];
             if let Some(row) = new.iter().position(|value| value.is_infinite()) {
                 let (position, column) = (Position::Row(before + row as u64 + 1), self.name.clone());
-                return Err(Error::Number { position, column, found: format!("{}", new[row]) });
+                let (found, remedy) = (format!("{}", new[row]), "write null for a gap".into());
+                return Err(Error::Number { position, column, found, remedy });
             }
         }
         Ok(rows)
@@ -249,6 +229,35 @@ impl Source {
         widen: impl Fn(&T::T) -> f64,
     ) -> Result<usize, Error> {
         for_each(reader, self.full, |value| values.push(value.map_or(f64::NAN, |x| widen(x) * self.scale)))
+    }
+
+    /// Reads whole numbers as names: pandas turns integers into doubles where one is missing, which is NaN then.
+    fn whole_labels<T: DataType>(
+        &self,
+        reader: &mut ColumnReaderImpl<T>,
+        labels: &mut LabelColumn,
+        before: u64,
+        widen: impl Fn(&T::T) -> f64,
+    ) -> Result<usize, Error> {
+        let broken = Cell::new(None);
+        let text = |number: &T::T| {
+            let number = widen(number);
+            if number.is_nan() {
+                return String::new();
+            }
+            if number.fract() != 0.0 {
+                broken.set(broken.get().or(Some(number)));
+            }
+            format!("{number}")
+        };
+        let rows = self.labels(reader, labels, before, text)?;
+        match broken.get() {
+            None => Ok(rows),
+            Some(number) => {
+                let reason = format!("it holds {number}, no whole number; write it as text or an integer");
+                Err(Error::Field { topic: "of the table".into(), field: self.name.clone(), reason })
+            }
+        }
     }
 
     fn labels<T: DataType>(
@@ -272,34 +281,6 @@ impl Source {
             }
             None => Ok(rows),
         }
-    }
-}
-
-/// Refuses, in words, what a column holds instead of what is wanted.
-fn refuse_type(descriptor: &ColumnDescriptor, kind: Kind) -> Result<(), String> {
-    if descriptor.max_rep_level() > 0 {
-        return Err("it holds lists".into());
-    }
-    let physical = descriptor.physical_type();
-    let text = matches!(physical, Physical::BYTE_ARRAY);
-    if kind == Kind::Label {
-        let whole = matches!(physical, Physical::INT32 | Physical::INT64);
-        return if text || whole { Ok(()) } else { Err(format!("it holds {physical}, not text")) };
-    }
-    match (physical, descriptor.logical_type_ref()) {
-        (_, Some(LogicalType::Decimal(_))) => Err("it holds decimals".into()),
-        (_, Some(LogicalType::Date)) => Err("it holds dates".into()),
-        (
-            Physical::DOUBLE
-            | Physical::FLOAT
-            | Physical::INT32
-            | Physical::INT64
-            | Physical::INT96
-            | Physical::BOOLEAN,
-            _,
-        ) => Ok(()),
-        _ if text => Err("it holds text".into()),
-        _ => Err(format!("it holds {physical}")),
     }
 }
 

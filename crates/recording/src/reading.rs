@@ -9,13 +9,13 @@ use std::{
 };
 
 use crate::{
-    Channel, Error, Format, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag,
-    bridge::bridge,
-    csv,
-    format::{self, ZSTD_MAGIC},
+    Channel, Error, Format, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv,
+    format::{self, ZSTD_MAGIC, ending_of, run_name},
+    joined::{join_in_time, tables_of},
     mcap, parquet,
     rosbag2::{db3, folder, storage},
     suspicion::suspicions_watched,
+    unused_runs::tell_unused_runs,
     watch::{Budget, Looks, Watched},
 };
 
@@ -60,7 +60,10 @@ fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -
         let head = format::head(&mut file)?;
         match Format::of_content(&head) {
             Some(Format::Db3) => storage::read(path, name, map, watch, &budget),
-            None if head.starts_with(&ZSTD_MAGIC) => storage::read(path, name, map, watch, &budget),
+            // Text may be packed too, and is then unpacked as text.
+            None if head.starts_with(&ZSTD_MAGIC) && Format::of(path).ok() != Some(Format::Csv) => {
+                storage::read(path, name, map, watch, &budget)
+            }
             Some(format) => read_file(file, format, name, map, watch, room),
             None => read_file(file, Format::of(path)?, name, map, watch, room),
         }
@@ -68,16 +71,6 @@ fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -
     let mut reading = read().map_err(|error: Error| error.in_file(path))?;
     reading.report.source = path.display().to_string();
     Ok(reading)
-}
-
-/// The name of a run: that of the file without its ending, or of the folder.
-fn run_name(path: &Path) -> String {
-    let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let path = if path.file_name().is_some() { path } else { &whole };
-    let is_packed = path.extension().is_some_and(|ending| ending == "zstd" || ending == "zst");
-    let packed = if is_packed { path.with_extension("") } else { path.to_owned() };
-    let name = if path.is_dir() { path.file_name() } else { packed.file_stem() };
-    name.and_then(|name| name.to_str()).unwrap_or("recording").to_owned()
 }
 
 /// Reads an open file of a known format, followed by a watch. The name becomes that of the run where the recording has
@@ -96,9 +89,10 @@ pub fn read_file(
     let file = Watched::new(file, Arc::clone(watch));
     let stopped = file.stopped();
     let budget = Budget { room, looks: Looks::new(watch) };
+    let finish = |part| Reading::finish(part, name, map, &budget.looks);
     let reading = match format {
-        Format::Csv => csv::read(file, name, of_columns(map), &budget),
-        Format::Parquet => parquet::read(file, name, of_columns(map), &budget),
+        Format::Csv => csv::read(file, name, of_columns(map), &budget).and_then(finish),
+        Format::Parquet => parquet::read(file, name, of_columns(map), &budget).and_then(finish),
         Format::Mcap => mcap::read(file, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
         Format::Db3 => db3::read_copy(file, name, map, &budget),
@@ -111,12 +105,31 @@ fn of_columns(map: Option<&Map>) -> Option<&Map> {
     map.filter(|map| map.names_columns())
 }
 
+/// Reads a table that may lack what a recording needs, since others hold it.
+fn read_table(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Result<Part, Error> {
+    let budget = Budget { room, looks: Looks::new(watch) };
+    let name = &run_name(path);
+    let read = || {
+        let format = Format::of(path)?;
+        let file = Watched::new(File::open(path)?, Arc::clone(watch));
+        let stopped = file.stopped();
+        let part = match format {
+            Format::Csv => csv::read(file, name, of_columns(map), &budget),
+            Format::Parquet => parquet::read(file, name, of_columns(map), &budget),
+            Format::Mcap | Format::Bag | Format::Db3 => Err(Error::NoTable { ending: ending_of(path) }),
+        };
+        if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { part }
+    };
+    read().map_err(|error: Error| error.in_file(path))
+}
+
 /// A watch that lets everything pass.
 pub fn unwatched() -> Watch {
     Arc::new(|_| ControlFlow::Continue(()))
 }
 
-/// Reads several files and puts their runs behind one another.
+/// Reads several files and puts their runs behind one another. Tables of one drive that are joined by `+`, as
+/// `wheels.csv+power.csv`, become one recording on one clock.
 ///
 /// # Errors
 /// The first file's that cannot be read.
@@ -136,16 +149,27 @@ pub fn read_paths_watched<P: AsRef<Path>>(
     map: Option<&Map>,
     watch: &Watch,
 ) -> Result<(Recording, Vec<ReadingReport>), Error> {
-    let bytes_of = |path: &P| bytes_on_disk(path.as_ref());
-    let all_bytes = paths.iter().map(bytes_of).sum();
+    let all_bytes = paths
+        .iter()
+        .map(|path| tables_of(path.as_ref()).iter().map(|path| bytes_on_disk(path)).sum::<u64>())
+        .sum();
+    let room = |path: &Path| Room::default().share(bytes_on_disk(path), all_bytes);
     let (mut recordings, mut reports) = (Vec::new(), Vec::new());
     for path in paths {
-        let room = Room::default().share(bytes_of(path), all_bytes);
-        let reading = read_path_within(path.as_ref(), map, watch, room)?;
+        let reading = match tables_of(path.as_ref()).as_slice() {
+            [path] => read_path_within(path, map, watch, room(path))?,
+            tables => {
+                let parts =
+                    tables.iter().map(|path| Ok((path.clone(), read_table(path, map, watch, room(path))?)));
+                join_in_time(parts.collect::<Result<_, Error>>()?, map, &Looks::new(watch))?
+            }
+        };
         recordings.push(reading.recording);
         reports.push(reading.report);
     }
-    Ok((Recording::join(recordings), reports))
+    let joined = Recording::join(recordings);
+    tell_unused_runs(&joined, &mut reports);
+    Ok((joined, reports))
 }
 
 /// The length of a file, or of all files of a folder \[bytes\]; 0 for what cannot be looked at.
@@ -175,9 +199,12 @@ pub(crate) fn read_within(
     room: Room,
 ) -> Result<Reading, Error> {
     let budget = Budget { room, looks: Looks::new(&unwatched()) };
+    let finish = |part| Reading::finish(part, name, map, &budget.looks);
     match format {
-        Format::Parquet => parquet::read(bytes::Bytes::from(bytes), name, of_columns(map), &budget),
-        Format::Csv => csv::read(Cursor::new(bytes), name, of_columns(map), &budget),
+        Format::Parquet => {
+            parquet::read(bytes::Bytes::from(bytes), name, of_columns(map), &budget).and_then(finish)
+        }
+        Format::Csv => csv::read(Cursor::new(bytes), name, of_columns(map), &budget).and_then(finish),
         Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
         Format::Db3 => db3::read_copy(Cursor::new(bytes), name, map, &budget),
@@ -235,7 +262,6 @@ impl Reading {
         report.format = format.to_owned();
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
-        report.repairs.extend(bridge(&mut recording, looks)?);
         map.iter().for_each(|map| map.derive_columns(&mut recording));
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;

@@ -104,15 +104,28 @@ impl Recording {
         (step_s <= run.gap_s).then_some(step_s)
     }
 
-    /// The runs of several recordings behind one another. A channel that one of them lacks is a gap there; a run whose
-    /// name is taken gets a number behind it.
+    /// The runs of several recordings behind one another. A channel that one of them lacks is a gap there, but for the power of a
+    /// battery whose current and voltage it has; a run whose name is taken gets a number behind it.
     pub fn join(parts: impl IntoIterator<Item = Recording>) -> Recording {
         let mut joined = Recording::default();
         let mut names = RunNames::default();
+        let mut parts: Vec<Recording> = parts.into_iter().collect();
+        if parts.iter().any(|part| part.channel(Channel::Power).is_some()) {
+            parts.iter_mut().for_each(Recording::tell_battery_power);
+        }
         for part in parts {
             joined.append(part, &mut names);
         }
         joined
+    }
+
+    /// Multiplies current and voltage where the power of the battery is not told itself.
+    fn tell_battery_power(&mut self) {
+        let factors = self.channel(Channel::Current).zip(self.channel(Channel::Voltage));
+        if let (None, Some((current_a, voltage_v))) = (self.channel(Channel::Power), factors) {
+            let power_w = current_a.iter().zip(voltage_v).map(|(i, u)| i * u).collect();
+            self.channels.insert(Channel::Power, power_w);
+        }
     }
 
     fn append(&mut self, part: Recording, names: &mut RunNames) {

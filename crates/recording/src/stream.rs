@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::{Channel, Error, Repair, Source, Stamp, Target, coarse::Coarse, gap};
+use crate::{Channel, Error, Repair, Source, Stamp, Target, bursts::Bursts, coarse::Coarse, gap};
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
 /// messages are delayed by fractions of a second on a robot's own network.
@@ -123,6 +123,14 @@ impl Samples {
             }
         };
         repair(stream.sort(), "messages came later than their successors; they were sorted by time");
+        if let Some(told) = stream.spread_bursts() {
+            repairs.push(Repair { place: format!("topic {topic}"), what: told });
+        }
+        let mut repair = |count: usize, what: &str| {
+            if count > 0 {
+                repairs.push(Repair { place: format!("topic {topic}"), what: format!("{count} {what}") });
+            }
+        };
         repair(stream.drop_repeats(), "messages repeat the stamp before them; the first of each was kept");
         Ok(stream)
     }
@@ -200,6 +208,20 @@ impl Stream {
             self.pick(&order);
         }
         late
+    }
+
+    /// Spreads messages that came in bursts evenly; says so.
+    fn spread_bursts(&mut self) -> Option<String> {
+        let origin_ns = *self.t_ns.first()?;
+        // Equal stamps of headers are messages that were sent twice.
+        if self.clock == BY_HEADER && self.t_ns.windows(2).any(|pair| pair[0] == pair[1]) {
+            return None;
+        }
+        let bursts = Bursts::of(&self.t_s(origin_ns))?;
+        // The first burst may begin before the first stamp.
+        let nanoseconds = |t_s: &f64| origin_ns.saturating_add((t_s * NS_PER_S).round() as i64);
+        self.t_ns = bursts.t_s.iter().map(nanoseconds).collect();
+        Some(bursts.told("messages"))
     }
 
     fn drop_repeats(&mut self) -> usize {

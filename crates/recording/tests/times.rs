@@ -130,3 +130,14 @@ fn speeds_that_change_too_slowly_for_their_times_are_doubted() {
         assert!(drive(step, 1.0).is_empty(), "{step}");
     }
 }
+
+#[test]
+fn rows_that_were_stamped_in_bursts_keep_their_drive_whole() {
+    let burst = |i: u32| 0.25 * f64::from(i / 5 + 1) + 0.0004 * f64::from(i % 5);
+    let bytes = csv((0..300).map(|i| format!("{:.4}", burst(i))));
+    let Reading { recording, report } = read(bytes, Format::Csv, "drive", None).unwrap();
+    assert_eq!(report.runs[0].gaps, 0, "{report}");
+    assert!((report.runs[0].rate_hz.unwrap() - 20.0).abs() < 0.5, "{report}");
+    assert!(report.repairs[0].what.contains("60 bursts, about 0.248 s"), "{report}");
+    assert_eq!(recording.rows(), 300);
+}
