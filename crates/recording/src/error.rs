@@ -312,6 +312,15 @@ pub enum Error {
         /// What it holds, or its `metadata.yaml` names.
         found: String,
     },
+    /// A folder of files that nothing says to be splits of one recording.
+    #[error(
+        "the folder has no metadata.yaml, and its files are no splits of one recording, as drive_0.mcap and drive_1.mcap: name them one by \
+         one; {found}"
+    )]
+    NotOneRecording {
+        /// What it holds.
+        found: String,
+    },
     /// A topic that the map names has no message that could be read.
     #[error(
         "topic {topic}: none of its {messages} messages is a {type_name} as its definition says: {reason}"

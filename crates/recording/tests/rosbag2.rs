@@ -66,7 +66,7 @@ fn one_storage_file_and_its_folder_are_the_same_recording_in_every_storage() {
 fn splits_are_one_drive_in_the_order_of_time_whatever_order_they_are_named_in() {
     for ending in ["db3", "mcap", "mcap.zstd"] {
         let folder = folder();
-        for (at, name) in ["b", "c", "a"].iter().enumerate() {
+        for (at, name) in ["s_2", "s_10", "s_1"].iter().enumerate() {
             let (first, path) = (10 * at as u32 + 1, folder.path().join(format!("{name}.{ending}")));
             let messages = drive(100 + at as u64, first..first + 10);
             match ending {
@@ -78,16 +78,28 @@ fn splits_are_one_drive_in_the_order_of_time_whatever_order_they_are_named_in() 
         let Reading { recording, report } = read_path(folder.path(), Some(&map())).unwrap();
         assert_eq!(recording.channel(Channel::Power).unwrap(), up_to(30), "{ending}");
         assert_eq!((recording.runs.len(), report.repairs.len()), (1, 0), "{ending}: {report}");
-        metadata(folder.path(), &[&format!("c.{ending}"), &format!("bag/b.{ending}")]);
+        metadata(folder.path(), &[&format!("s_10.{ending}"), &format!("bag/s_2.{ending}")]);
         let Reading { recording, report } = read_path(folder.path(), Some(&map())).unwrap();
         assert_eq!(recording.channel(Channel::Power).unwrap(), up_to(20), "{ending}");
         let told = &report.repairs[0];
         assert!(
-            told.place.starts_with("a.") && told.what.contains("metadata.yaml does not name it"),
+            told.place.starts_with("s_1.") && told.what.contains("metadata.yaml does not name it"),
             "{told:?}"
         );
-        assert_eq!(power(&folder.path().join(format!("c.{ending}"))).len(), 10, "one split for itself");
+        assert_eq!(power(&folder.path().join(format!("s_10.{ending}"))).len(), 10, "one split for itself");
     }
+}
+
+#[test]
+fn files_that_nothing_says_to_be_splits_are_not_taken_for_one_drive() {
+    let folder = folder();
+    write(&folder, "monday.mcap", &mcap(DRIVE, &drive(1, 1..=20)));
+    write(&folder, "tuesday.mcap", &mcap(DRIVE, &drive(100, 1..=20)));
+    let message = refused(folder.path());
+    assert!(
+        message.contains("no metadata.yaml") && message.contains("monday.mcap, tuesday.mcap"),
+        "{message}"
+    );
 }
 
 #[test]

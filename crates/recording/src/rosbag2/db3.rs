@@ -98,12 +98,32 @@ fn tell_of_unwritten(path: &Path, topics: &mut Topics<'_>) {
     }
 }
 
+/// Bytes of a table that are held in memory: rows of a hostile file may share their pages.
+struct Held {
+    table: &'static str,
+    bytes: usize,
+}
+
+impl Held {
+    fn add(&mut self, bytes: usize) -> Result<(), Error> {
+        self.bytes += bytes;
+        if self.bytes as u64 <= LONGEST_BYTES {
+            return Ok(());
+        }
+        let reason = format!("its texts have more than {LONGEST_BYTES} bytes, which no recorder writes");
+        Err(Error::Database { place: format!("table {}", self.table), reason })
+    }
+}
+
 fn definitions(connection: &Connection) -> Result<Definitions, Error> {
-    let mut definitions = Definitions::new();
+    let (mut definitions, mut held) = (Definitions::new(), Held { table: "message_definitions", bytes: 0 });
     if has_table(connection, "message_definitions")? {
         let query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions";
         each(connection, query, "message_definitions", MOST_TOPICS, |row| {
             let [name, encoding] = [text(row, 0)?, text(row, 1)?];
+            if let Err(error) = held.add(name.len() + bytes(row, 2)?.len()) {
+                return Ok(Err(error));
+            }
             definitions.entry(name).or_insert((encoding, bytes(row, 2)?.to_vec()));
             Ok(Ok(()))
         })?;
@@ -117,11 +137,14 @@ fn connect(
     definitions: &Definitions,
     topics: &mut Topics<'_>,
 ) -> Result<BTreeMap<i64, u32>, Error> {
-    let mut numbers = BTreeMap::new();
+    let (mut numbers, mut held) = (BTreeMap::new(), Held { table: "topics", bytes: 0 });
     let query = "SELECT id, name, type, serialization_format FROM topics";
     each(connection, query, "topics", MOST_TOPICS, |row| {
         let id: i64 = row.get(0)?;
         let [name, type_name, encoding] = [text(row, 1)?, text(row, 2)?, text(row, 3)?];
+        if let Err(error) = held.add(name.len() + type_name.len()) {
+            return Ok(Err(error));
+        }
         let number = numbers.len() as u32;
         numbers.insert(id, number);
         let (schema_encoding, definition) = match definitions.get(&type_name) {

@@ -67,7 +67,13 @@ fn files(folder: &Path, repairs: &mut Vec<Repair>) -> Result<Vec<PathBuf>, Error
     });
     let named = named(folder)?;
     if named.is_empty() {
-        return if there.is_empty() { Err(Error::NoStorage { found: listed(folder) }) } else { Ok(there) };
+        return match there.as_slice() {
+            [] => Err(Error::NoStorage { found: listed(folder) }),
+            [first, others @ ..] if others.iter().all(|other| whole_name(other) == whole_name(first)) => {
+                Ok(there)
+            }
+            _ => Err(Error::NotOneRecording { found: listed(folder) }),
+        };
     }
     let mut files = Vec::new();
     for name in &named {
@@ -119,6 +125,17 @@ fn without_compression(name: &str) -> &str {
     match name.rsplit_once('.') {
         Some((plain, ending)) if COMPRESSED.contains(&ending) => plain,
         _ => name,
+    }
+}
+
+/// The name of the recording that a file is a split of: `drive` of `drive_7.db3`.
+fn whole_name(path: &Path) -> String {
+    let name = short_name(path);
+    let plain = without_compression(&name);
+    let stem = plain.rsplit_once('.').map_or(plain, |(stem, _)| stem);
+    match stem.rsplit_once('_') {
+        Some((whole, number)) if number.bytes().all(|byte| byte.is_ascii_digit()) => whole.to_owned(),
+        _ => stem.to_owned(),
     }
 }
 
