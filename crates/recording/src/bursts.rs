@@ -3,6 +3,8 @@
 //! A sample that has no stamp of its own has the time at which it was received or written. Where a driver, a network or a buffer hands on
 //! several at once, these times stand close together and then pause; the samples were taken evenly all the while.
 
+use crate::{Recording, Repair, gap};
+
 /// Longest time from burst to burst \[s\]: buffers and polls are emptied more often, and longer pauses are those of a drive.
 const LONGEST_PERIOD_S: f64 = 2.0;
 
@@ -60,6 +62,25 @@ impl Bursts {
             "{samples} came in {} bursts, about {:.3} s from one to the next; their times were spread evenly between the bursts",
             self.count, self.period_s
         )
+    }
+}
+
+/// Spreads the rows of runs that came in bursts. Rows that hold some channels each are not of one source.
+pub(crate) fn spread_bursts(recording: &mut Recording, repairs: &mut Vec<Repair>) {
+    if recording.channels.values().any(|values| values.iter().any(|value| value.is_nan())) {
+        return;
+    }
+    for run in &mut recording.runs {
+        let t_s = &mut recording.t_s[run.rows.clone()];
+        // Times that repeat are rounded, or those of several drives.
+        if t_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+            continue;
+        }
+        if let Some(bursts) = Bursts::of(t_s) {
+            repairs.push(Repair { place: format!("run `{}`", run.name), what: bursts.told("rows") });
+            t_s.copy_from_slice(&bursts.t_s);
+            run.gap_s = gap::threshold_s(t_s);
+        }
     }
 }
 

@@ -27,6 +27,7 @@ pub(crate) fn read(
         return Err(Error::Empty { found: "an empty file".into() });
     }
     let headers = text.headers();
+    text.refuse_what_is_no_header(&headers)?;
     let mut plan = Plan::new(headers.clone(), map)?;
     let mut table = Table::new(&plan, budget.clone());
     let mut rows = Rows::new(text.dialect(), &headers);
@@ -65,7 +66,8 @@ pub(crate) fn read(
                     values.push(read.map_err(|remedy| number_error(&headers[index], cell, line, remedy))?);
                 }
                 Column::Labels(labels) => {
-                    if !labels.push(String::from_utf8_lossy(cell).trim()) {
+                    let is_room = labels.push(String::from_utf8_lossy(cell).trim());
+                    if !is_room {
                         let (position, column) = (Position::Line(line), headers[index].clone());
                         return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
                     }

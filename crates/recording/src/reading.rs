@@ -188,7 +188,8 @@ pub fn read_paths_watched<P: AsRef<Path>>(
         let reading = match tables_of(path.as_ref()).as_slice() {
             [path] => read_path_within(path, map, watch, room(path))?,
             tables => {
-                let parts = tables.iter().map(|path| Ok((path.clone(), read_table(path, map, watch, room(path))?)));
+                let parts =
+                    tables.iter().map(|path| Ok((path.clone(), read_table(path, map, watch, room(path))?)));
                 join_in_time(parts.collect::<Result<_, Error>>()?, map, &Looks::new(watch))?
             }
         };

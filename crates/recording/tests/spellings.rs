@@ -141,6 +141,11 @@ fn what_could_be_read_in_two_ways_is_refused_by_line_and_remedy() {
             table(",").replacen('\n', "\ntime,left speed,right speed,power\n", 1),
             "which is no unit that is known",
         ),
+        (table(",")[HEADER.join(",").len() + 1..].into(), "line 1: there is no header"),
+        (
+            format!("Device: X1\nDate: 14.11.2023\n\n{}", table(",")),
+            "line 1: the header seems to be line 4; remove what is above it",
+        ),
         (table(",") + &table(","), "line 42: the header stands here again"),
         (
             rounded(0),
