@@ -96,14 +96,22 @@ fn step_of_half_the_time(steps_s: &[f64]) -> Option<f64> {
     })
 }
 
-/// The samples of each burst at even steps up to its last, which arrived when it was taken; behind a pause, at those of a period.
+/// The samples of each burst at even steps up to its last, which arrived when it was taken; those of the first burst, and behind a pause,
+/// at the step of most.
 fn spread(t_s: &[f64], begins: &[usize], period_s: f64) -> Vec<f64> {
+    let mut sizes: Vec<usize> = begins.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    sizes.sort_unstable();
+    let usual_step_s = period_s / sizes[sizes.len() / 2] as f64;
     let mut even_s: Vec<f64> = Vec::with_capacity(t_s.len());
     for pair in begins.windows(2) {
         let (size, last_s) = (pair[1] - pair[0], t_s[pair[1] - 1]);
         let since_s = even_s.last().map_or(f64::INFINITY, |before_s| last_s - before_s);
-        let lasts_s = if since_s <= 2.0 * period_s { since_s } else { period_s };
-        even_s.extend((1..=size).map(|i| last_s - lasts_s * (size - i) as f64 / size as f64));
+        let step_s = if since_s <= 2.0 * period_s {
+            since_s / size as f64
+        } else {
+            usual_step_s.min(since_s / size as f64)
+        };
+        even_s.extend((1..=size).map(|i| last_s - step_s * (size - i) as f64));
     }
     even_s
 }

@@ -54,7 +54,7 @@ pub(crate) fn read(
                 Column::Numbers(values) if kind == Kind::Perhaps => match rows.spelling.perhaps(cell) {
                     Some(value) => values.push(value),
                     None => {
-                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"))
+                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"));
                     }
                 },
                 Column::Numbers(values) => {

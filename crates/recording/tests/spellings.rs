@@ -107,7 +107,7 @@ fn missing_values_are_gaps_however_they_are_spelled() {
     for missing in ["NA", "N/A", "null", "None", "NaN", "-nan(ind)", "#N/A"] {
         let text = table(",").replace("\n1.00,0.4,", &format!("\n1.00,{missing},"));
         let report = csv(text).unwrap().report;
-        let told = "column v_left_mps: 1 empty cells between its samples were interpolated";
+        let told = "empty cells: 1 of v_left_mps were interpolated";
         assert!(report.to_string().contains(told), "{missing}: {report}");
     }
 }
