@@ -275,6 +275,16 @@ impl Plan {
         Ok(())
     }
 
+    /// Takes note that a column holds times of the calendar or the clock, which were read in seconds: a unit in a map is that of numbers.
+    pub(crate) fn calendar_time(&mut self, column: usize) {
+        let is_time = |entry: &&mut Entry| entry.target == Target::Time && entry.columns == [column];
+        for entry in self.entries.iter_mut().filter(is_time) {
+            entry.conversion = Conversion::IDENTITY;
+            entry.unit = units::si_unit(Quantity::Time).to_owned();
+            entry.is_unit_given = false;
+        }
+    }
+
     /// The time column of the file in seconds, its name, and the unit that a map gives.
     fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String, Option<String>), Error> {
         let Some(at) = self.entries.iter().position(|entry| entry.target == Target::Time) else {

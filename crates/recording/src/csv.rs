@@ -77,9 +77,8 @@ pub(crate) fn read(
         }
         table.end_rows(1)?;
     }
-    let calendar = rows.spelling.calendar();
-    if let Some(time) = plan.time().filter(|_| calendar.is_some()) {
-        plan.typed_time(time, "s")?;
+    if let (Some(time), Some(_)) = (plan.time(), rows.spelling.calendar()) {
+        plan.calendar_time(time);
     }
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(rows.repairs());

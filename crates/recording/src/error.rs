@@ -22,7 +22,7 @@ pub enum Error {
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
     #[error(
-        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap or .bag"
+        "`{ending}` is no recording: the name must end in .csv, .parquet, .mcap or .bag, or .csv.gz or .csv.zst"
     )]
     UnknownFormat {
         /// The ending found.
