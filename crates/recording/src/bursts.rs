@@ -3,6 +3,8 @@
 //! A sample that has no stamp of its own has the time at which it was received or written. Where a driver, a network or a buffer hands on
 //! several at once, these times stand close together and then pause; the samples were taken evenly all the while.
 
+use crate::{Recording, Repair, gap};
+
 /// Longest time from burst to burst \[s\]: buffers and polls are emptied more often, and longer pauses are those of a drive.
 const LONGEST_PERIOD_S: f64 = 2.0;
 
@@ -63,6 +65,25 @@ impl Bursts {
     }
 }
 
+/// Spreads the rows of runs that came in bursts. Rows that hold some channels each are not of one source.
+pub(crate) fn spread_bursts(recording: &mut Recording, repairs: &mut Vec<Repair>) {
+    if recording.channels.values().any(|values| values.iter().any(|value| value.is_nan())) {
+        return;
+    }
+    for run in &mut recording.runs {
+        let t_s = &mut recording.t_s[run.rows.clone()];
+        // Times that repeat are rounded, or those of several drives.
+        if t_s.windows(2).any(|pair| pair[1] <= pair[0]) {
+            continue;
+        }
+        if let Some(bursts) = Bursts::of(t_s) {
+            repairs.push(Repair { place: format!("run `{}`", run.name), what: bursts.told("rows") });
+            t_s.copy_from_slice(&bursts.t_s);
+            run.gap_s = gap::threshold_s(t_s);
+        }
+    }
+}
+
 /// The step within which half of all time passes, counted from the shortest.
 fn step_of_half_the_time(steps_s: &[f64]) -> Option<f64> {
     let mut sorted = steps_s.to_vec();
@@ -75,14 +96,22 @@ fn step_of_half_the_time(steps_s: &[f64]) -> Option<f64> {
     })
 }
 
-/// The samples of each burst at even steps up to its last, which arrived when it was taken; behind a pause, at those of a period.
+/// The samples of each burst at even steps up to its last, which arrived when it was taken; those of the first burst, and behind a pause,
+/// at the step of most.
 fn spread(t_s: &[f64], begins: &[usize], period_s: f64) -> Vec<f64> {
+    let mut sizes: Vec<usize> = begins.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    sizes.sort_unstable();
+    let usual_step_s = period_s / sizes[sizes.len() / 2] as f64;
     let mut even_s: Vec<f64> = Vec::with_capacity(t_s.len());
     for pair in begins.windows(2) {
         let (size, last_s) = (pair[1] - pair[0], t_s[pair[1] - 1]);
         let since_s = even_s.last().map_or(f64::INFINITY, |before_s| last_s - before_s);
-        let lasts_s = if since_s <= 2.0 * period_s { since_s } else { period_s };
-        even_s.extend((1..=size).map(|i| last_s - lasts_s * (size - i) as f64 / size as f64));
+        let step_s = if since_s <= 2.0 * period_s {
+            since_s / size as f64
+        } else {
+            usual_step_s.min(since_s / size as f64)
+        };
+        even_s.extend((1..=size).map(|i| last_s - step_s * (size - i) as f64));
     }
     even_s
 }

@@ -3,13 +3,12 @@
 use std::mem;
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair,
-    bursts::Bursts,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording,
+    bursts::spread_bursts,
     clock::{TimeSource, check_time},
     coarse::period,
     divide::divide,
     error::Position,
-    gap,
     label_column::LabelColumn,
     map::{Place, Target},
     own_clocks::onto_one_clock,
@@ -228,7 +227,7 @@ impl Plan {
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             looks.go_on()?;
-            match self.combined(&entry, &mut columns) {
+            match self.combined(&entry, &mut columns, &recording.t_s) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
                     runs = Some(labels.into_labels());
                 }
@@ -287,6 +286,16 @@ impl Plan {
         Ok(())
     }
 
+    /// Takes note that a column holds times of the calendar or the clock, which were read in seconds: a unit in a map is that of numbers.
+    pub(crate) fn calendar_time(&mut self, column: usize) {
+        let is_time = |entry: &&mut Entry| entry.target == Target::Time && entry.columns == [column];
+        for entry in self.entries.iter_mut().filter(is_time) {
+            entry.conversion = Conversion::IDENTITY;
+            entry.unit = units::si_unit(Quantity::Time).to_owned();
+            entry.is_unit_given = false;
+        }
+    }
+
     /// The time column of the file in seconds, its name, and the unit that a map gives.
     fn take_time(&mut self, columns: &mut [Column]) -> Result<(Vec<f64>, String, Option<String>), Error> {
         let Some(at) = self.entries.iter().position(|entry| entry.target == Target::Time) else {
@@ -294,7 +303,7 @@ impl Plan {
         };
         let entry = self.entries.remove(at);
         let name = self.names(&entry);
-        match self.combined(&entry, columns) {
+        match self.combined(&entry, columns, &[]) {
             Ok(Column::Numbers(t_s)) => Ok((t_s, name, entry.is_unit_given.then_some(entry.unit))),
             Ok(Column::Unusable(reason)) | Err(reason) => Err(Error::Field {
                 topic: "of the table".into(),
@@ -310,8 +319,8 @@ impl Plan {
         names.join(", ")
     }
 
-    /// The one column that an entry makes of its columns.
-    fn combined(&self, entry: &Entry, columns: &mut [Column]) -> Result<Column, String> {
+    /// The one column that an entry makes of its columns, in rows of these times.
+    fn combined(&self, entry: &Entry, columns: &mut [Column], t_s: &[f64]) -> Result<Column, String> {
         if let &[only] = entry.columns.as_slice() {
             // One column is moved, which spares a copy of the whole file.
             let taken = mem::replace(&mut columns[only], Column::Unusable("it is used twice".into()));
@@ -332,27 +341,7 @@ impl Plan {
                 _ => return Err(format!("column `{}` holds no numbers", self.headers[column])),
             }
         }
-        let rows = parts.iter().map(|part| part.len()).min().unwrap_or(0);
-        let at = |row: usize| entry.combine.of(parts.iter().map(|part| part[row]), entry.separation_m);
-        Ok(Column::Numbers((0..rows).map(|row| entry.conversion.apply(at(row))).collect()))
-    }
-}
-
-/// Spreads the rows of runs that came in bursts. Rows that hold some channels each are not of one source.
-fn spread_bursts(recording: &mut Recording, repairs: &mut Vec<Repair>) {
-    if recording.channels.values().any(|values| values.iter().any(|value| value.is_nan())) {
-        return;
-    }
-    for run in &mut recording.runs {
-        let t_s = &mut recording.t_s[run.rows.clone()];
-        // Times that repeat are rounded, or those of several drives.
-        if t_s.windows(2).any(|pair| pair[1] <= pair[0]) {
-            continue;
-        }
-        if let Some(bursts) = Bursts::of(t_s) {
-            repairs.push(Repair { place: format!("run `{}`", run.name), what: bursts.told("rows") });
-            t_s.copy_from_slice(&bursts.t_s);
-            run.gap_s = gap::threshold_s(t_s);
-        }
+        let values = entry.combine.of_columns(t_s, &parts, entry.separation_m);
+        Ok(Column::Numbers(values.into_iter().map(|value| entry.conversion.apply(value)).collect()))
     }
 }

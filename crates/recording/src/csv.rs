@@ -27,6 +27,7 @@ pub(crate) fn read(
         return Err(Error::Empty { found: "an empty file".into() });
     }
     let headers = text.headers();
+    text.refuse_what_is_no_header(&headers)?;
     let mut plan = Plan::new(headers.clone(), map)?;
     let mut table = Table::new(&plan, budget.clone());
     let mut rows = Rows::new(text.dialect(), &headers);
@@ -53,7 +54,7 @@ pub(crate) fn read(
                 Column::Numbers(values) if kind == Kind::Perhaps => match rows.spelling.perhaps(cell) {
                     Some(value) => values.push(value),
                     None => {
-                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"))
+                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"));
                     }
                 },
                 Column::Numbers(values) => {
@@ -65,7 +66,8 @@ pub(crate) fn read(
                     values.push(read.map_err(|remedy| number_error(&headers[index], cell, line, remedy))?);
                 }
                 Column::Labels(labels) => {
-                    if !labels.push(String::from_utf8_lossy(cell).trim()) {
+                    let is_room = labels.push(String::from_utf8_lossy(cell).trim());
+                    if !is_room {
                         let (position, column) = (Position::Line(line), headers[index].clone());
                         return Err(Error::TooManyNames { position, column, most: MOST_NAMES });
                     }
@@ -75,9 +77,8 @@ pub(crate) fn read(
         }
         table.end_rows(1)?;
     }
-    let calendar = rows.spelling.calendar();
-    if let Some(time) = plan.time().filter(|_| calendar.is_some()) {
-        plan.typed_time(time, "s")?;
+    if let (Some(time), Some(_)) = (plan.time(), rows.spelling.calendar()) {
+        plan.calendar_time(time);
     }
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(rows.repairs());

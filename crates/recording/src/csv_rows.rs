@@ -100,7 +100,7 @@ impl Rows {
             self.repair(line, "numbers here and below were read with a decimal comma");
         }
         if let Some(line) = self.spelling.calendar() {
-            self.repair(line, "times here and below were read as dates or times of the clock, by UTC where no offset is given");
+            self.repair(line, "times here and below were read as dates or times of the clock, by UTC where no offset is given and whatever unit a map gives");
         }
         self.repairs
     }

@@ -92,6 +92,25 @@ impl CsvText {
         self.record().iter().map(text).collect()
     }
 
+    /// Refuses a first line that is a row of numbers, or something else above the header.
+    pub(crate) fn refuse_what_is_no_header(&self, headers: &[String]) -> Result<(), Error> {
+        let line = self.dialect.lines_before + 1;
+        let is_number = |cell: &String| cell.is_empty() || cell.replace(',', ".").parse::<f64>().is_ok();
+        if headers.iter().all(is_number) && headers.iter().any(|cell| !cell.is_empty()) {
+            let message = "there is no header; write the names of the columns above, as `t_s,v_left_mps,v_right_mps,power_w`";
+            return Err(Error::Csv { line, message: message.into() });
+        }
+        match self.dialect.later_header {
+            Some(later) => {
+                let message = format!(
+                    "the header seems to be line {later}; remove what is above it, or begin those lines with `#`"
+                );
+                Err(Error::Csv { line, message })
+            }
+            None => Ok(()),
+        }
+    }
+
     fn error(&self, error: &::csv::Error) -> Error {
         let line = self.dialect.lines_before + error.position().map_or(1, ::csv::Position::line);
         match error.kind() {

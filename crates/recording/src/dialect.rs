@@ -17,7 +17,15 @@ pub(crate) struct Dialect {
     pub(crate) lines_before: u64,
     /// Remarks before the header.
     pub(crate) remarks: usize,
+    /// A later line, from 1, that names the time as a header does, where the header does not.
+    pub(crate) later_header: Option<u64>,
 }
+
+/// Name of the time in a header.
+const TIME: &[u8] = b"t_s";
+
+/// Lines in which a header is looked for.
+const LINES_LOOKED_AT: usize = 100;
 
 /// What separates cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +75,17 @@ impl Dialect {
     /// The dialect of a file by its beginning. Blank lines, remarks and Excel's `sep=;` may stand before the header; where numbers
     /// follow remarks at once, the last remark is the header, as NumPy writes it.
     pub(crate) fn of(beginning: &[u8]) -> Dialect {
+        let dialect = Dialect::by_header(beginning);
+        let names_time = |line: &&[u8]| {
+            line.split(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_').any(|word| word == TIME)
+        };
+        let later = beginning[dialect.header_at..].split(|byte| *byte == b'\n').take(LINES_LOOKED_AT);
+        let at =
+            later.zip(1u64..).find(|(line, _)| names_time(line)).map(|(_, line)| dialect.lines_before + line);
+        Dialect { later_header: at.filter(|line| *line > dialect.lines_before + 1), ..dialect }
+    }
+
+    fn by_header(beginning: &[u8]) -> Dialect {
         let (mut at, mut lines_before, mut remarks) = (0, 0, 0);
         let mut given = None;
         let mut last_remark: Option<(Dialect, &[u8])> = None;
@@ -75,7 +94,10 @@ impl Dialect {
             if let Some(header) = remark(line) {
                 let header_at = at + line.len() - header.len();
                 let separator = given.unwrap_or_else(|| Separator::of(header));
-                last_remark = Some((Dialect { separator, header_at, lines_before, remarks }, header));
+                last_remark = Some((
+                    Dialect { separator, header_at, lines_before, remarks, later_header: None },
+                    header,
+                ));
                 remarks += 1;
             } else if let (true, Some(separator)) = (lines_before == 0, excel_separator(line)) {
                 given = Some(separator);
@@ -87,12 +109,18 @@ impl Dialect {
                     return dialect;
                 }
                 let separator = given.unwrap_or_else(|| Separator::of(text));
-                return Dialect { separator, header_at: at, lines_before, remarks };
+                return Dialect { separator, header_at: at, lines_before, remarks, later_header: None };
             }
             at += line.len();
             lines_before += 1;
         }
-        Dialect { separator: Separator::Byte(b','), header_at: 0, lines_before: 0, remarks: 0 }
+        Dialect {
+            separator: Separator::Byte(b','),
+            header_at: 0,
+            lines_before: 0,
+            remarks: 0,
+            later_header: None,
+        }
     }
 }
 

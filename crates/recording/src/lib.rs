@@ -3,8 +3,8 @@
 //! CSV and Parquet hold rows already; ROS 2 recordings (MCAP, SQLite) and ROS 1 bags hold streams, which a [`Map`] names and [`align`]
 //! brings onto one clock. Every reading comes with a [`ReadingReport`]: what was found, used, left aside, repaired, missing
 //! and suspicious. Axes and signs, for the whole program: heading counter-clockwise from +x (east), pitch positive nose-up,
-//! roll positive left side up, yaw rate positive turning left, power positive when drawn from the battery. A gap is NaN and
-//! stays a gap; nothing is extrapolated. This crate knows nothing of models.
+//! roll positive left side up, yaw rate positive turning left, power positive when drawn from the battery. A gap is NaN
+//! and stays one where it is longer than three steps of its channel; nothing is extrapolated. This crate knows nothing of models.
 
 pub mod align;
 mod arrow_schema;

@@ -39,6 +39,7 @@ pub(crate) fn onto_one_clock(
     let clocks: Vec<Clock> = recording.runs.iter().map(|run| Clock::of(recording, run)).collect();
     repairs.extend(clocks.iter().filter_map(|clock| clock.told(recording)));
     let is_thinner = clocks.iter().any(|clock| clock.base.is_some());
+    let (mut all_filled, mut all_empty) = (Vec::new(), Vec::new());
     for (channel, values) in &mut recording.channels {
         looks.go_on()?;
         let between = if *channel == Channel::Heading { Between::ShorterArc } else { Between::Line };
@@ -47,8 +48,12 @@ pub(crate) fn onto_one_clock(
             filled += clock.read(&recording.t_s, values, max_gap_s, between, &mut moved);
         }
         *values = moved;
-        repairs.extend(told(*channel, values, filled));
+        all_empty.extend(told_empty(*channel, values));
+        if filled > 0 {
+            all_filled.push((*channel, filled));
+        }
     }
+    repairs.extend(told_filled(&all_filled).into_iter().chain(all_empty));
     if is_thinner {
         for values in recording.aside.values_mut() {
             looks.go_on()?;
@@ -63,30 +68,29 @@ pub(crate) fn onto_one_clock(
     Ok(())
 }
 
-/// What was filled in a channel, and what stays empty.
-fn told(channel: Channel, values: &[f64], filled: usize) -> Vec<Repair> {
+/// What was filled in which channels.
+fn told_filled(filled: &[(Channel, usize)]) -> Option<Repair> {
+    let counts: Vec<String> = filled.iter().map(|(channel, count)| format!("{count} of {channel}")).collect();
+    let what = format!(
+        "{} were interpolated between samples of the column, over {} of its own steps at most",
+        counts.join(", "),
+        gap::GAP_STEPS
+    );
+    (!counts.is_empty()).then(|| Repair { place: "empty cells".into(), what })
+}
+
+/// What stays empty of a channel that a model needs.
+fn told_empty(channel: Channel, values: &[f64]) -> Option<Repair> {
     let is_needed =
         channel.tells_power() || matches!(channel, Channel::LeftSpeed | Channel::RightSpeed | Channel::Pitch);
     let empty = values.iter().filter(|value| value.is_nan()).count();
-    let repair = |what: String| Repair { place: format!("column {channel}"), what };
-    let mut told = Vec::new();
-    if filled > 0 {
-        told.push(repair(format!(
-            "{filled} empty cells between its samples were interpolated, over {} of its own steps at most",
-            gap::GAP_STEPS
-        )));
-    }
-    if is_needed
-        && values.len() >= TELLING_ROWS
-        && empty < values.len()
-        && empty as f64 > TELLING_SHARE * values.len() as f64
-    {
-        told.push(repair(format!(
-            "{empty} of {} rows have no value, in holes that are too long to interpolate over; no energy is counted there",
-            values.len()
-        )));
-    }
-    told
+    let is_telling = values.len() >= TELLING_ROWS && empty as f64 > TELLING_SHARE * values.len() as f64;
+    let what = format!(
+        "{empty} of {} rows have no value, in holes that are too long to interpolate over; no energy is counted there",
+        values.len()
+    );
+    (is_needed && is_telling && empty < values.len())
+        .then(|| Repair { place: format!("column {channel}"), what })
 }
 
 /// Takes the rows of the clocks for times, labels and runs.
@@ -291,7 +295,7 @@ mod tests {
         assert_relative_eq!(power[100], power_w(10.0), epsilon = 0.1);
         let empty: Vec<usize> = (0..600).filter(|row| power[*row].is_nan()).collect();
         assert_eq!((recording.rows(), empty.first(), empty.last()), (600, Some(&200), Some(&300)));
-        assert!(repairs[0].what.starts_with("1 empty cells"), "{repairs:?}");
+        assert!(repairs[0].what.starts_with("1 of power_w were interpolated"), "{repairs:?}");
         assert!(repairs[1].what.starts_with("101 of 600 rows have no value"), "{repairs:?}");
     }
 

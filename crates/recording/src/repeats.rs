@@ -5,8 +5,8 @@ use crate::gap::median_step_s;
 /// Fewer repeats are rows that were written twice.
 const LEAST_REPEATS: usize = 3;
 
-/// Rows of which at least one is a repeat, for times to be taken as rounded.
-const ROWS_PER_REPEAT: usize = 4;
+/// Rows of which at least one is a repeat, for times to be taken as rounded: 11 Hz in tenths of a second repeats one of eleven.
+const ROWS_PER_REPEAT: usize = 20;
 
 /// What of a run's times is equal.
 #[derive(Clone, Copy, Debug, PartialEq)]

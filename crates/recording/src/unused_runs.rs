@@ -28,10 +28,19 @@ impl Recording {
 
 /// Tells in the reports of files whose recordings were put behind one another which of their runs are left out, and why.
 pub(crate) fn tell_unused_runs(joined: &Recording, reports: &mut [ReadingReport]) {
-    let files = reports.iter().enumerate().flat_map(|(file, report)| vec![file; report.runs.len()]);
-    let files: Vec<usize> = files.collect();
+    let own = |(file, report): (usize, &ReadingReport)| -> Vec<(usize, String)> {
+        report.runs.iter().map(|run| (file, run.run.clone())).collect()
+    };
+    let runs: Vec<(usize, String)> = reports.iter().enumerate().flat_map(own).collect();
     for (run, lacking) in joined.unused_runs() {
-        let (Some(&file), Some(&channel)) = (files.get(run), lacking.first()) else { continue };
+        let (Some((file, own_name)), Some(&channel)) = (runs.get(run), lacking.first()) else { continue };
+        let file = *file;
+        let is_told = |doubt: &Suspicion| {
+            doubt.run.as_ref() == Some(own_name) && doubt.channel == channel && doubt.kind == Kind::Sparse
+        };
+        if reports.get(file).is_none_or(|report| report.suspicions.iter().any(is_told)) {
+            continue;
+        }
         let names: Vec<&str> = lacking.iter().map(|channel| channel.name()).collect();
         let gives = |report: &&ReadingReport| report.channels.iter().any(|used| used.channel == channel);
         let other = reports.iter().find(gives).map_or_else(String::new, |report| report.source.clone());

@@ -97,9 +97,11 @@ fn dates_and_clocks_are_seconds_a_quarter_apart() {
         let source = format!(r#"{{"channel": "t_s", "column": "t_s", "unit": "{unit}"}}"#);
         Map::from_json(&format!(r#"{{"name": "lab", "sources": [{source}]}}"#)).unwrap()
     };
-    let read = |unit| read(calendar(",", date).into_bytes(), Format::Csv, "drive", Some(&map(unit)));
-    assert_eq!(read("s").unwrap().recording.rows(), 40);
-    assert!(read("ns").unwrap_err().to_string().contains("given as `ns`"));
+    // The unit of a map is that of numbers.
+    for unit in ["s", "ns"] {
+        let read = read(calendar(",", date).into_bytes(), Format::Csv, "drive", Some(&map(unit))).unwrap();
+        assert_eq!((read.recording.rows(), read.recording.t_s[4]), (40, 1.7e9 + 1.0), "{unit}");
+    }
 }
 
 #[test]
@@ -107,7 +109,7 @@ fn missing_values_are_gaps_however_they_are_spelled() {
     for missing in ["NA", "N/A", "null", "None", "NaN", "-nan(ind)", "#N/A"] {
         let text = table(",").replace("\n1.00,0.4,", &format!("\n1.00,{missing},"));
         let report = csv(text).unwrap().report;
-        let told = "column v_left_mps: 1 empty cells between its samples were interpolated";
+        let told = "empty cells: 1 of v_left_mps were interpolated";
         assert!(report.to_string().contains(told), "{missing}: {report}");
     }
 }
@@ -140,6 +142,11 @@ fn what_could_be_read_in_two_ways_is_refused_by_line_and_remedy() {
         (
             table(",").replacen('\n', "\ntime,left speed,right speed,power\n", 1),
             "which is no unit that is known",
+        ),
+        (table(",")[HEADER.join(",").len() + 1..].into(), "line 1: there is no header"),
+        (
+            format!("Device: X1\nDate: 14.11.2023\n\n{}", table(",")),
+            "line 1: the header seems to be line 4; remove what is above it",
         ),
         (table(",") + &table(","), "line 42: the header stands here again"),
         (
