@@ -119,7 +119,7 @@ mod tests {
         let power_w = Combine::Product.of_columns(&t_s, &[&current_a, &voltage_v], f64::NAN);
         let known: Vec<Option<f64>> = power_w.iter().map(|w| (!w.is_nan()).then_some(*w)).collect();
         assert_eq!(known, [None, None, Some(30.0), None, Some(75.0), None, None, None]);
-        assert_eq!(Combine::Sum.of_columns(&[], &[&[1.0, 2.0], &[3.0, nan]])[0], 4.0);
+        assert_eq!(Combine::Sum.of_columns(&[], &[&[1.0, 2.0], &[3.0, nan]], f64::NAN)[0], 4.0);
         assert_eq!(increasing(&[0.0, 1.0, 0.0, 1.0, 1.0]), [0..2, 2..4, 4..5]);
     }
 }
