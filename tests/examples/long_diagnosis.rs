@@ -29,7 +29,7 @@ fn main() {
     let began = Instant::now();
     let found = diagnose(&Question::new(&robot, &suspect, Some(&healthy)), &|name, share| {
         if std::env::args().nth(2).is_some() {
-            eprintln!("{:6.2} s {share:4.2} {name}", began.elapsed().as_secs_f64())
+            eprintln!("{:6.2} s {share:4.2} {name}", began.elapsed().as_secs_f64());
         }
     })
     .unwrap();

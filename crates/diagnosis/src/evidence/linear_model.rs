@@ -204,7 +204,7 @@ impl LinearModel {
     }
 
     /// The last column of a group apart from those before it.
-    pub(crate) fn split_last(group: Group) -> (Group, Group) {
+    pub(crate) fn split_last(group: &Group) -> (Group, Group) {
         let first = group.columns.ncols() - 1;
         let apart = |all: &DMatrix<f64>, from: usize, count: usize| all.columns(from, count).into_owned();
         let part = |from: usize, count: usize| Group {

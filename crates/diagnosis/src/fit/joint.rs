@@ -291,7 +291,7 @@ impl<'a> Joint<'a> {
         let rows = self.observed.test_rows;
         if left.len() == rows {
             white.push(left);
-            return LinearModel::split_last(self.model.group(matrix(rows, &white)));
+            return LinearModel::split_last(&self.model.group(matrix(rows, &white)));
         }
         (self.model.group(matrix(rows, &white)), self.model.group(DMatrix::from_columns(&[left])))
     }
