@@ -9,6 +9,18 @@ use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubt
 /// Name of the doubt that runs which were not fitted cast on a fit.
 const HELD_OUT: &str = "held_out";
 
+/// Driving of which a share of variance can be told \[s\]: of less, one manoeuvre decides.
+const LEAST_JUDGED_S: f64 = 60.0;
+
+/// From the first row of each run to its last, together \[s\].
+fn driven_s(recording: &Recording) -> f64 {
+    let of_run = |run: &recording::Run| {
+        let t_s = recording.t_s.get(run.rows.clone()).unwrap_or_default();
+        t_s.last().zip(t_s.first()).map_or(0.0, |(last, first)| last - first)
+    };
+    recording.runs.iter().map(of_run).sum()
+}
+
 impl Options {
     fn is_overruled(&self, name: &str) -> bool {
         self.despite.iter().any(|other| other == name)
@@ -60,9 +72,21 @@ impl Method {
             Method::Fit => calibrate_watched(robot, recording, options, watch),
             Method::DogruMarques => dogru_marques::calibrate(robot, recording, watch),
         }?;
+        if recording.surface.is_none() {
+            let ground = &robot.default_surface;
+            found.notes.push(format!(
+                "the recordings do not name their ground: it was taken for `{ground}`, the robot's default"
+            ));
+        }
         found.notes.extend(overruled.iter().map(|doubt| format!("calibrated despite a doubt: {doubt}")));
         match &found.held_out {
-            Some(judged) if judged.r2 < 0.0 && !options.is_overruled(HELD_OUT) => {
+            // Where nothing was determined nothing was fitted.
+            Some(judged)
+                if judged.r2 < 0.0
+                    && driven_s(recording) >= LEAST_JUDGED_S
+                    && found.parameters.iter().any(|parameter| parameter.determined)
+                    && !options.is_overruled(HELD_OUT) =>
+            {
                 Err(Error::Contradicted { r2: judged.r2, rmse_w: judged.rmse_w })
             }
             _ => Ok(found),

@@ -50,6 +50,8 @@ enum Command {
     Predict(commands::predict::Arguments),
     /// Fit a robot to its recordings
     Calibrate(commands::calibrate::Arguments),
+    /// Tell what a log holds, and propose a map that reads it
+    Inspect(commands::inspect::Arguments),
     /// Find where drives differ from the model, and which physics was left out
     Diagnose(commands::diagnose::Arguments),
     /// Record a drive through a world of its own, which may conceal effects
@@ -87,6 +89,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Mission(arguments) => commands::mission::run(arguments),
         Command::Predict(arguments) => commands::predict::run(arguments),
         Command::Calibrate(arguments) => commands::calibrate::run(arguments),
+        Command::Inspect(arguments) => commands::inspect::run(arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments),
         Command::Prove(arguments) => commands::prove::run(arguments),

@@ -19,7 +19,7 @@ pub(crate) struct Recorded {
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
     /// Map file that names columns or topics and their units, or the built-in husky or borealtc
-    #[arg(long)]
+    #[arg(long, visible_alias = "columns")]
     map: Option<String>,
     /// The surface of ground that the recordings do not label, instead of the robot's default one
     #[arg(long)]
@@ -58,7 +58,7 @@ impl Recorded {
         let (recording, reports) = read.map_err(|error| BadInput(error.to_string()))?;
         reports.iter().for_each(warn);
         let mut recording = self.chosen(recording)?;
-        self.label(&mut recording, robot);
+        self.label(&mut recording);
         Ok(recording)
     }
 
@@ -78,17 +78,10 @@ impl Recorded {
         Ok(recording)
     }
 
-    /// Ground without a label is what was asked for, else the robot's default, which is said.
-    fn label(&self, recording: &mut Recording, robot: &Robot) {
-        if recording.surface.is_some() {
-            return;
-        }
-        match &self.surface {
-            Some(name) => recording.surface = Some(Labels::constant(name, recording.rows())),
-            None => output::note(format_args!(
-                "the recordings do not say on which ground they were made; it is taken for `{}`, the robot's default (--surface NAME for another)",
-                robot.default_surface
-            )),
+    /// Ground without a label is what was asked for, else the robot's default.
+    fn label(&self, recording: &mut Recording) {
+        if let (None, Some(name)) = (&recording.surface, &self.surface) {
+            recording.surface = Some(Labels::constant(name, recording.rows()));
         }
     }
 

@@ -415,6 +415,15 @@ impl Error {
         Error::InFile { path: path.display().to_string(), source: Box::new(self) }
     }
 
+    /// The columns or topics of the file, where something is missing.
+    pub(crate) fn found(&self) -> Option<&[String]> {
+        match self {
+            Error::Missing { found, .. } => Some(found),
+            Error::InFile { source, .. } => source.found(),
+            _ => None,
+        }
+    }
+
     /// Says why topics that the map names were not read, where something is missing.
     pub(crate) fn with_unread(mut self, reasons: Vec<String>) -> Error {
         if let Error::Missing { unread, .. } = &mut self {

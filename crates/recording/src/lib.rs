@@ -30,6 +30,7 @@ mod error;
 mod field;
 mod format;
 mod gap;
+pub mod inspect;
 mod joined;
 mod label_column;
 mod layout;

@@ -123,6 +123,11 @@ fn read_table(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Resu
     read().map_err(|error: Error| error.in_file(path))
 }
 
+/// The columns of a table by a map, whatever they lack of a recording.
+pub(crate) fn read_part(path: &Path, map: &Map) -> Result<Recording, Error> {
+    Ok(read_table(path, Some(map), &unwatched(), Room::default())?.recording)
+}
+
 /// A watch that lets everything pass.
 pub fn unwatched() -> Watch {
     Arc::new(|_| ControlFlow::Continue(()))

@@ -131,7 +131,9 @@ fn the_content_of_a_file_says_what_it_is_not_its_name() {
     assert_eq!(copied.recording.channel(Channel::Power).unwrap(), up_to(20));
     assert_eq!(copied.report.format, "ROS 2 SQLite bag");
     let path = write(&folder, "table.csv.zst", &zstd::encode_all(&b"t_s,v_left_mps\n0,1\n"[..], 1).unwrap());
-    assert!(refused(&path).contains("zstd -d"));
+    assert!(refused(&path).contains("v_right_mps"), "packed text is read as text");
+    let path = write(&folder, "table.parquet.zst", &zstd::encode_all(&b"PAR1"[..], 1).unwrap());
+    assert!(refused(&path).contains("zstd -d"), "{}", refused(&path));
 }
 
 #[test]

@@ -32,20 +32,20 @@ pub(crate) fn of(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<
         (first, second)
     })?;
     let is_current = form == PowerForm::MotorCurrents;
-    let mut pairs = Vec::new();
+    let mut sums = [0.0; 5];
     for (predicted, recorded) in [&sides.0, &sides.1].into_iter().zip(&drives.recorded) {
         // Currents come without a sign.
         let recorded = drives.averaged_by(|i| if is_current { recorded[i].abs() } else { recorded[i] });
-        pairs.extend(drives.averaged(predicted).into_iter().zip(recorded));
-    }
-    pairs.retain(|(p, r)| p.is_finite() && r.is_finite());
-    let count = pairs.len().max(1) as f64;
-    let mean = |value: fn(&(f64, f64)) -> f64| pairs.iter().map(value).sum::<f64>() / count;
-    let (p0, r0) = (mean(|pair| pair.0), mean(|pair| pair.1));
-    let mut sums = [0.0; 5];
-    for (p, r) in &pairs {
-        let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
-        sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+        let mut pairs: Vec<(f64, f64)> = drives.averaged(predicted).into_iter().zip(recorded).collect();
+        pairs.retain(|(p, r)| p.is_finite() && r.is_finite());
+        // Sides differ by constants: only what varies within one tells how it is followed.
+        let count = pairs.len().max(1) as f64;
+        let mean = |value: fn(&(f64, f64)) -> f64| pairs.iter().map(value).sum::<f64>() / count;
+        let (p0, r0) = (mean(|pair| pair.0), mean(|pair| pair.1));
+        for (p, r) in &pairs {
+            let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
+            sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+        }
     }
     let r = sums[0] / (sums[1] * sums[2]).sqrt().max(f64::MIN_POSITIVE);
     let ratio = (!is_current && sums[4] > 0.0).then(|| sums[3] / sums[4]);

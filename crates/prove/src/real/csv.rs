@@ -77,11 +77,12 @@ mod tests {
         let known = decimals(&recording);
         assert_eq!((known[&Channel::Pitch], known[&Channel::LeftSpeed]), (4, 1));
         recording.channels.entry(Channel::Pitch).or_default()[3] = 0.012_345_678;
-        recording.channels.entry(Channel::Roll).or_default()[4] = f64::NAN;
+        // A hole at the beginning has no neighbours to be filled from.
+        recording.channels.entry(Channel::Roll).or_default()[0] = f64::NAN;
         write(&recording, &known, &path).unwrap();
         let read = read_paths(&[&path], None).unwrap().0;
         assert_eq!((read.rows(), read.runs.len(), &read.t_s), (27, 2, &recording.t_s));
         assert_eq!(read.channel(Channel::Pitch).unwrap()[3], 0.0123);
-        assert!(read.channel(Channel::Roll).unwrap()[4].is_nan());
+        assert!(read.channel(Channel::Roll).unwrap()[0].is_nan());
     }
 }

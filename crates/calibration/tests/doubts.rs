@@ -1,0 +1,100 @@
+//! What physics forbids of a recording is doubted by name before anything is fitted, and healthy drives are not.
+
+#![allow(clippy::unwrap_used)]
+
+use calibration::{Error, Method, Options, doubts, predict};
+use model::{Robot, builtin};
+use recording::{Channel, Recording, unwatched};
+
+mod simulated;
+use simulated::{drives, seeded, with_battery_power, with_power};
+
+fn robot() -> Robot {
+    builtin::husky_a200()
+}
+
+/// Drives with the yaw rate that the wheels give a Husky, and roll.
+fn healthy() -> Recording {
+    let mut random = seeded(5);
+    let mut plain = drives(&mut random, 3, 400);
+    let of = |recording: &Recording, channel| recording.channel(channel).unwrap().to_vec();
+    let (left, right) = (of(&plain, Channel::LeftSpeed), of(&plain, Channel::RightSpeed));
+    let yaw_rate = left.iter().zip(&right).map(|(l, r)| (r - l) / robot().slip_track_m).collect();
+    let roll = (0..plain.rows()).map(|i| 0.08 * (0.021 * i as f64).cos()).collect();
+    plain.channels.insert(Channel::YawRate, yaw_rate);
+    plain.channels.insert(Channel::Roll, roll);
+    with_power(&robot(), plain, &mut random)
+}
+
+fn changed(mut recording: Recording, channels: &[Channel], change: impl Fn(f64) -> f64) -> Recording {
+    for channel in channels {
+        recording.channels.get_mut(channel).unwrap().iter_mut().for_each(|value| *value = change(*value));
+    }
+    recording
+}
+
+fn names(recording: &Recording) -> Vec<&'static str> {
+    doubts(&robot(), recording, &unwatched()).unwrap().iter().map(|doubt| doubt.name).collect()
+}
+
+#[test]
+fn healthy_drives_are_not_doubted() {
+    assert_eq!(names(&healthy()), [""; 0]);
+    let mut random = seeded(6);
+    let plain = drives(&mut random, 3, 400);
+    assert_eq!(names(&with_battery_power(&robot(), plain, &mut random)), [""; 0]);
+}
+
+#[test]
+fn each_fault_is_named_with_its_number_and_what_mends_it() {
+    use Channel as C;
+    let (wheels, powers) = ([C::LeftSpeed, C::RightSpeed], [C::LeftPower, C::RightPower]);
+    assert_eq!(names(&changed(healthy(), &powers, |w| -w)), ["power_sign"]);
+    assert_eq!(names(&changed(healthy(), &[C::RightPower], |w| -w)), ["right_power_sign"]);
+    assert_eq!(names(&changed(healthy(), &[C::LeftPower], |w| -w)), ["left_power_sign"]);
+    assert_eq!(names(&changed(healthy(), &[C::Pitch], |rad| -rad)), ["pitch_sign"]);
+    assert_eq!(names(&changed(healthy(), &powers, |w| 1000.0 * w)), ["power_scale"]);
+    for (unit, factor) in [("km/h", 3.6), ("rad/s", 1.0 / robot().wheel_radius_m), ("cm/s", 100.0)] {
+        let found = doubts(&robot(), &changed(healthy(), &wheels, |v| factor * v), &unwatched()).unwrap();
+        assert!(found[0].name == "speed_scale" && found[0].cure.contains(unit), "{unit}: {found:?}");
+    }
+    let mut turned = healthy();
+    let (pitch, roll) = (turned.channels[&C::Pitch].clone(), turned.channels[&C::Roll].clone());
+    turned.channels.insert(C::Pitch, roll);
+    turned.channels.insert(C::Roll, pitch);
+    assert_eq!(names(&turned), ["imu_turned_left"]);
+}
+
+#[test]
+fn a_doubtful_recording_is_predicted_with_its_doubt_and_not_calibrated_unless_overruled() {
+    let wrong = changed(healthy(), &[Channel::LeftPower, Channel::RightPower], |w| -w);
+    assert_eq!(predict(&robot(), &wrong).unwrap().prediction.doubts[0].name, "power_sign");
+    let calibrated = |options| Method::Fit.calibrate(&robot(), &wrong, &options);
+    let refused = calibrated(Options::default()).unwrap_err();
+    assert!(
+        matches!(refused, Error::Doubtful { .. }) && refused.to_string().contains("--despite power_sign")
+    );
+    let despite = Options { despite: vec!["power_sign".into(), "held_out".into()], ..Options::default() };
+    let found = calibrated(despite).unwrap();
+    assert!(found.notes.iter().any(|note| note.contains("despite a doubt: power_sign")), "{:?}", found.notes);
+}
+
+#[test]
+fn seconds_that_are_not_counted_are_said_with_their_reason() {
+    let mut recording = healthy();
+    let rows = recording.runs[0].rows.clone();
+    let right_w = recording.channels.get_mut(&Channel::RightPower).unwrap();
+    right_w[rows.start + 100..rows.start + 200].fill(f64::NAN);
+    let pitch = recording.channels.get_mut(&Channel::Pitch).unwrap();
+    pitch[rows.start + 300..rows.end].fill(f64::NAN);
+    let found = predict(&robot(), &recording).unwrap().prediction;
+    let coverage = &found.runs[0].coverage;
+    assert!((coverage.recorded_s - 39.9).abs() < 1e-9, "{coverage:?}");
+    assert!((coverage.recorded_s - coverage.used_s - 10.1).abs() < 1e-6, "{coverage:?}");
+    assert!((coverage.level_s - 10.0).abs() < 0.11, "{coverage:?}");
+    assert!(coverage.left_out[0].reason.contains("power_right_w"), "{coverage:?}");
+    assert!(coverage.words().unwrap().contains("29.8 of 39.9 s are counted"), "{coverage:?}");
+    assert!(found.runs[1].coverage.words().is_none());
+    let nothing = changed(healthy(), &[Channel::RightPower], |_| f64::NAN);
+    assert!(predict(&robot(), &nothing).is_err());
+}

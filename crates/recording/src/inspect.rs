@@ -1,0 +1,225 @@
+//! What a log holds, and which map would read it: columns or topics with rate and range, and guesses with their reasons.
+
+mod guess;
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use self::guess::{guess, time_unit};
+use crate::{
+    Channel, Error, Map, Recording,
+    format::Format,
+    reading::{read_part, read_path},
+    report::ReadingReport,
+};
+
+/// What a log holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inspection {
+    /// The file.
+    pub source: String,
+    /// Its columns or topics.
+    pub fields: Vec<InspectedField>,
+    /// A map that reads it as far as it was understood.
+    pub map: Value,
+    /// What is still missing or unclear.
+    pub notes: Vec<String>,
+}
+
+/// One column of a table, or a topic with the fields that are read of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InspectedField {
+    /// Its name.
+    pub name: String,
+    /// How many numbers or messages it has.
+    pub samples: usize,
+    /// Numbers a second \[Hz\].
+    pub rate_hz: Option<f64>,
+    /// Least and greatest number; `null` for topics.
+    pub range: Option<[f64; 2]>,
+    /// The channel that it would be; `null` where nothing tells.
+    pub channel: Option<String>,
+    /// The unit that it would be in.
+    pub unit: Option<String>,
+    /// Why.
+    pub reason: String,
+}
+
+/// Looks into a log.
+///
+/// # Errors
+/// A file that cannot be read at all, with what is wrong.
+pub fn inspect(path: &Path) -> Result<Inspection, Error> {
+    let is_table = path.is_file() && matches!(Format::of(path), Ok(Format::Csv | Format::Parquet));
+    if is_table { table(path) } else { topics(path) }
+}
+
+/// Names of the columns of a table.
+fn names(path: &Path) -> Result<Vec<String>, Error> {
+    match read_path(path, None) {
+        Ok(reading) => {
+            let of_channels = reading.report.channels.iter().map(|channel| channel.from.clone());
+            let ignored = reading.report.ignored.iter().map(|ignored| ignored.name.clone());
+            Ok(["t_s".to_owned()]
+                .into_iter()
+                .chain(of_channels)
+                .chain(reading.report.aside.clone())
+                .chain(ignored)
+                .collect())
+        }
+        Err(error) => match error.found() {
+            Some(found) => Ok(found.to_vec()),
+            None => Err(error),
+        },
+    }
+}
+
+fn table(path: &Path) -> Result<Inspection, Error> {
+    let names = names(path)?;
+    let mut notes = Vec::new();
+    let time = names.iter().find_map(|name| time_unit(name).map(|unit| (name.clone(), unit)));
+    let Some((time, time_unit)) = time else {
+        notes.push(format!(
+            "none of the columns {} is named as a time: name the one that is `t_s`",
+            names.join(", ")
+        ));
+        return Ok(Inspection {
+            source: path.display().to_string(),
+            fields: Vec::new(),
+            map: Value::Null,
+            notes,
+        });
+    };
+    let of_time = json!({"channel": "t_s", "column": time, "unit": time_unit});
+    let only_time = Map::from_value(&json!({"name": "inspected", "sources": [of_time]}))?;
+    let recording = read_part(path, &only_time)?;
+    let mut fields = vec![InspectedField {
+        name: time.clone(),
+        samples: recording.rows(),
+        rate_hz: rate_hz(&recording, |_| true),
+        range: range(&recording.t_s),
+        channel: Some("t_s".into()),
+        unit: Some(time_unit.into()),
+        reason: "by its name".into(),
+    }];
+    let columns = recording.channels.iter().map(|(channel, values)| (channel.name().to_owned(), values));
+    for (name, values) in columns.chain(recording.aside.iter().map(|(name, values)| (name.clone(), values))) {
+        fields.push(field(&recording, name, values));
+    }
+    let sources = sources(&time, time_unit, &fields);
+    for channel in [Channel::LeftSpeed, Channel::RightSpeed] {
+        if !fields.iter().any(|field| field.channel.as_deref() == Some(channel.name())) {
+            notes.push(format!("no column was recognised as `{}`: name it in the map", channel.name()));
+        }
+    }
+    let mut map = json!({"name": "inspected", "sources": sources});
+    if fields.iter().any(|field| {
+        matches!(field.unit.as_deref(), Some("rpm" | "rad/s"))
+            && field.name.to_lowercase() != "yaw_rate_radps"
+    }) {
+        map["wheel_radius_m"] = json!(0.165);
+        notes.push("wheel_radius_m in the map is a Husky's: put that of your robot".into());
+    }
+    notes.push("units are guesses by names and ranges: look at them before you trust an energy".into());
+    Ok(Inspection { source: path.display().to_string(), fields, map, notes })
+}
+
+fn field(recording: &Recording, name: String, values: &[f64]) -> InspectedField {
+    let range = range(values);
+    let greatest = range.map_or(0.0, |[low, high]| high.abs().max(low.abs()));
+    let found = guess(&name, greatest);
+    InspectedField {
+        samples: values.iter().filter(|value| !value.is_nan()).count(),
+        rate_hz: rate_hz(recording, |row| !values[row].is_nan()),
+        range,
+        channel: found.as_ref().map(|found| found.channel.name().to_owned()),
+        unit: found.as_ref().map(|found| found.unit.to_owned()),
+        reason: found.map_or_else(|| "nothing in its name is known".into(), |found| found.reason),
+        name,
+    }
+}
+
+/// Sources of a map of what was recognised; several columns of one channel, as of both wheels of a side, are its mean.
+fn sources(time: &str, time_unit: &str, fields: &[InspectedField]) -> Vec<Value> {
+    let mut sources = vec![json!({"channel": "t_s", "column": time, "unit": time_unit})];
+    for field in &fields[1..] {
+        let (Some(channel), Some(unit)) = (&field.channel, &field.unit) else { continue };
+        let known = sources
+            .iter_mut()
+            .find(|source| source["channel"] == json!(channel) && source["unit"] == json!(unit));
+        match known.and_then(|source| source["columns"].as_array_mut()) {
+            Some(columns) => columns.push(json!(field.name)),
+            None => sources.push(json!({"channel": channel, "columns": [field.name], "unit": unit})),
+        }
+    }
+    sources
+}
+
+fn range(values: &[f64]) -> Option<[f64; 2]> {
+    let known = values.iter().filter(|value| !value.is_nan());
+    let [low, high] =
+        known.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], value| [value.min(l), value.max(h)]);
+    (low <= high).then_some([low, high])
+}
+
+/// Numbers a second.
+fn rate_hz(recording: &Recording, is_there: impl Fn(usize) -> bool) -> Option<f64> {
+    let run = recording.runs.first()?;
+    let rows: Vec<usize> = run.rows.clone().filter(|row| is_there(*row)).collect();
+    let span_s = recording.t_s[*rows.last()?] - recording.t_s[*rows.first()?];
+    (span_s > 0.0).then(|| (rows.len() - 1) as f64 / span_s)
+}
+
+/// Topics as the built-in map reads them.
+fn topics(path: &Path) -> Result<Inspection, Error> {
+    let husky = Map::built_in("husky").ok_or(Error::Empty { found: "no map".into() })?;
+    let ReadingReport { source, streams, channels, ignored, repairs, .. } =
+        read_path(path, Some(&husky))?.report;
+    let mut fields = Vec::new();
+    for stream in &streams {
+        let own: Vec<_> = channels
+            .iter()
+            .filter(|channel| channel.from.starts_with(&format!("{} ", stream.topic)))
+            .collect();
+        let told: Vec<String> =
+            own.iter().map(|channel| format!("{} [{}]", channel.channel, channel.unit)).collect();
+        fields.push(InspectedField {
+            name: stream.topic.clone(),
+            samples: stream.messages,
+            rate_hz: stream.rate_hz,
+            range: None,
+            channel: (!told.is_empty()).then(|| told.join(", ")),
+            unit: None,
+            reason: stream.type_name.clone(),
+        });
+    }
+    let mut notes: Vec<String> =
+        ignored.iter().map(|ignored| format!("not read: {} ({})", ignored.name, ignored.reason)).collect();
+    notes.extend(repairs.iter().map(|repair| format!("{}: {}", repair.place, repair.what)));
+    let is_used = |source: &Value, topic: &str, channel: &str| {
+        let pattern = source["topic"].as_str().unwrap_or_default();
+        source["channel"] == json!(channel) && Map::topic_matches(pattern, topic)
+    };
+    let mut map: Value = serde_json::from_str(include_str!("../maps/husky.json")).unwrap_or_default();
+    let all = map["sources"].as_array().cloned().unwrap_or_default();
+    let mut kept = Vec::new();
+    for channel in &channels {
+        let Some((topic, of)) = channel.from.split_once(' ') else { continue };
+        let has_fields = |source: &&Value| {
+            let fields: Vec<&str> =
+                source["fields"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            fields.join(", ") == of
+        };
+        let found =
+            all.iter().filter(|source| is_used(source, topic, channel.channel.name())).find(has_fields);
+        if let Some(mut source) = found.cloned() {
+            source["topic"] = json!(topic);
+            kept.push(source);
+        }
+    }
+    map["name"] = json!("inspected");
+    map["sources"] = json!(kept);
+    Ok(Inspection { source, fields, map, notes })
+}
