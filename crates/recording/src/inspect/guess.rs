@@ -123,8 +123,8 @@ fn words(name: &str) -> Vec<String> {
         if !character.is_alphabetic() || is_hump {
             words.push(String::new());
         }
-        if character.is_alphabetic() {
-            words.last_mut().map(|word| word.extend(character.to_lowercase()));
+        if let (true, Some(word)) = (character.is_alphabetic(), words.last_mut()) {
+            word.extend(character.to_lowercase());
         }
         before_lower = character.is_lowercase();
     }
