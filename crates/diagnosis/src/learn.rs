@@ -22,10 +22,6 @@ use crate::{
     search::engine,
 };
 
-/// Driving that is looked at, spread over longer drives \[s\]: constants are known to some per cent after minutes, and each second
-/// takes as long as the next.
-const MOST_S: f64 = 5000.0;
-
 /// Relative standard deviation from which on a logarithm says nothing of a constant, which may as well be nothing [-].
 const LARGEST_SIGMA: f64 = 1.0;
 
@@ -131,17 +127,14 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         ..calibrated.clone()
     };
     let thin = drives.thinned_watched(watch).map_err(calibration::Error::from)?;
-    let sampled = thin.sampled(MOST_S);
-    let is_whole = sampled.rows() == thin.rows();
     let by_current = thin.power_form() == Some(PowerForm::MotorCurrents);
-    let drives = sampled;
-    let series = Series::watched(&about, &drives, None, watch)?;
+    let series = Series::watched(&about, &thin, None, watch)?;
     if series.averages.iter().filter(|a| a.channel == 0).count() < NEEDED_S {
         return Ok(Learnt { robot: calibrated.clone(), errors: None });
     }
     let observed = Observations::new(&series, &about);
     let baseline = Baseline::fit(&observed, &about)?;
-    let excluded = impossible(&drives);
+    let excluded = impossible(&thin);
     let library: Vec<_> = mechanism::ALL
         .into_iter()
         .filter(|one| !excluded.iter().any(|other| other.name() == one.name()))
@@ -174,7 +167,7 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         before: error(&with_new_ground)?,
         after: error(calibrated)?,
         model_error: fraction,
-        sampled_s: (!is_whole).then(|| observed.total_s()),
+        sampled_s: series.compared_s(),
     };
     let robot = Robot {
         posterior: posterior(&baseline, &model, by_current),

@@ -52,7 +52,6 @@ mod report;
 mod room;
 mod rosbag2;
 mod same_time;
-mod sampled;
 mod schema;
 mod stream;
 mod suspicion;

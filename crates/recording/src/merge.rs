@@ -33,10 +33,10 @@ impl Topics<'_> {
             }
             let messages = topic.samples.messages();
             let mut stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
+            let t_s = stream.t_s(stream.t_ns.first().copied().unwrap_or(0));
             for (column, (source, _)) in stream.columns.iter_mut().zip(&topic.sources) {
                 let source = &self.map.sources[*source];
                 if source.derivative {
-                    let t_s = stream_seconds(&stream.t_ns);
                     *column = rates(&t_s, column, source.wraps_at);
                 }
             }
@@ -218,12 +218,6 @@ fn check_steps(base: &Named) -> Result<(), Error> {
             Err(Error::TopicSteps { topic: base.topic.clone(), evidence, other })
         }
     }
-}
-
-/// Times of a stream, from its first on [s].
-fn stream_seconds(t_ns: &[i64]) -> Vec<f64> {
-    let first = t_ns.first().copied().unwrap_or(0);
-    t_ns.iter().map(|t| t.saturating_sub(first) as f64 / 1e9).collect()
 }
 
 /// Times at which there is a number.

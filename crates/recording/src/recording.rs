@@ -84,6 +84,15 @@ impl Recording {
         self.t_s.len()
     }
 
+    /// Duration of all runs \[s\].
+    pub fn duration_s(&self) -> f64 {
+        let of_run = |run: &Run| {
+            let end = run.rows.end.saturating_sub(1);
+            self.t_s.get(end).zip(self.t_s.get(run.rows.start)).map_or(0.0, |(end, start)| end - start)
+        };
+        self.runs.iter().map(of_run).sum()
+    }
+
     /// A channel by row, NaN in gaps; `None` where the recording lacks it.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.channels.get(&channel).map(Vec::as_slice)

@@ -153,6 +153,12 @@ impl Series {
         self.parts.iter().filter_map(of).collect()
     }
 
+    /// Driving under suspicion that is compared, where that is not all of it [s].
+    pub(crate) fn compared_s(&self) -> Option<f64> {
+        let sample = &self.parts.first()?.sample;
+        (sample.compared_s < sample.driven_s).then_some(sample.compared_s)
+    }
+
     /// Number of channels of power.
     pub fn channels(&self) -> usize {
         self.meters.iter().filter(|meter| meter.is_power()).count()
