@@ -18,7 +18,7 @@ use service::{
 };
 use terrain::{Grid, Terrain, io};
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, output};
 
 /// A place on the map: metres, or fractions of its extent, with a heading if one is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,12 +211,17 @@ pub(crate) fn patience() -> Patience {
     Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
 }
 
+/// Reads a map and says what its reader had to assume or change.
 pub(crate) fn read_map(path: &Path) -> anyhow::Result<Terrain> {
-    io::read_path(path).map_err(|error| {
+    let terrain = io::read_path(path).map_err(|error| {
         let message = error.to_string();
         let named = message.contains(&path.display().to_string());
-        BadInput(if named { message } else { format!("{}: {message}", path.display()) }).into()
-    })
+        BadInput(if named { message } else { format!("{}: {message}", path.display()) })
+    })?;
+    for note in &terrain.notes {
+        output::note(format_args!("{}: {note}", path.display()));
+    }
+    Ok(terrain)
 }
 
 /// A built-in robot's name stays a name; anything else is a file.

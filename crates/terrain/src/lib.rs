@@ -4,11 +4,13 @@
 //! southernmost, `origin_m` the south-west corner of cell (0, 0), so the centre of a cell lies half a cell further in.
 //! This crate knows nothing of robots.
 
+pub mod crs;
 mod error;
 mod grid;
 pub mod hillshade;
 pub mod io;
 mod patch;
+mod resample;
 pub mod slope;
 pub mod synthetic;
 mod terrain;

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::{Cell, Error, Grid};
 
 /// Ground on a grid. Unknown cells and obstacles are impassable. Clones share their cells.
@@ -16,6 +18,29 @@ pub struct Terrain {
     pub(crate) relative_m: Arc<Vec<f32>>,
     pub(crate) surfaces: Option<Arc<Surfaces>>,
     pub(crate) obstacle: Option<Arc<Vec<bool>>>,
+    /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
+    pub crs: Option<String>,
+    /// What a reader had to assume or change, in sentences; no part of the ground itself.
+    pub notes: Vec<String>,
+}
+
+/// A number that elevations come in.
+pub(crate) trait Sample: Copy + Into<f64> + Send + Sync {
+    /// Single-precision numbers out of samples, in their room if they fit it.
+    fn to_single(samples: Vec<Self>, single: impl Fn(f64) -> f32 + Sync) -> Vec<f32>;
+}
+
+impl Sample for f32 {
+    fn to_single(mut samples: Vec<Self>, single: impl Fn(f64) -> f32 + Sync) -> Vec<f32> {
+        samples.par_iter_mut().for_each(|sample| *sample = single(f64::from(*sample)));
+        samples
+    }
+}
+
+impl Sample for f64 {
+    fn to_single(samples: Vec<Self>, single: impl Fn(f64) -> f32 + Sync) -> Vec<f32> {
+        samples.par_iter().map(|sample| single(*sample)).collect()
+    }
 }
 
 /// What the ground is made of, cell by cell.
@@ -74,18 +99,7 @@ impl Terrain {
     /// Any of the grid's numbers out of range, an absurd elevation, or no known cell at all.
     pub fn new(grid: Grid, elevation_m: &[f64]) -> Result<Self, Error> {
         check_grid(&grid)?;
-        let mut lowest_m = f64::INFINITY;
-        for (index, &value) in elevation_m.iter().enumerate() {
-            if value.is_nan() {
-                continue;
-            }
-            if !(Self::LOWEST_M..=Self::HIGHEST_M).contains(&value) {
-                let Cell { row, column } = grid.cell(index);
-                let (min, max) = (Self::LOWEST_M, Self::HIGHEST_M);
-                return Err(Error::Elevation { row, column, value, min, max });
-            }
-            lowest_m = lowest_m.min(value);
-        }
+        let lowest_m = lowest_m(&grid, elevation_m, |z| z)?;
         if elevation_m.len() != grid.cells() {
             return Err(Error::RowCount {
                 layer: "elevation_m",
@@ -93,11 +107,29 @@ impl Terrain {
                 expected: grid.rows,
             });
         }
-        if lowest_m.is_infinite() {
-            return Err(Error::AllUnknown);
-        }
-        let relative_m = Arc::new(elevation_m.iter().map(|z| (z - lowest_m) as f32).collect());
-        Ok(Terrain { grid, base_m: lowest_m, relative_m, surfaces: None, obstacle: None })
+        let relative_m = elevation_m.iter().map(|z| (z - lowest_m) as f32).collect();
+        Ok(Self::of_relative(grid, lowest_m, relative_m))
+    }
+
+    /// Builds ground from as many samples as a checked grid has cells, whose elevations a function gives [m]. Samples in single
+    /// precision are turned into elevations where they lie.
+    ///
+    /// # Errors
+    /// An absurd elevation, or no known cell at all.
+    pub(crate) fn from_samples<T: Sample>(
+        grid: Grid,
+        samples: Vec<T>,
+        elevation_m: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Self, Error> {
+        debug_assert_eq!(samples.len(), grid.cells());
+        let base_m = lowest_m(&grid, &samples, &elevation_m)?;
+        let relative_m = T::to_single(samples, |sample| (elevation_m(sample) - base_m) as f32);
+        Ok(Self::of_relative(grid, base_m, relative_m))
+    }
+
+    pub(crate) fn of_relative(grid: Grid, base_m: f64, relative_m: Vec<f32>) -> Self {
+        let relative_m = Arc::new(relative_m);
+        Terrain { grid, base_m, relative_m, surfaces: None, obstacle: None, crs: None, notes: Vec::new() }
     }
 
     /// Checks rows, columns, cell size and origin before anything of their size is allocated.
@@ -222,8 +254,32 @@ impl Terrain {
                 hash.update([u8::from(o)]);
             }
         }
+        if let Some(crs) = &self.crs {
+            hash.update(b"crs");
+            hash.update(crs.as_bytes());
+        }
         hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
+}
+
+/// Lowest elevation of some samples, or the first that no ground has.
+fn lowest_m<T: Sample>(
+    grid: &Grid,
+    samples: &[T],
+    elevation_m: impl Fn(f64) -> f64 + Sync,
+) -> Result<f64, Error> {
+    let (min, max) = (Terrain::LOWEST_M, Terrain::HIGHEST_M);
+    let elevation_m = |sample: &T| elevation_m((*sample).into());
+    let is_absurd = |sample: &T| {
+        let z = elevation_m(sample);
+        !z.is_nan() && !(min..=max).contains(&z)
+    };
+    if let Some(index) = samples.par_iter().position_first(is_absurd) {
+        let Cell { row, column } = grid.cell(index);
+        return Err(Error::Elevation { row, column, value: elevation_m(&samples[index]), min, max });
+    }
+    let lowest_m = samples.par_iter().map(elevation_m).reduce(|| f64::INFINITY, f64::min);
+    if lowest_m.is_infinite() { Err(Error::AllUnknown) } else { Ok(lowest_m) }
 }
 
 fn check_grid(grid: &Grid) -> Result<(), Error> {

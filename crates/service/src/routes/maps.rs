@@ -36,6 +36,14 @@ pub struct MapSummary {
     /// South-west corner, x and y [m].
     #[schema(min_items = 2, max_items = 2)]
     pub origin_m: [f64; 2],
+    /// Coordinate reference system whose easting and northing, in metres, are x and y: `EPSG:` and a code, or WKT. Left out
+    /// where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, example = "EPSG:26915")]
+    pub crs: Option<String>,
+    /// What had to be assumed or changed when the map was read. Left out where nothing had to be.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Lowest and highest known elevation [m].
     #[schema(min_items = 2, max_items = 2)]
     pub elevation_range_m: [f64; 2],
@@ -64,6 +72,8 @@ impl MapSummary {
             columns: grid.columns,
             cell_size_m: grid.cell_size_m,
             origin_m: grid.origin_m,
+            crs: terrain.crs.clone(),
+            warnings: terrain.notes.clone(),
             elevation_range_m: [terrain.base_m(), terrain.base_m() + f64::from(highest_m)],
             passable_fraction: passable as f64 / grid.cells() as f64,
             surfaces: terrain.surfaces().map_or(Vec::new(), |s| s.names.clone()),
@@ -115,8 +125,8 @@ type Parser = fn(Content, u64) -> Result<Terrain, Problem>;
 
 /// Bytes of a cell while an ESRI ASCII grid is read: as it comes, from the south, and as it is kept.
 const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
-/// The same of a GeoTIFF, of which a chunk of samples is at hand beside them, as it stands and as numbers.
-const TIFF_CELL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8;
+/// The same of a GeoTIFF: samples in double precision, their interpolation onto other cells, and cells as they are kept.
+const TIFF_CELL_BYTES: u64 = 8 + 8 + 4;
 
 /// The reader for a content type.
 fn parser(kind: &str) -> Result<Parser, Problem> {

@@ -6,10 +6,11 @@
 //! 4 bytes  "JPT1"
 //! u64 × 2  rows, columns
 //! f64 × 4  cell_size_m, x and y of the south-west corner [m], elevation that the others count from [m]
-//! u8       1: surfaces follow, 2: obstacles follow
+//! u8       1: surfaces follow, 2: obstacles follow, 4: a coordinate reference system follows
 //! f32 each elevation above it, NaN where unknown [m]
 //! u16      how many surfaces, then each name as u32 length and UTF-8, then u8 each cell: its class
 //! u8 each  1 where there is an obstacle
+//! u32      length of the system's name or text, then its UTF-8
 //! ```
 
 use std::io::{self, Read, Write};
@@ -19,9 +20,10 @@ use crate::{Surfaces, Terrain};
 const MAGIC: &[u8; 4] = b"JPT1";
 const SURFACES: u8 = 1;
 const OBSTACLES: u8 = 2;
+const CRS: u8 = 4;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
-/// Longest name of a surface that is read [bytes].
+/// Longest name of a surface or system that is read [bytes].
 const LONGEST_NAME: u32 = 1 << 16;
 
 /// Writes a map.
@@ -38,7 +40,8 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
         to.write_all(&number.to_le_bytes())?;
     }
     let layers = terrain.surfaces.as_ref().map_or(0, |_| SURFACES)
-        | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES);
+        | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES)
+        | terrain.crs.as_ref().map_or(0, |_| CRS);
     to.write_all(&[layers])?;
     for chunk in terrain.relative_m.chunks(CHUNK_CELLS) {
         let bytes: Vec<u8> = chunk.iter().flat_map(|z| z.to_le_bytes()).collect();
@@ -47,8 +50,7 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
     if let Some(surfaces) = &terrain.surfaces {
         to.write_all(&(surfaces.names.len() as u16).to_le_bytes())?;
         for name in &surfaces.names {
-            to.write_all(&(name.len() as u32).to_le_bytes())?;
-            to.write_all(name.as_bytes())?;
+            write_text(name, &mut to)?;
         }
         to.write_all(&surfaces.class)?;
     }
@@ -58,7 +60,15 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
             to.write_all(&bytes)?;
         }
     }
+    if let Some(crs) = &terrain.crs {
+        write_text(crs, &mut to)?;
+    }
     to.flush()
+}
+
+fn write_text(text: &str, to: &mut impl Write) -> io::Result<()> {
+    to.write_all(&(text.len() as u32).to_le_bytes())?;
+    to.write_all(text.as_bytes())
 }
 
 /// Reads what [`write`] wrote.
@@ -77,7 +87,7 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
     let z = bytes(&mut from, 4 * grid.cells())?;
     let relative_m: Vec<f32> = z.as_chunks().0.iter().map(|z| f32::from_le_bytes(*z)).collect();
     drop(z);
-    let mut terrain = Terrain { grid, base_m, relative_m: relative_m.into(), surfaces: None, obstacle: None };
+    let mut terrain = Terrain::of_relative(grid, base_m, relative_m);
     let cells = terrain.grid.cells();
     if layers & SURFACES != 0 {
         let count = u16::from_le_bytes(array(&mut from)?);
@@ -91,13 +101,16 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
     if layers & OBSTACLES != 0 {
         terrain = terrain.with_obstacles(bytes(&mut from, cells)?.into_iter().map(|o| o != 0).collect());
     }
+    if layers & CRS != 0 {
+        terrain.crs = Some(name(&mut from)?);
+    }
     Ok(terrain)
 }
 
 fn name(from: &mut impl Read) -> io::Result<String> {
     let length = u32::from_le_bytes(array(from)?);
     if length > LONGEST_NAME {
-        return Err(invalid("a surface's name is too long"));
+        return Err(invalid("a name is too long"));
     }
     String::from_utf8(bytes(from, length as usize)?).map_err(invalid)
 }
