@@ -9,7 +9,7 @@ pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{Error, Terrain};
+use crate::{Error, Terrain, Warning};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -28,7 +28,7 @@ pub struct MapFile {
     /// Number of columns.
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub columns: u64,
-    /// Elevation by row and column, −1000 to 9000 or null [m].
+    /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
     pub elevation_m: Layer<Vec<f64>>,
     /// Surface names by row and column; null means the robot's default surface. Default: none named.
@@ -39,6 +39,14 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
     pub obstacle: Option<Layer<Vec<bool>>>,
+    /// Cells by row and column whose elevation was worked out from the ground around a hole. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
+    pub filled: Option<Layer<Vec<bool>>>,
+    /// Doubts about the map and what was done to it, which answers repeat. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_items = 32))]
+    pub warnings: Vec<Warning>,
 }
 
 impl MapFile {
@@ -69,6 +77,19 @@ impl TryFrom<MapFile> for Terrain {
         }
         if let Some(obstacle) = file.obstacle {
             terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
+        }
+        if let Some(filled) = file.filled {
+            terrain = terrain.with_filled(filled.shaped("filled", shape)?);
+        }
+        if file.warnings.len() > Warning::MOST {
+            return Err(Error::TooManyWarnings { found: file.warnings.len(), limit: Warning::MOST });
+        }
+        for (index, warning) in file.warnings.into_iter().enumerate() {
+            let (found, limit) = (warning.detail.len(), Warning::LONGEST_DETAIL);
+            if found > limit {
+                return Err(Error::LongWarning { index, found, limit });
+            }
+            terrain = terrain.with_warning(warning);
         }
         Ok(terrain)
     }
@@ -103,7 +124,8 @@ mod tests {
 
     #[test]
     fn a_map_survives_a_round_trip() {
-        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]]}"#;
+        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]],
+                       "filled": [[true, false]], "warnings": [{"kind": "filled-voids", "detail": "1 \"cell\""}]}"#;
         let terrain = read(text).unwrap();
         let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
         assert_eq!(read(std::str::from_utf8(&again).unwrap()).unwrap().content_id(), terrain.content_id());
