@@ -1,4 +1,4 @@
-//! Reads a map and prints how long that took, how many cells it has and how much memory was needed at most.
+//! Reads a GeoTIFF and prints how long that took, how many cells it has and how much memory was needed at most.
 //!
 //!     cargo run --release --example read_geotiff -- MAP
 
@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let before_kb = resident_kb().unwrap_or(0);
     let start = Instant::now();
-    let terrain = terrain::io::read_path(&path)?;
+    let terrain = terrain::io::geotiff::read(&std::fs::read(&path)?, terrain::Terrain::MAX_CELLS)?;
     let ms = start.elapsed().as_secs_f64() * 1e3;
     let peak_kb = resident_kb().unwrap_or(0) - before_kb;
     println!("{{\"ms\": {ms:.1}, \"cells\": {}, \"peak_kb\": {peak_kb}}}", terrain.grid.cells());

@@ -7,7 +7,6 @@ mod epsg;
 mod ground;
 mod mercator;
 mod unit;
-mod utm;
 mod wkt;
 
 pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
@@ -15,7 +14,6 @@ pub use self::{
     epsg::vertical,
     mercator::{GroundScale, Mercator},
     unit::{LinearUnit, by_epsg_code, by_name},
-    utm::{utm_epsg, warp_command},
 };
 
 use crate::Error;
@@ -62,7 +60,9 @@ impl Crs {
         if text.len() > LONGEST_TEXT {
             return None;
         }
-        if let Some(codes) = text.get(..5).filter(|head| head.eq_ignore_ascii_case("EPSG:")).map(|_| &text[5..]) {
+        if let Some(codes) =
+            text.get(..5).filter(|head| head.eq_ignore_ascii_case("EPSG:")).map(|_| &text[5..])
+        {
             let (code, vertical_code) = codes.split_once('+').map_or((codes, None), |(h, v)| (h, Some(v)));
             let mut crs = Crs::from_epsg(code.parse().ok()?);
             if let Some(code) = vertical_code {

@@ -87,7 +87,7 @@ fn near(found: f64, expected: f64) {
 fn a_map_in_metres_keeps_its_system_and_needs_no_note() {
     let terrain = File::epsg(32632).read();
     assert_eq!(terrain.crs.as_deref(), Some("EPSG:32632"));
-    assert_eq!(terrain.notes, Vec::<String>::new());
+    assert_eq!(terrain.warnings(), []);
     assert_eq!((terrain.grid.cell_size_m, terrain.grid.origin_m), (2.0, [500_000.0, 5_399_994.0]));
 }
 
@@ -106,11 +106,16 @@ fn feet_become_metres_whether_a_key_or_the_code_says_so() {
         near(terrain.grid.cell_size_m, 2.0 * US_FOOT_M);
         near(terrain.grid.origin_m[0], 500_000.0 * US_FOOT_M);
         near(height_m(&terrain, 0, 0), 120.0);
-        assert!(terrain.notes.iter().any(|note| note.contains("unit of its heights")), "{:?}", terrain.notes);
+        assert!(
+            terrain.warnings().iter().any(|warning| warning.detail.contains("unit of its heights")),
+            "{:?}",
+            terrain.warnings()
+        );
     }
-    let both = File { keys: [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat(), ..File::epsg(0) }.read();
+    let both =
+        File { keys: [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat(), ..File::epsg(0) }.read();
     near(both.grid.cell_size_m, 2.0);
-    assert!(both.notes[0].contains("EPSG:2263"), "{:?}", both.notes);
+    assert!(both.warnings()[0].detail.contains("EPSG:2263"), "{:?}", both.warnings());
 }
 
 #[test]
@@ -125,13 +130,13 @@ fn heights_have_the_unit_of_their_band_their_key_or_their_vertical_system() {
         let terrain = file.read();
         near(height_m(&terrain, 0, 0), 120.0 * US_FOOT_M);
         assert_eq!(terrain.grid.cell_size_m, 2.0);
-        assert_eq!(terrain.notes, Vec::<String>::new());
+        assert_eq!(terrain.warnings(), []);
     }
     near(height_m(&keyed(vec![4096, 0, 1, 8228]).read(), 0, 0), 120.0 * 0.3048);
     near(height_m(&keyed(vec![4096, 0, 1, 5703]).read(), 0, 0), 120.0);
     let disputed = File { metadata: unit, ..keyed(vec![4096, 0, 1, 5703]) }.read();
     near(height_m(&disputed, 0, 0), 120.0 * US_FOOT_M);
-    assert!(disputed.notes[0].contains("US survey foot"), "{:?}", disputed.notes);
+    assert!(disputed.warnings()[0].detail.contains("US survey foot"), "{:?}", disputed.warnings());
     assert!(keyed(vec![4096, 0, 1, 5715]).refused().contains("depths"));
 }
 
@@ -146,14 +151,26 @@ fn scale_and_offset_come_before_the_unit() {
 #[test]
 fn degrees_are_refused_with_the_command_for_their_zone() {
     let degrees = File { tie: [0.0, 0.0, 0.0, -93.9, 46.5, 0.0], scale: [1e-4, 1e-4, 0.0], ..File::epsg(0) };
-    for keys in [vec![1024, 0, 1, 2, 2048, 0, 1, 4326], vec![2048, 0, 1, 4269], vec![1024, 0, 1, 1, 3072, 0, 1, 4326], vec![]] {
+    for keys in [
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4326],
+        vec![2048, 0, 1, 4269],
+        vec![1024, 0, 1, 1, 3072, 0, 1, 4326],
+        vec![],
+    ] {
         let said = File { keys, ..degrees.clone() }.refused();
         assert!(said.contains("degrees") && said.contains("-t_srs EPSG:32615 "), "{said}");
     }
     let large = File { scale: [0.25, 0.25, 0.0], keys: vec![], ..degrees.clone() }.read();
-    assert!(large.notes[0].contains("CRS") && large.notes[0].contains("-s_srs EPSG:4326"), "{:?}", large.notes);
-    let far = File { keys: vec![], ..File::epsg(0) }.read();
-    assert!(far.notes[0].contains("CRS") && !far.notes[0].contains("gdalwarp"), "{:?}", far.notes);
+    assert!(large.warnings()[0].detail.contains("degrees"), "{:?}", large.warnings());
+    let local = File {
+        tie: [0.0, 0.0, 0.0, -0.1, 0.1, 0.0],
+        scale: [0.05, 0.05, 0.0],
+        keys: vec![],
+        ..File::epsg(0)
+    };
+    for metres in [File { keys: vec![], ..File::epsg(0) }, local] {
+        assert_eq!(metres.read().warnings(), [], "far from degrees, or a local frame about its origin");
+    }
 }
 
 impl Clone for File {
@@ -172,11 +189,18 @@ fn a_mercator_is_brought_to_the_ground_or_refused_where_one_scale_does_not_do() 
         mercator(vec![1024, 0, 1, 1, 3072, 0, 1, 3785]),
         mercator(vec![1024, 0, 1, 1, 3072, 0, 1, 3395]),
         mercator(vec![1024, 0, 1, 1, 3072, 0, 1, 41001]),
-        File { text: citation, ..mercator(vec![1024, 0, 1, 1, 1026, 34737, 28, 0, 3072, 0, 1, 32767, 3075, 0, 1, 7]) },
+        File {
+            text: citation,
+            ..mercator(vec![1024, 0, 1, 1, 1026, 34737, 28, 0, 3072, 0, 1, 32767, 3075, 0, 1, 7])
+        },
     ] {
         let terrain = file.read();
         assert!((terrain.grid.cell_size_m - 1.0).abs() < 0.01, "{}", terrain.grid.cell_size_m);
-        assert!(terrain.notes.iter().any(|note| note.contains("Mercator")), "{:?}", terrain.notes);
+        assert!(
+            terrain.warnings().iter().any(|warning| warning.detail.contains("Mercator")),
+            "{:?}",
+            terrain.warnings()
+        );
         assert_ne!(terrain.crs.as_deref(), Some("EPSG:3857"), "its coordinates are others now");
     }
     let long = File { scale: [20_000.0, 20_000.0, 0.0], ..mercator(File::epsg(3857).keys) };
@@ -195,22 +219,31 @@ fn frames_from_the_south_are_cells_and_turned_or_oblong_ones_are_interpolated() 
     let south_up = matrix([2.0, 0.0], [0.0, 2.0]).read();
     assert_eq!(south_up.grid.origin_m, [500_000.0, 5_400_000.0]);
     assert_eq!((height_m(&south_up, 0, 0), height_m(&south_up, 2, 3)), (100.0, 123.0));
-    assert_eq!(south_up.notes, Vec::<String>::new());
+    assert_eq!(south_up.warnings(), []);
     let oblong = matrix([2.0, 0.0], [0.0, -3.0]).read();
     near(oblong.grid.cell_size_m, 6.0f64.sqrt());
-    assert!(oblong.notes[0].contains("oblong") && oblong.notes[0].contains("interpolated"), "{:?}", oblong.notes);
+    assert!(
+        oblong.warnings()[0].detail.contains("oblong")
+            && oblong.warnings()[0].detail.contains("interpolated"),
+        "{:?}",
+        oblong.warnings()
+    );
     // A quarter turn: columns run north, rows east.
     let turned = matrix([0.0, 2.0], [2.0, 0.0]).read();
     assert_eq!((turned.grid.rows, turned.grid.columns), (4, 3));
-    assert_eq!((height_m(&turned, 0, 0), height_m(&turned, 0, 2), height_m(&turned, 3, 0)), (100.0, 120.0, 103.0));
-    assert!(turned.notes[0].contains("turned"), "{:?}", turned.notes);
+    assert_eq!(
+        (height_m(&turned, 0, 0), height_m(&turned, 0, 2), height_m(&turned, 3, 0)),
+        (100.0, 120.0, 103.0)
+    );
+    assert!(turned.warnings()[0].detail.contains("turned"), "{:?}", turned.warnings());
     assert!(matrix([2.0, 0.0], [4.0, 0.0]).refused().contains("pixel size"));
 }
 
 #[test]
 fn a_prj_beside_an_ascii_grid_places_it() {
     let folder = tempfile::tempdir().unwrap();
-    let asc = |cell: f64| format!("ncols 2\nnrows 2\nxllcorner 9.5\nyllcorner 48\ncellsize {cell}\n1 2\n3 4\n");
+    let asc =
+        |cell: f64| format!("ncols 2\nnrows 2\nxllcorner 9.5\nyllcorner 48\ncellsize {cell}\n1 2\n3 4\n");
     let path = folder.path().join("map.asc");
     let read = |cell: f64, prj: &str| {
         std::fs::write(&path, asc(cell)).unwrap();
@@ -219,11 +252,14 @@ fn a_prj_beside_an_ascii_grid_places_it() {
     };
     let utm = read(1.0, "Projection UTM\nZone 32\nDatum WGS84\nUnits METERS\n").unwrap();
     assert_eq!(utm.crs.as_deref(), Some("EPSG:32632"));
-    let feet = read(1.0, "PROJCS[\"x\",GEOGCS[\"y\"],PROJECTION[\"Lambert_Conformal_Conic\"],UNIT[\"Foot_US\",0.3048006096012192]]");
+    let feet = read(
+        1.0,
+        "PROJCS[\"x\",GEOGCS[\"y\"],PROJECTION[\"Lambert_Conformal_Conic\"],UNIT[\"Foot_US\",0.3048006096012192]]",
+    );
     near(feet.unwrap().grid.cell_size_m, US_FOOT_M);
     for cell in [0.5, 1e-4] {
         let refused = read(cell, "GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.0174532925199433]]").unwrap_err();
-        assert!(matches!(&refused, Error::Degrees { command, .. } if command.contains("EPSG:32632")), "{refused}");
+        assert!(matches!(&refused, Error::Degrees { epsg: 32_632, .. }), "{refused}");
     }
     assert_eq!(read(1.0, "nothing that anyone knows").unwrap().crs, None);
 }

@@ -1,7 +1,13 @@
 //! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
 
-use super::{Crs, Mercator, warp_command};
-use crate::{Error, Grid, Terrain, resample::Affine};
+use std::sync::Arc;
+
+use super::{Crs, Mercator};
+use crate::{
+    Error, Grid, Terrain, Warning, WarningKind,
+    io::degrees::{Coordinates, utm_epsg},
+    resample::Affine,
+};
 
 /// Largest displacement that a grid cannot tell: half a cell.
 pub(crate) const UNTOLD_CELLS: f64 = 0.5;
@@ -13,19 +19,33 @@ pub(crate) struct Size {
     pub(crate) rows: usize,
 }
 
-/// Refuses coordinates in degrees. Here is the one place where such a raster could be warped to UTM instead.
-pub(crate) fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs) -> Result<(), Error> {
-    if !crs.is_geographic {
-        return Ok(());
+impl Affine {
+    /// Where a raster of some size lies, in the unit of its coordinates.
+    pub(crate) fn coordinates(&self, size: Size) -> Coordinates {
+        let [west, south, ..] = self.bounds(size.columns, size.rows);
+        let [width, _] = self.edges();
+        Coordinates {
+            origin: [west, south],
+            cell_size: width,
+            rows: size.rows as u64,
+            columns: size.columns as u64,
+        }
     }
-    let [west_deg, south_deg, east_deg, north_deg] = affine.bounds(size.columns, size.rows);
-    let command = warp_command((west_deg + east_deg) / 2.0, (south_deg + north_deg) / 2.0);
-    let crs = crs.text.clone().unwrap_or_else(|| "longitude and latitude".into());
-    Err(Error::Degrees { crs, command })
+}
+
+/// Refuses coordinates in degrees; `ending` is that of the file's name. Here is the one place where such a raster could be warped to
+/// UTM instead.
+pub(crate) fn refuse_degrees(
+    affine: &Affine,
+    size: Size,
+    crs: &Crs,
+    ending: &'static str,
+) -> Result<(), Error> {
+    if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
 }
 
 /// Brings projected coordinates to metres of the ground: by the system's unit and, of a Mercator, by its scale. Returns the text of the
-/// system that they are in then. What was changed is added to the notes.
+/// system that they are in then. What was changed is added to the warnings.
 ///
 /// # Errors
 /// A Mercator whose scale changes over the map by more than its cells can tell.
@@ -33,12 +53,13 @@ pub(crate) fn to_ground(
     affine: Affine,
     size: Size,
     crs: &Crs,
-    notes: &mut Vec<String>,
+    ending: &'static str,
+    warnings: &mut Vec<Warning>,
 ) -> Result<(Affine, Option<String>), Error> {
     let metres = crs.unit.map_or(1.0, |unit| unit.metres);
     let affine = affine.scaled(metres, metres);
     match &crs.mercator {
-        Some(mercator) => mercator_to_ground(affine, size, mercator, crs, notes),
+        Some(mercator) => mercator_to_ground(affine, size, mercator, (crs, ending), warnings),
         None => Ok((affine, crs.text.clone())),
     }
 }
@@ -48,8 +69,8 @@ fn mercator_to_ground(
     affine: Affine,
     size: Size,
     mercator: &Mercator,
-    crs: &Crs,
-    notes: &mut Vec<String>,
+    (crs, ending): (&Crs, &'static str),
+    warnings: &mut Vec<Warning>,
 ) -> Result<(Affine, Option<String>), Error> {
     let [west, south, east, north] = affine.bounds(size.columns, size.rows);
     let middle_m = [(west + east) / 2.0, (south + north) / 2.0];
@@ -65,7 +86,8 @@ fn mercator_to_ground(
             crs: name,
             south: at_south.east,
             north: at_north.east,
-            command: warp_command(longitude_deg, latitude_deg),
+            ending,
+            epsg: utm_epsg(longitude_deg, latitude_deg),
         });
     }
     let longest = columns.max(rows);
@@ -73,9 +95,10 @@ fn mercator_to_ground(
         return Ok((affine, crs.text.clone()));
     }
     let mean = (scale.east * scale.north).sqrt();
-    notes.push(format!(
+    let detail = format!(
         "a metre of the Mercator projection ({name}) is {mean:.4} m of ground here: coordinates were multiplied by that"
-    ));
+    );
+    warnings.push(Warning::new(WarningKind::ProjectionScale, detail));
     if (scale.east / mean - 1.0).abs() * longest <= UNTOLD_CELLS {
         return Ok((affine.scaled(mean, mean), mercator.scaled_wkt(mean)));
     }
@@ -84,25 +107,34 @@ fn mercator_to_ground(
 
 impl Terrain {
     /// This ground with its grid, read as numbers of some system, brought to metres of the ground. Files whose system stands beside
-    /// them, as `.prj` does beside `.asc`, are placed so.
+    /// them, as `.prj` does beside `.asc`, are placed so; `ending` is that of the file's name.
     ///
     /// # Errors
     /// Degrees, or a Mercator that no one scale brings to the ground.
-    pub fn placed_in(mut self, crs: &Crs) -> Result<Self, Error> {
+    pub fn placed_in(mut self, crs: &Crs, ending: &'static str) -> Result<Self, Error> {
         let Grid { rows, columns, cell_size_m: cell, origin_m: origin } = self.grid;
         let size = Size { columns, rows };
         let affine = Affine { origin, column: [cell, 0.0], row: [0.0, cell] };
-        refuse_degrees(&affine, size, crs)?;
-        let (affine, text) = to_ground(affine, size, crs, &mut self.notes)?;
+        refuse_degrees(&affine, size, crs, ending)?;
+        let mut warnings = Vec::new();
+        let (affine, text) = to_ground(affine, size, crs, ending, &mut warnings)?;
         let [width_m, height_m] = affine.edges();
-        if let Some(mercator) = crs.mercator.filter(|_| (width_m - height_m).abs() > UNTOLD_CELLS * width_m / columns.max(rows) as f64) {
+        let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
+        if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
             let [longitude_deg, latitude_deg] = mercator.place_deg(origin[0], origin[1]);
-            let crs = crs.text.clone().unwrap_or_else(|| "of the file's own".into());
-            let (south, north) = (width_m / cell, height_m / cell);
-            return Err(Error::MercatorScale { crs, south, north, command: warp_command(longitude_deg, latitude_deg) });
+            return Err(Error::MercatorScale {
+                crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
+                south: width_m / cell,
+                north: height_m / cell,
+                ending,
+                epsg: utm_epsg(longitude_deg, latitude_deg),
+            });
         }
         self.grid = Terrain::check_size(rows as u64, columns as u64, width_m, affine.origin)?;
         self.crs = text;
-        Ok(self)
+        // The system says what its unit is.
+        let kept = self.warnings.iter().filter(|warning| warning.kind != WarningKind::UnknownUnit).cloned();
+        self.warnings = Arc::new(kept.collect());
+        Ok(warnings.into_iter().fold(self, Terrain::with_warning))
     }
 }

@@ -25,8 +25,13 @@ pub struct GroundScale {
 }
 
 /// Web Mercator, EPSG:3857.
-pub(super) const WEB: Mercator =
-    Mercator { is_spherical: true, is_on_wgs84: true, equator_scale: 1.0, central_meridian_deg: 0.0, false_origin_m: [0.0; 2] };
+pub(super) const WEB: Mercator = Mercator {
+    is_spherical: true,
+    is_on_wgs84: true,
+    equator_scale: 1.0,
+    central_meridian_deg: 0.0,
+    false_origin_m: [0.0; 2],
+};
 /// World Mercator, EPSG:3395.
 pub(super) const WORLD: Mercator = Mercator { is_spherical: false, ..WEB };
 
@@ -47,7 +52,9 @@ impl Mercator {
         Some(Mercator {
             is_spherical,
             is_on_wgs84: is_spherical || value("datum") == Some("WGS84"),
-            equator_scale: number("k").or(number("k_0")).unwrap_or_else(|| Self::equator_scale_of(true_scale_rad)),
+            equator_scale: number("k")
+                .or(number("k_0"))
+                .unwrap_or_else(|| Self::equator_scale_of(true_scale_rad)),
             central_meridian_deg: number("lon_0").unwrap_or(0.0),
             false_origin_m: [number("x_0").unwrap_or(0.0), number("y_0").unwrap_or(0.0)],
         })
@@ -90,7 +97,8 @@ impl Mercator {
     /// Snyder (1987), eqs 7-4, 7-10 and 3-5. Good to 1e-9 rad.
     pub fn place_deg(&self, x_m: f64, y_m: f64) -> [f64; 2] {
         let radius_m = SEMI_MAJOR_M * self.equator_scale;
-        let chi = std::f64::consts::FRAC_PI_2 - 2.0 * (-(y_m - self.false_origin_m[1]) / radius_m).exp().atan();
+        let chi =
+            std::f64::consts::FRAC_PI_2 - 2.0 * (-(y_m - self.false_origin_m[1]) / radius_m).exp().atan();
         let latitude_rad = if self.is_spherical { chi } else { chi + conformal_difference_rad(chi) };
         let longitude_rad = (x_m - self.false_origin_m[0]) / radius_m;
         [self.central_meridian_deg + longitude_rad.to_degrees(), latitude_rad.to_degrees()]

@@ -102,11 +102,15 @@ pub fn by_name(spelling: &str) -> Option<LinearUnit> {
     let plain: String = spelling.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     let of = |name: &str| UNITS.iter().find(|(_, known, _)| *known == name);
     let named = match plain.as_str() {
-        "m" | "metre" | "meter" | "metres" | "meters" | "metro" | "metros" | "mètre" | "mètres" => of("metre"),
-        "ft" | "foot" | "feet" | "internationalfoot" | "internationalfeet" | "footinternational" | "footintl"
-        | "feetintl" | "ftint" | "intlfoot" | "intlfeet" => of("foot"),
-        "usft" | "ftus" | "footus" | "feetus" | "ussurveyfoot" | "ussurveyfeet" | "surveyfoot" | "surveyfeet"
-        | "ussurveyft" | "usfoot" | "usfeet" | "sft" | "footussurvey" | "feetussurvey" => of("US survey foot"),
+        "m" | "metre" | "meter" | "metres" | "meters" | "metro" | "metros" | "mètre" | "mètres" => {
+            of("metre")
+        }
+        "ft" | "foot" | "feet" | "internationalfoot" | "internationalfeet" | "footinternational"
+        | "footintl" | "feetintl" | "ftint" | "intlfoot" | "intlfeet" => of("foot"),
+        "usft" | "ftus" | "footus" | "feetus" | "ussurveyfoot" | "ussurveyfeet" | "surveyfoot"
+        | "surveyfeet" | "ussurveyft" | "usfoot" | "usfeet" | "sft" | "footussurvey" | "feetussurvey" => {
+            of("US survey foot")
+        }
         "mm" | "millimetre" | "millimeter" | "millimetres" | "millimeters" => of("millimetre"),
         "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => of("centimetre"),
         "km" | "kilometre" | "kilometer" | "kilometres" | "kilometers" => of("kilometre"),

@@ -151,7 +151,9 @@ impl<'a> Node<'a> {
         Some(Mercator {
             is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
             is_spherical: spherical.iter().any(|kind| method.contains(kind))
-                || self.child(&["EXTENSION"]).is_some_and(|node| node.words.iter().any(|w| w.contains("+b=6378137"))),
+                || self
+                    .child(&["EXTENSION"])
+                    .is_some_and(|node| node.words.iter().any(|w| w.contains("+b=6378137"))),
             equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
             central_meridian_deg: number(&["centralmeridian", "longitudeofnaturalorigin"]).unwrap_or(0.0),
             false_origin_m: [
@@ -179,7 +181,8 @@ fn older_prj(text: &str) -> Option<Crs> {
     if projection == "MERCATOR" {
         crs.mercator = Some(mercator::WORLD);
     }
-    let zone = value("Zone").and_then(|zone| zone.parse::<i32>().ok()).filter(|zone| (1..=60).contains(&zone.abs()));
+    let zone =
+        value("Zone").and_then(|zone| zone.parse::<i32>().ok()).filter(|zone| (1..=60).contains(&zone.abs()));
     let wgs84 = value("Datum").is_some_and(|datum| matches!(datum.as_str(), "WGS84" | "WGS_1984"));
     if let (true, true, Some(zone)) = (projection == "UTM", wgs84, zone) {
         let code = if zone > 0 { 32_600 } else { 32_700 } + zone.unsigned_abs();
@@ -222,7 +225,9 @@ mod tests {
     #[test]
     fn mercators_are_told_from_their_transverse_namesakes() {
         let mercator = |projection: &str| {
-            let text = format!(r#"PROJCS["x",GEOGCS["y"],PROJECTION["{projection}"],PARAMETER["scale_factor",0.5],UNIT["m",1]]"#);
+            let text = format!(
+                r#"PROJCS["x",GEOGCS["y"],PROJECTION["{projection}"],PARAMETER["scale_factor",0.5],UNIT["m",1]]"#
+            );
             parse(&text).unwrap().mercator
         };
         assert_eq!(mercator("Transverse_Mercator"), None);

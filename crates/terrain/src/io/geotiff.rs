@@ -29,16 +29,16 @@ use self::{
     sample::Number,
 };
 use crate::{
-    Error, Terrain,
+    Error, Terrain, Warning, WarningKind,
     crs::Size,
     resample::{Affine, Raster},
-    terrain::Sample,
+    samples::Sample,
 };
 
 /// Reads a GeoTIFF elevation model of at most so many cells.
 ///
 /// Scale, offset, unit, nodata, masks and coordinate reference system are applied as GDAL applies them; samples that are NaN are
-/// unknown ground. What had to be assumed or changed stands in [`Terrain::notes`].
+/// unknown ground. What had to be assumed or changed stands in [`Terrain::warnings`].
 ///
 /// # Errors
 /// A missing or unusable property by name, truncation, or an elevation out of range by cell.
@@ -52,28 +52,28 @@ pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
     };
     refuse_many(columns as u64, rows as u64)?;
     let layout = Layout::read(&mut file.tags(image))?;
-    let mut notes = Vec::new();
+    let mut warnings = Vec::new();
     if others > 0 {
-        notes.push(format!("the file holds {} images: the first was read", others + 1));
+        let detail = format!("the file holds {} images: the first was read", others + 1);
+        warnings.push(Warning::new(WarningKind::FirstOfSeveral, detail));
     }
-    let band = elevation_band(&layout, &mut notes)?;
+    let band = elevation_band(&layout, &mut warnings)?;
     let keys = GeoKeys::read(&mut file.tags(image))?;
-    let crs = keys.crs(&mut notes)?;
+    let crs = keys.crs(&mut warnings)?;
     let affine = Affine::read(&mut file.tags(image))?;
-    let placement = Placement::of(affine, Size { columns, rows }, &keys, &crs, &mut notes)?;
+    let placement = Placement::of(affine, Size { columns, rows }, &keys, &crs, &mut warnings)?;
     refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
     let metadata = BandMetadata::read(&mut file.tags(image), band)?;
-    let heights = Heights::of(&metadata, &crs, &mut notes)?;
+    let heights = Heights::of(&metadata, &crs, &mut warnings)?;
     let nodata = NoData::read(&mut file.tags(image), layout.sample)?;
     let reading = Reading { layout, band, nodata, heights, placement };
-    let mut terrain = if reading.layout.sample.is_exact_in_single() {
-        reading.terrain::<f32>(&mut file, &mut notes)?
+    let terrain = if reading.layout.sample.is_exact_in_single() {
+        reading.terrain::<f32>(&mut file, &mut warnings)?
     } else {
-        reading.terrain::<f64>(&mut file, &mut notes)?
+        reading.terrain::<f64>(&mut file, &mut warnings)?
     };
-    terrain.notes = notes;
-    Ok(terrain)
+    Ok(warnings.into_iter().fold(terrain, Terrain::with_warning))
 }
 
 /// Number of cells of a GeoTIFF, as its head has it.
@@ -88,7 +88,7 @@ pub fn cells(bytes: &[u8]) -> Result<u64, Error> {
 }
 
 /// The band that holds elevation: the only one, or the first of several that are no colours.
-fn elevation_band(layout: &Layout, notes: &mut Vec<String>) -> Result<usize, Error> {
+fn elevation_band(layout: &Layout, warnings: &mut Vec<Warning>) -> Result<usize, Error> {
     let colours = match layout.photometric {
         0 | 1 | 4 => None,
         2 => Some("RGB"),
@@ -104,9 +104,10 @@ fn elevation_band(layout: &Layout, notes: &mut Vec<String>) -> Result<usize, Err
     }
     let bands = layout.bands - usize::from(masks::alpha_band(layout).is_some());
     if bands > 1 {
-        notes.push(format!(
+        let detail = format!(
             "the file has {bands} bands: the first was read as elevation; `gdal_translate -b N in.tif out.tif` takes another"
-        ));
+        );
+        warnings.push(Warning::new(WarningKind::FirstOfSeveral, detail));
     }
     Ok(0)
 }
@@ -121,16 +122,21 @@ struct Reading {
 }
 
 impl Reading {
-    fn terrain<T: Number + Sample>(self, file: &mut TiffFile<'_>, notes: &mut Vec<String>) -> Result<Terrain, Error> {
+    fn terrain<T: Number + Sample>(
+        self,
+        file: &mut TiffFile<'_>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Terrain, Error> {
         let layout = &self.layout;
         let absent = layout.count_absent(self.band);
         // A block that was never written holds nodata, or zero where there is none (GDAL's SPARSE_OK).
         let of_absent = self.nodata.map_or(0.0, |_| f64::NAN);
         if absent > 0 && self.nodata.is_none() {
-            notes.push(format!(
+            let detail = format!(
                 "{absent} blocks of the file were never written and hold 0, as GDAL reads them; \
                  `gdal_edit.py -a_nodata 0 FILE` makes unknown ground of them"
-            ));
+            );
+            warnings.push(Warning::new(WarningKind::UnwrittenBlocks, detail));
         }
         let band = Band { file: file.bytes, big_endian: file.big_endian, layout, band: self.band };
         let mut samples: Vec<T> = band.read(T::from_double(of_absent))?;
@@ -185,7 +191,7 @@ mod tests {
         let values: Vec<f32> = (0..15).map(|i| if i == 7 { f32::NAN } else { i as f32 * 1.5 }).collect();
         let terrain = read(&write(&grid, &values).unwrap(), 15).unwrap();
         assert_eq!(terrain.grid, grid);
-        assert_eq!(terrain.notes, Vec::<String>::new());
+        assert_eq!(terrain.warnings(), []);
         for (index, value) in values.iter().enumerate() {
             let held = terrain.elevation_m(grid.cell(index));
             assert_eq!(held, (!value.is_nan()).then_some(f64::from(*value)));

@@ -9,7 +9,7 @@ pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{Error, Terrain, crs::Crs};
+use crate::{Error, Terrain, Warning, crs::Crs};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -33,7 +33,7 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(example = "EPSG:26915"))]
     pub crs: Option<String>,
-    /// Elevation by row and column, −1000 to 9000 or null [m].
+    /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
     pub elevation_m: Layer<Vec<f64>>,
     /// Surface names by row and column; null means the robot's default surface. Default: none named.
@@ -44,6 +44,14 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
     pub obstacle: Option<Layer<Vec<bool>>>,
+    /// Cells by row and column whose elevation was worked out from the ground around a hole. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
+    pub filled: Option<Layer<Vec<bool>>>,
+    /// Doubts about the map and what was done to it, which answers repeat. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_items = 32))]
+    pub warnings: Vec<Warning>,
 }
 
 impl MapFile {
@@ -77,6 +85,19 @@ impl TryFrom<MapFile> for Terrain {
             terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
         }
         terrain.crs = crs;
+        if let Some(filled) = file.filled {
+            terrain = terrain.with_filled(filled.shaped("filled", shape)?);
+        }
+        if file.warnings.len() > Warning::MOST {
+            return Err(Error::TooManyWarnings { found: file.warnings.len(), limit: Warning::MOST });
+        }
+        for (index, warning) in file.warnings.into_iter().enumerate() {
+            let (found, limit) = (warning.detail.len(), Warning::LONGEST_DETAIL);
+            if found > limit {
+                return Err(Error::LongWarning { index, found, limit });
+            }
+            terrain = terrain.with_warning(warning);
+        }
         Ok(terrain)
     }
 }
@@ -124,7 +145,8 @@ mod tests {
 
     #[test]
     fn a_map_survives_a_round_trip() {
-        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]]}"#;
+        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]],
+                       "filled": [[true, false]], "warnings": [{"kind": "filled-voids", "detail": "1 \"cell\""}]}"#;
         let terrain = read(text).unwrap();
         let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
         assert_eq!(read(std::str::from_utf8(&again).unwrap()).unwrap().content_id(), terrain.content_id());

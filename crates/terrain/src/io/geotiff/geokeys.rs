@@ -4,7 +4,7 @@ use tiff::tags::Tag;
 
 use super::directory::Tags;
 use crate::{
-    Error,
+    Error, Warning, WarningKind,
     crs::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, vertical},
 };
 
@@ -84,11 +84,11 @@ impl GeoKeys {
         [MODEL_TYPE, GEODETIC_CRS, PROJECTED_CRS, LINEAR_UNITS].iter().any(|key| self.code(*key).is_some())
     }
 
-    /// The system, with its unit as the file says or as its code implies. Doubts are added to the notes.
+    /// The system, with its unit as the file says or as its code implies. Doubts are added to the warnings.
     ///
     /// # Errors
     /// A unit or kind of system that cannot be read, by name.
-    pub(super) fn crs(&self, notes: &mut Vec<String>) -> Result<Crs, Error> {
+    pub(super) fn crs(&self, warnings: &mut Vec<Warning>) -> Result<Crs, Error> {
         const PROJECTED: u32 = 1;
         const GEOGRAPHIC: u32 = 2;
         const GEOCENTRIC: u32 = 3;
@@ -96,10 +96,15 @@ impl GeoKeys {
         let kind = self.code(MODEL_TYPE);
         if kind == Some(GEOCENTRIC) {
             let value = "3, geocentric".to_owned();
-            return Err(Error::TiffValue { tag: "model type (GTModelTypeGeoKey)", value, expected: "1, projected" });
+            return Err(Error::TiffValue {
+                tag: "model type (GTModelTypeGeoKey)",
+                value,
+                expected: "1, projected",
+            });
         }
         let geodetic = self.code(GEODETIC_CRS).filter(|code| *code != USER_DEFINED);
-        if kind == Some(GEOGRAPHIC) || (kind != Some(PROJECTED) && projected.is_none() && geodetic.is_some()) {
+        if kind == Some(GEOGRAPHIC) || (kind != Some(PROJECTED) && projected.is_none() && geodetic.is_some())
+        {
             let text = geodetic.map(|code| format!("EPSG:{code}"));
             return Ok(Crs { text, is_geographic: true, ..Crs::default() });
         }
@@ -109,16 +114,17 @@ impl GeoKeys {
         };
         let own_unit = self.linear_unit()?;
         let name = crs.text.as_deref().unwrap_or_default();
-        match (own_unit, crs.unit) {
-            (Some(own), Some(implied)) if !own.is(&implied) => notes.push(format!(
+        let doubt = match (own_unit, crs.unit) {
+            (Some(own), Some(implied)) if !own.is(&implied) => Some(format!(
                 "the file's unit is {}, but that of {name} is {}: the file was followed",
                 own.name, implied.name
             )),
             (None, None) if projected.is_some() && crs.text.is_some() => {
-                notes.push(format!("the unit of {name} is not known here: coordinates were read as metres"));
+                Some(format!("the unit of {name} is not known here: coordinates were read as metres"))
             }
-            _ => {}
-        }
+            _ => None,
+        };
+        warnings.extend(doubt.map(|detail| Warning::new(WarningKind::AssumedUnit, detail)));
         crs.unit = own_unit.or(crs.unit);
         crs.vertical = self.vertical()?.or(crs.vertical);
         Ok(crs)

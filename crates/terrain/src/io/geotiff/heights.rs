@@ -2,8 +2,9 @@
 
 use super::metadata::BandMetadata;
 use crate::{
-    Error,
+    Error, Warning, WarningKind,
     crs::{Crs, LinearUnit},
+    fill_value::is_never_ground,
 };
 
 /// What turns a sample into a height.
@@ -15,11 +16,11 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    /// By the band's metadata and, where that has no unit, the vertical part of the system. Doubts are added to the notes.
+    /// By the band's metadata and, where that has no unit, the vertical part of the system. Doubts are added to the warnings.
     ///
     /// # Errors
     /// A system that counts depths.
-    pub(super) fn of(band: &BandMetadata, crs: &Crs, notes: &mut Vec<String>) -> Result<Self, Error> {
+    pub(super) fn of(band: &BandMetadata, crs: &Crs, warnings: &mut Vec<Warning>) -> Result<Self, Error> {
         if crs.vertical.is_some_and(|vertical| vertical.is_depth) {
             return Err(Error::TiffValue {
                 tag: "vertical system (VerticalGeoKey)",
@@ -28,18 +29,19 @@ impl Heights {
             });
         }
         let of_system = crs.vertical.map(|vertical| vertical.unit);
-        match (band.unit, of_system, crs.unit) {
-            (Some(band), Some(system), _) if !band.is(&system) => notes.push(format!(
+        let doubt = match (band.unit, of_system, crs.unit) {
+            (Some(band), Some(system), _) if !band.is(&system) => Some(format!(
                 "the band's unit is {}, but that of its vertical system is {}: the band was followed",
                 band.name, system.name
             )),
-            (None, None, Some(unit)) if !unit.is_metre() => notes.push(format!(
-                "the file does not say the unit of its heights, and its coordinates are in {}s: heights were read as metres; \
-                 `gdal_edit.py -units \"{}\" FILE` says that they are not",
-                unit.name, unit.name
+            (None, None, Some(unit)) if !unit.is_metre() => Some(format!(
+                "the file does not say the unit of its heights, and its coordinates are in {0}: heights were read as metres; \
+                 `gdal_edit.py -units \"{0}\" FILE` says that they are not",
+                unit.name
             )),
-            _ => {}
-        }
+            _ => None,
+        };
+        warnings.extend(doubt.map(|detail| Warning::new(WarningKind::AssumedHeightUnit, detail)));
         let unit = band.unit.or(of_system).unwrap_or(LinearUnit::METRE);
         Ok(Heights {
             scale: band.scale.unwrap_or(1.0),
@@ -48,8 +50,13 @@ impl Heights {
         })
     }
 
-    /// Height of a sample [m].
+    /// Height of a sample [m]. Fill values that nothing marks stay as they are, unless a scale makes heights of all numbers.
     pub(super) fn height_m(&self, sample: f64) -> f64 {
-        (sample * self.scale + self.offset) * self.unit_m
+        let is_scaled = self.scale != 1.0 || self.offset != 0.0;
+        if !is_scaled && is_never_ground(sample) {
+            sample
+        } else {
+            (sample * self.scale + self.offset) * self.unit_m
+        }
     }
 }

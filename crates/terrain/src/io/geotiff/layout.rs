@@ -59,7 +59,8 @@ impl Layout {
         };
         let offsets = tags.unsigned_list(offsets)?;
         let counts = tags.unsigned_list(counts)?;
-        let row_bytes = block_columns.saturating_mul(bands as u64).saturating_mul(u64::from(sample.bits())) / 8;
+        let row_bytes =
+            block_columns.saturating_mul(bands as u64).saturating_mul(u64::from(sample.bits())) / 8;
         if block_columns == 0 || block_rows == 0 || row_bytes > LONGEST_ROW_BYTES {
             let found = format!("blocks of {block_columns} × {block_rows} pixels in {bands} bands");
             return Err(Error::TiffSamples { found });
@@ -168,8 +169,5 @@ pub(super) fn dimensions(tags: &mut Tags<'_, '_>) -> Result<(usize, usize), Erro
             Ok(value) => Ok(value as usize),
         }
     };
-    Ok((
-        side(Tag::ImageWidth, "ImageWidth", "columns")?,
-        side(Tag::ImageLength, "ImageLength", "rows")?,
-    ))
+    Ok((side(Tag::ImageWidth, "ImageWidth", "columns")?, side(Tag::ImageLength, "ImageLength", "rows")?))
 }

@@ -4,7 +4,11 @@ use std::io::Read;
 
 use lerc::{Sample, bitmask::BitMask};
 
-use super::{codec::{Compression, LercPacking}, raster::Band, sample::{Number, SampleType}};
+use super::{
+    codec::{Compression, LercPacking},
+    raster::Band,
+    sample::{Number, SampleType},
+};
 use crate::Error;
 
 /// Reads a block into rows; pixels that its mask leaves out hold NaN if they are floating-point numbers, `absent` otherwise.
@@ -56,7 +60,9 @@ fn decoded<'s, S: Sample, T: Number + 's>(
     let (width, height) = (info.width as usize, info.height as usize);
     let (depth, bands) = (info.depth.max(1) as usize, info.bands.max(1) as usize);
     // A strip at the lower end may be cut to the image.
-    let fits = width == layout.block_columns && height <= layout.block_rows && depth * bands == layout.samples_per_pixel();
+    let fits = width == layout.block_columns
+        && height <= layout.block_rows
+        && depth * bands == layout.samples_per_pixel();
     if !fits {
         let why = format!("LERC block of {width} × {height} pixels and {} bands", depth * bands);
         return Err(Error::TiffBlock { why });

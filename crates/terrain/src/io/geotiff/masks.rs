@@ -40,7 +40,12 @@ pub(super) fn apply<T: Number>(
     Ok(())
 }
 
-fn hide<T: Number>(samples: &mut [T], file: &TiffFile<'_>, layout: &Layout, band: usize) -> Result<(), Error> {
+fn hide<T: Number>(
+    samples: &mut [T],
+    file: &TiffFile<'_>,
+    layout: &Layout,
+    band: usize,
+) -> Result<(), Error> {
     let band = Band { file: file.bytes, big_endian: file.big_endian, layout, band };
     // A block of a mask that was never written is zero, as GDAL has it.
     let shown = if layout.is_absent(band.band) {

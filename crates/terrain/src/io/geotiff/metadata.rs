@@ -167,7 +167,8 @@ mod tests {
     #[test]
     fn what_cannot_be_honoured_is_refused_by_name() {
         let refused = |role: &str, value: &str| {
-            let text = format!("<GDALMetadata><Item sample=\"0\" role=\"{role}\">{value}</Item></GDALMetadata>");
+            let text =
+                format!("<GDALMetadata><Item sample=\"0\" role=\"{role}\">{value}</Item></GDALMetadata>");
             BandMetadata::parse(&text, 0).unwrap_err().to_string()
         };
         assert!(refused("unittype", "furlong").contains("furlong"));

@@ -2,8 +2,8 @@
 
 use super::geokeys::GeoKeys;
 use crate::{
-    Error, Grid, Terrain,
-    crs::{Crs, Size, UNTOLD_CELLS, refuse_degrees, to_ground, warp_command},
+    Error, Grid, Terrain, Warning, WarningKind,
+    crs::{Crs, Size, UNTOLD_CELLS, refuse_degrees, to_ground},
     resample::Affine,
 };
 
@@ -28,7 +28,7 @@ pub(super) enum Arrangement {
 }
 
 impl Placement {
-    /// Places a raster in metres of the ground. What had to be assumed or changed is added to the notes.
+    /// Places a raster in metres of the ground. What had to be assumed or changed is added to the warnings.
     ///
     /// # Errors
     /// Degrees, a scale that changes over the map, or a grid that no map may have.
@@ -37,39 +37,33 @@ impl Placement {
         size: Size,
         keys: &GeoKeys,
         crs: &Crs,
-        notes: &mut Vec<String>,
+        warnings: &mut Vec<Warning>,
     ) -> Result<Self, Error> {
         let affine = if keys.pixel_is_point() { affine.from_centres() } else { affine };
-        refuse_degrees(&affine, size, crs)?;
-        doubt_nameless(&affine, size, keys, notes)?;
-        let (affine, text) = to_ground(affine, size, crs, notes)?;
-        let (grid, arrangement) = lay_out(affine, size, notes)?;
+        refuse_degrees(&affine, size, crs, "tif")?;
+        if !keys.name_a_system() {
+            doubt_nameless(&affine, size, warnings)?;
+        }
+        let (affine, text) = to_ground(affine, size, crs, "tif", warnings)?;
+        let (grid, arrangement) = lay_out(affine, size, warnings)?;
         Ok(Placement { grid, arrangement, crs: text })
     }
 }
 
 /// Refuses a file without any system whose coordinates are plainly degrees, and doubts one that may be in metres.
-fn doubt_nameless(affine: &Affine, size: Size, keys: &GeoKeys, notes: &mut Vec<String>) -> Result<(), Error> {
-    if keys.name_a_system() {
-        return Ok(());
+fn doubt_nameless(affine: &Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(), Error> {
+    let coordinates = affine.coordinates(size);
+    coordinates.refuse_degrees("tif")?;
+    let doubt = coordinates.unit_warning();
+    if doubt.is_some() && affine.edges().iter().all(|edge| *edge < DEGREE_PIXEL) {
+        return Err(coordinates.degrees("tif"));
     }
-    let [west, south, east, north] = affine.bounds(size.columns, size.rows);
-    let within = west >= -180.0 && east <= 180.0 && south >= -90.0 && north <= 90.0;
-    let command = warp_command((west + east) / 2.0, (south + north) / 2.0).replace("gdalwarp", "gdalwarp -s_srs EPSG:4326");
-    if within && affine.edges().iter().all(|edge| *edge < DEGREE_PIXEL) {
-        let crs = "no coordinate reference system is named, and all lies within ±180 and ±90".into();
-        return Err(Error::Degrees { crs, command });
-    }
-    let degrees = format!("; should they be degrees of longitude and latitude, `{command}` brings them to metres");
-    notes.push(format!(
-        "the file names no coordinate reference system (CRS): its coordinates were read as metres{}",
-        if within { degrees.as_str() } else { "" }
-    ));
+    warnings.extend(doubt);
     Ok(())
 }
 
 /// The grid of a raster in metres of the ground.
-fn lay_out(affine: Affine, size: Size, notes: &mut Vec<String>) -> Result<(Grid, Arrangement), Error> {
+fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(Grid, Arrangement), Error> {
     /// Relative difference of a pixel's edges that comes of the digits they are written with.
     const WRITTEN_DIGITS: f64 = 1e-6;
     let [west_m, south_m, east_m, north_m] = affine.bounds(size.columns, size.rows);
@@ -78,22 +72,29 @@ fn lay_out(affine: Affine, size: Size, notes: &mut Vec<String>) -> Result<(Grid,
     let longest = columns.max(rows) as f64;
     let same = (width_m - height_m).abs() <= WRITTEN_DIGITS * width_m;
     let cell_size_m = if same { width_m } else { (width_m * height_m).sqrt() };
-    let displaced = ((width_m - cell_size_m).abs()).max((height_m - cell_size_m).abs()) / cell_size_m * longest;
+    let displaced =
+        ((width_m - cell_size_m).abs()).max((height_m - cell_size_m).abs()) / cell_size_m * longest;
     if affine.is_upright() && (same || displaced <= UNTOLD_CELLS) {
         if !same {
-            notes.push(format!("pixels of {width_m} × {height_m} m were taken as square ones of {cell_size_m} m"));
+            let detail =
+                format!("pixels of {width_m} × {height_m} m were taken as square ones of {cell_size_m} m");
+            warnings.push(Warning::new(WarningKind::Interpolated, detail));
         }
         let origin_m = [west_m, south_m];
         let grid = Terrain::check_size(rows, columns, cell_size_m, origin_m)?;
-        let cells = Arrangement::Cells { rows_from_north: affine.row[1] < 0.0, columns_from_east: affine.column[0] < 0.0 };
+        let cells = Arrangement::Cells {
+            rows_from_north: affine.row[1] < 0.0,
+            columns_from_east: affine.column[0] < 0.0,
+        };
         return Ok((grid, cells));
     }
     let count = |length_m: f64| (length_m / cell_size_m + WRITTEN_DIGITS).floor().max(1.0) as u64;
     let (columns, rows) = (count(east_m - west_m), count(north_m - south_m));
     let grid = Terrain::check_size(rows, columns, cell_size_m, [west_m, south_m])?;
     let shape = if affine.is_upright() { "oblong" } else { "turned" };
-    notes.push(format!(
+    let detail = format!(
         "pixels are {shape} ({width_m:.4} × {height_m:.4} m): elevations were interpolated onto cells of {cell_size_m:.4} m, north up"
-    ));
+    );
+    warnings.push(Warning::new(WarningKind::Interpolated, detail));
     Ok((grid, Arrangement::Resampled(affine)))
 }

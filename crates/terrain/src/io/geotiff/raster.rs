@@ -32,22 +32,24 @@ impl Band<'_> {
         let across = layout.across();
         // Blocks of the same rows are decoded by one task, which alone writes these rows.
         let rows_of_blocks = samples.par_chunks_mut(layout.block_rows.min(layout.rows) * layout.columns);
-        rows_of_blocks.zip(layout.blocks_of(self.band).par_chunks(across)).try_for_each(|(rows, blocks)| {
-            let mut scratch = Scratch::default();
-            for (index, block) in blocks.iter().enumerate() {
-                let left = index * layout.block_columns;
-                let width = layout.block_columns.min(layout.columns - left);
-                if is_absent(*block) {
-                    continue;
+        rows_of_blocks.zip(layout.blocks_of(self.band).par_chunks(across)).try_for_each(
+            |(rows, blocks)| {
+                let mut scratch = Scratch::default();
+                for (index, block) in blocks.iter().enumerate() {
+                    let left = index * layout.block_columns;
+                    let width = layout.block_columns.min(layout.columns - left);
+                    if is_absent(*block) {
+                        continue;
+                    }
+                    let rows = rows.chunks_mut(layout.columns).map(|row| &mut row[left..left + width]);
+                    match layout.compression {
+                        Compression::Lerc(_) => lerc::read(self, *block, absent, rows)?,
+                        _ => self.read_block(*block, &mut scratch, rows)?,
+                    }
                 }
-                let rows = rows.chunks_mut(layout.columns).map(|row| &mut row[left..left + width]);
-                match layout.compression {
-                    Compression::Lerc(_) => lerc::read(self, *block, absent, rows)?,
-                    _ => self.read_block(*block, &mut scratch, rows)?,
-                }
-            }
-            Ok::<(), Error>(())
-        })?;
+                Ok::<(), Error>(())
+            },
+        )?;
         Ok(samples)
     }
 

@@ -99,7 +99,9 @@ impl Predictor {
             1 => Ok(Predictor::None),
             2 if !matches!(sample, SampleType::Packed(_)) => Ok(Predictor::Horizontal),
             3 if sample.is_float() => Ok(Predictor::Float),
-            other => Err(Error::TiffSamples { found: format!("{} bit samples under predictor {other}", sample.bits()) }),
+            other => Err(Error::TiffSamples {
+                found: format!("{} bit samples under predictor {other}", sample.bits()),
+            }),
         }
     }
 }
