@@ -4,7 +4,7 @@
 
 use std::io::Cursor;
 
-use terrain::{Cell, Error, Terrain, io};
+use terrain::{Cell, Error, Grid, Terrain, crs::Crs, io};
 use tiff::{
     encoder::{TiffEncoder, colortype::Gray32Float},
     tags::Tag,
@@ -203,8 +203,10 @@ fn a_mercator_is_brought_to_the_ground_or_refused_where_one_scale_does_not_do() 
         );
         assert_ne!(terrain.crs.as_deref(), Some("EPSG:3857"), "its coordinates are others now");
     }
-    let long = File { scale: [20_000.0, 20_000.0, 0.0], ..mercator(File::epsg(3857).keys) };
-    assert!(long.refused().contains("-t_srs EPSG:32632"), "{}", long.refused());
+    let grid = Grid { rows: 500, columns: 500, cell_size_m: 100.0, origin_m: [1_113_194.9, 8_399_737.9] };
+    let wide = Terrain::new(grid, &vec![1.0; grid.cells()]).unwrap();
+    let refused = wide.placed_in(&Crs::from_epsg(3857), "asc").unwrap_err().to_string();
+    assert!(refused.contains("-t_srs EPSG:32632") && refused.contains("in.asc"), "{refused}");
 }
 
 #[test]
