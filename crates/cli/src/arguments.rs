@@ -1,11 +1,6 @@
 //! Arguments that several commands take, and what they mean.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    str::FromStr,
-    time::Instant,
-};
+use std::{fs, path::PathBuf, str::FromStr, time::Instant};
 
 use clap::Args;
 use model::{PowerModel, robot::RobotFile};
@@ -16,9 +11,9 @@ use service::{
         robots::RobotChoice,
     },
 };
-use terrain::{Grid, Terrain, io};
+use terrain::{Grid, Terrain, Warning, io};
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, output};
 
 /// A place on the map: metres, or fractions of its extent, with a heading if one is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,12 +69,64 @@ impl Place {
     }
 }
 
+/// A map and how it is to be read.
+#[derive(Args)]
+pub(crate) struct MapArguments {
+    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .yaml ROS map
+    #[arg(long)]
+    map: PathBuf,
+    #[command(flatten)]
+    reading: MapReading,
+}
+
+/// How a map is to be read.
+#[derive(Args)]
+struct MapReading {
+    /// Fill holes of unknown ground up to this wide from the ground around them [m] [default: none]
+    #[arg(long, visible_alias = "fill-voids", value_name = "M")]
+    fill_voids_m: Option<f64>,
+    /// Elevation of unknown cells, beside those that the map marks [m] [default: none]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    nodata: Option<f64>,
+}
+
+impl MapReading {
+    fn options(&self) -> io::Options {
+        io::Options { nodata_m: self.nodata, fill_voids_m: self.fill_voids_m, ..io::Options::default() }
+    }
+}
+
+impl MapArguments {
+    /// Reads the map; what is doubtful about it goes to standard error.
+    pub(crate) fn read(&self) -> anyhow::Result<Terrain> {
+        let path = &self.map;
+        let terrain = io::read_path_as(path, &self.reading.options()).map_err(|error| {
+            let message = error.to_string();
+            let named = message.contains(&path.display().to_string());
+            BadInput(if named { message } else { format!("{}: {message}", path.display()) })
+        })?;
+        warn(terrain.warnings());
+        Ok(terrain)
+    }
+}
+
+/// Prints warnings to standard error, a line each.
+pub(crate) fn warn<'a>(warnings: impl IntoIterator<Item = &'a Warning>) {
+    for warning in warnings {
+        output::note(format_args!("warning: {}", warning.detail));
+    }
+}
+
+/// Prints those warnings of an answer that are not of its map, which have been printed when it was read.
+pub(crate) fn warn_of_answer(warnings: &[Warning], terrain: &Terrain) {
+    warn(warnings.iter().filter(|warning| !terrain.warnings().contains(warning)));
+}
+
 /// Map, robot and how to drive: what all commands over a map share.
 #[derive(Args)]
 pub(crate) struct Driving {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file
     #[arg(long, default_value = "husky-a200")]
     robot: String,
@@ -106,7 +153,7 @@ pub(crate) struct Driving {
 impl Driving {
     /// Reads the map and the robot.
     pub(crate) fn read(&self) -> anyhow::Result<(Terrain, RobotChoice)> {
-        Ok((read_map(&self.map)?, read_robot(&self.robot)?))
+        Ok((self.map.read()?, read_robot(&self.robot)?))
     }
 }
 
@@ -209,14 +256,6 @@ impl Question {
 pub(crate) fn patience() -> Patience {
     const PATIENCE: u32 = 10;
     Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
-}
-
-pub(crate) fn read_map(path: &Path) -> anyhow::Result<Terrain> {
-    io::read_path(path).map_err(|error| {
-        let message = error.to_string();
-        let named = message.contains(&path.display().to_string());
-        BadInput(if named { message } else { format!("{}: {message}", path.display()) }).into()
-    })
 }
 
 /// A built-in robot's name stays a name; anything else is a file.

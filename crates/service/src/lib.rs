@@ -25,6 +25,7 @@ mod job_watch;
 mod jobs;
 mod layers;
 mod limits;
+mod map_reader;
 mod maps;
 mod memory;
 mod metrics;

@@ -1,7 +1,5 @@
 //! `joulepath mission`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use service::routes::{
     mission::{ChargerRequest, MissionAnswer, MissionRequest, OrderName, WaypointRequest, answer},
@@ -9,7 +7,7 @@ use service::routes::{
 };
 
 use crate::{
-    arguments::{Place, patience, read_map, read_robot},
+    arguments::{MapArguments, Place, patience, read_robot},
     failure::{OutOfCharge, Refused},
     output,
     table::{energy, time},
@@ -17,9 +15,8 @@ use crate::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file; it needs a battery
     #[arg(long, default_value = "husky-a200")]
     robot: String,
@@ -74,7 +71,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let terrain = read_map(&arguments.map)?;
+    let terrain = arguments.map.read()?;
     let [x_m, y_m] = arguments.start.on(&terrain.grid);
     let waypoint = |place: &Place| {
         let [x_m, y_m] = place.on(&terrain.grid);

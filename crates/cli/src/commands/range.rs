@@ -1,7 +1,5 @@
 //! `joulepath range`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use mission::Doubt;
 use service::routes::{
@@ -10,7 +8,7 @@ use service::routes::{
 };
 
 use crate::{
-    arguments::{Place, patience, read_map, read_robot},
+    arguments::{MapArguments, Place, patience, read_robot},
     failure::{OutOfCharge, Refused},
     output,
     table::{energy, time},
@@ -18,9 +16,8 @@ use crate::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file; it needs a battery
     #[arg(long, default_value = "husky-a200")]
     robot: String,
@@ -69,7 +66,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let terrain = read_map(&arguments.map)?;
+    let terrain = arguments.map.read()?;
     let [x_m, y_m] = arguments.start.on(&terrain.grid);
     let goal = arguments.goal.map(|goal| {
         let [x_m, y_m] = goal.on(&terrain.grid);

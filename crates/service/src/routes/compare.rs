@@ -58,11 +58,12 @@ pub fn answer(
     patience: &Patience,
 ) -> Result<CompareAnswer, Problem> {
     let query = request.query(planner, patience);
-    let found = planner.compare(&query).map_err(|e| Problem::no_plan(&e))?;
+    let found = planner.compare(&query).map_err(|error| request.no_plan(planner, &error))?;
+    let path = |plan: &planner::Plan| PlanAnswer::from(plan).warned(planner, request);
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
-        energy: (&found.energy).into(),
-        distance: (&found.distance).into(),
-        time: (&found.time).into(),
+        energy: path(&found.energy),
+        distance: path(&found.distance),
+        time: path(&found.time),
     })
 }

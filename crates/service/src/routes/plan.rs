@@ -1,6 +1,8 @@
 //! `POST /v1/plan`: one path.
 
 mod document;
+mod unknown_ground;
+mod warnings;
 mod work;
 
 use std::{
@@ -29,6 +31,7 @@ use crate::{
 };
 
 pub use document::{PlanAnswer, PoseAnswer, RefinedAnswer, SearchAnswer, SnapAnswer, Snapped};
+pub(crate) use unknown_ground::no_plan_over;
 pub(crate) use work::with_planner;
 
 /// What to plan.
@@ -189,12 +192,12 @@ pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> 
     let objective = request.objective.into();
     let limits = request.limits()?;
     if request.hold_goal {
-        planner.hold_goal(&query, objective).map_err(|e| Problem::no_plan(&e))?;
+        planner.hold_goal(&query, objective).map_err(|e| request.no_plan(planner, &e))?;
     }
     let found = routing::plan_within(planner, &query, objective, &limits)
-        .map_err(|e| Problem::no_routing(&e))
+        .map_err(|error| request.no_routing(planner, &error))
         .map_err(|problem| request.too_steep(planner, problem, patience))?;
-    Ok(PlanAnswer::from(&found))
+    Ok(PlanAnswer::from(&found).warned(planner, request))
 }
 
 /// A time that a request allows; `None` where no clock counts that far, which is no limit.
@@ -308,6 +311,20 @@ impl PlanRequest {
             "no path keeps within a slope of {max_slope_rad:.3} rad; the best path without that limit comes to {steepest_rad:.3} rad: raise max_slope_rad"
         );
         Problem::new(ProblemType::LimitsContradict, detail).at("/max_slope_rad")
+    }
+
+    /// Why the planner has no path for the request.
+    pub(crate) fn no_plan(&self, planner: &Planner, error: &planner::Error) -> Problem {
+        let ends_m = [[self.start.x_m, self.start.y_m], [self.goal.x_m, self.goal.y_m]];
+        no_plan_over(planner, ends_m, error)
+    }
+
+    /// Why a question within limits has no answer.
+    pub(crate) fn no_routing(&self, planner: &Planner, error: &routing::Error) -> Problem {
+        match error {
+            routing::Error::Planner(error) => self.no_plan(planner, error),
+            other => Problem::no_routing(other),
+        }
     }
 
     /// A planner over a terrain for the request's robot.

@@ -12,11 +12,11 @@ use model::PowerModel;
 use planner::{Patience, Planner};
 use routing::{Kind, Polygon, Reach, Waypoint, available_j, reach};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, io::geotiff};
+use terrain::{MapFile, Warning, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, no_plan_over, with_planner},
     robots::RobotChoice,
 };
 use crate::{
@@ -84,6 +84,9 @@ pub struct ReachableAnswer {
     pub kind: String,
     /// A contour for each energy, in the order of the request.
     pub features: Vec<ContourFeature>,
+    /// Doubts about the map.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// A contour.
@@ -224,6 +227,7 @@ pub struct Found {
     pub reach: Reach,
     kind: KindName,
     energies_j: Vec<(f64, Option<f64>)>,
+    warnings: Vec<Warning>,
 }
 
 impl Found {
@@ -240,9 +244,16 @@ impl Found {
             KindName::OutAndBack => Kind::OutAndBack,
         };
         let place = Waypoint::from(&request.start);
-        let reach = reach(planner, &place, kind, most_j, request.snap_radius_m, patience)
-            .map_err(|error| Problem::no_routing(&error))?;
-        Ok(Found { reach, kind: request.kind, energies_j })
+        let place_m = [request.start.x_m, request.start.y_m];
+        let reach =
+            reach(planner, &place, kind, most_j, request.snap_radius_m, patience).map_err(|error| {
+                match &error {
+                    routing::Error::Planner(error) => no_plan_over(planner, [place_m, place_m], error),
+                    other => Problem::no_routing(other),
+                }
+            })?;
+        let warnings = planner.lattice().terrain.warnings().to_vec();
+        Ok(Found { reach, kind: request.kind, energies_j, warnings })
     }
 
     /// Writes the contours as GeoJSON, of which one at a time is in memory.
@@ -253,7 +264,9 @@ impl Found {
             let contour = self.contour(energy, patience)?;
             serde_json::to_writer(&mut *out, &contour).map_err(io::Error::from)?;
         }
-        Ok(out.write_all(b"]}")?)
+        out.write_all(br#"],"warnings":"#)?;
+        serde_json::to_writer(&mut *out, &self.warnings).map_err(io::Error::from)?;
+        Ok(out.write_all(b"}")?)
     }
 
     /// The contours as GeoJSON.
@@ -263,7 +276,11 @@ impl Found {
     pub fn contours(&self, patience: &Patience) -> Result<ReachableAnswer, Problem> {
         let features = self.energies_j.iter().map(|energy| self.contour(energy, patience));
         let features = features.collect::<Result<_, Problem>>()?;
-        Ok(ReachableAnswer { kind: "FeatureCollection".to_owned(), features })
+        Ok(ReachableAnswer {
+            kind: "FeatureCollection".to_owned(),
+            features,
+            warnings: self.warnings.clone(),
+        })
     }
 
     /// The ground within an energy, which may stand for a charge.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use planner::{Plan, Pose, Snap};
 use serde::{Deserialize, Serialize};
+use terrain::Warning;
 use utoipa::ToSchema;
 
 /// A path with its predicted energy.
@@ -37,6 +38,9 @@ pub struct PlanAnswer {
     pub snapped: Snapped,
     /// What the search did.
     pub search: SearchAnswer,
+    /// Doubts about the map and about the path over it.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// A path that leaves the lattice.
@@ -130,6 +134,7 @@ impl From<&Plan> for PlanAnswer {
                 excess_at_most: plan.search.excess,
                 timed_out: plan.search.timed_out,
             },
+            warnings: Vec::new(),
         }
     }
 }

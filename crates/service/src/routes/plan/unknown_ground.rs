@@ -1,0 +1,53 @@
+//! Whether unknown ground is why there is no path, and how to fill it.
+
+use planner::{Blocked, Error, Planner};
+use terrain::{Terrain, gaps::gap_between};
+
+use crate::problem::Problem;
+
+/// Why a planner has no path between two places, x and y [m], with the unknown ground that is in the way and how to fill it.
+pub(crate) fn no_plan_over(planner: &Planner, ends_m: [[f64; 2]; 2], error: &Error) -> Problem {
+    let problem = Problem::no_plan(error);
+    let lattice = planner.lattice();
+    let hint = match error {
+        Error::NoPath { .. } | Error::NoRoomToTurn { .. } => parted(&lattice.terrain, ends_m)
+            .or_else(|| small_holes(&lattice.terrain, lattice.robot.wheelbase_m)),
+        Error::PlaceBlocked { reason: Blocked::Unknown { .. }, .. } => {
+            small_holes(&lattice.terrain, lattice.robot.wheelbase_m)
+        }
+        _ => None,
+    };
+    match hint {
+        Some(hint) => problem.and(&hint),
+        None => problem,
+    }
+}
+
+/// How two places are parted by unknown ground, if they are.
+fn parted(terrain: &Terrain, ends_m: [[f64; 2]; 2]) -> Option<String> {
+    let [start, goal] = ends_m.map(|[x_m, y_m]| terrain.grid.cell_at(x_m, y_m));
+    let gap = gap_between(terrain, start?, goal?)?;
+    let width_m = gap.widest_cells as f64 * terrain.grid.cell_size_m;
+    let [x_m, y_m] = gap.at_m;
+    let cells =
+        if gap.widest_cells == 1 { "one cell".to_owned() } else { format!("{} cells", gap.widest_cells) };
+    Some(format!(
+        "unknown ground parts the map between start and goal: where it is narrowest, near ({x_m:.2}, {y_m:.2}), the strip is {cells} ({width_m} m) wide; {}",
+        mend(width_m)
+    ))
+}
+
+/// How many cells are unknown, and how to fill holes that are smaller than the robot; none where all is known.
+fn small_holes(terrain: &Terrain, wheelbase_m: f64) -> Option<String> {
+    let unknown = terrain.relative_m().iter().filter(|z| z.is_nan()).count();
+    let width_m = wheelbase_m.max(terrain.grid.cell_size_m);
+    (unknown > 0).then(|| {
+        format!("{unknown} cells of the map are unknown ground, which no wheel may touch; {}", mend(width_m))
+    })
+}
+
+fn mend(width_m: f64) -> String {
+    format!(
+        "if such gaps are those of a survey over ground that goes on, fill them by --fill-voids-m {width_m} (fill_voids_m={width_m} in the query of POST /v1/maps)"
+    )
+}
