@@ -7,9 +7,14 @@ pub mod geotiff;
 pub mod json;
 pub mod ros_map;
 
-use std::{fs, io::Read, path::Path};
+use std::{
+    fs,
+    io::{Cursor, Read},
+    path::Path,
+};
 
 use flate2::read::MultiGzDecoder;
+use tiff::{ColorType, decoder::Decoder};
 
 use crate::{Error, Terrain, crs::Crs};
 
@@ -86,7 +91,15 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
         Format::Ascii => ascii::read(text(bytes)?, options),
         Format::GeoTiff => geotiff::read(bytes, options.most_cells).map_err(Error::in_geotiff),
     }?;
-    terrain.as_asked(options)
+    let terrain = terrain.as_asked(options)?;
+    let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
+    Ok(if is_bytes { terrain.with_doubt_of_bytes() } else { terrain })
+}
+
+/// Whether a TIFF holds one number of 8 bits for each pixel.
+fn holds_bytes(tiff: &[u8]) -> bool {
+    let color = Decoder::new(Cursor::new(tiff)).and_then(|mut decoder| decoder.colortype());
+    matches!(color, Ok(ColorType::Gray(8)))
 }
 
 /// Reads a ROS `map_server` map, whose image `image` finds by the name that the YAML has for it.

@@ -124,10 +124,12 @@ impl Steps {
 fn candidates(terrain: &Terrain, values: &Values) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = Vec::new();
     let conventional = fill_value::POSSIBLY_GROUND;
+    // As the cells have them, in single precision.
+    let cells_m = 0.0..=(values.highest_m - terrain.base_m) as f32;
     for value in conventional.into_iter().chain([values.lowest_m, values.highest_m]) {
         let relative_m = (value - terrain.base_m) as f32;
         let is_new = candidates.iter().all(|candidate| candidate.relative_m != relative_m);
-        if is_new && (values.lowest_m..=values.highest_m).contains(&value) {
+        if is_new && cells_m.contains(&relative_m) {
             candidates.push(Candidate { value, relative_m, cells: 0, edges: 0, least_edge_m: f64::INFINITY });
         }
     }
