@@ -145,7 +145,7 @@ impl<'a> Node<'a> {
         let metres = self.unit().map_or(1.0, |unit| unit.metres);
         let true_scale_rad =
             number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0).to_radians();
-        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]);
+        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]).filter(|scale| *scale > 0.0);
         let spherical = ["auxiliary", "pseudo", "visualisation", "web"];
         let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]).and_then(|base| base.words.first());
         Some(Mercator {
