@@ -149,10 +149,12 @@ pub enum Error {
         epsg: u32,
     },
     /// Text that is not UTF-8.
-    #[error("byte {position} is not UTF-8 text: is this really an ASCII grid or JSON?")]
+    #[error("byte {position} is not UTF-8 text{}", is_of(*found))]
     NotText {
         /// Offset of the first bad byte.
         position: usize,
+        /// What the first bytes say it is.
+        found: Option<&'static str>,
     },
     /// The TIFF decoder refused the file.
     #[error("not a readable GeoTIFF: {0}")]
@@ -276,5 +278,13 @@ impl Error {
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),
             _ => return None,
         })
+    }
+}
+
+/// What bytes are that should be text.
+fn is_of(found: Option<&str>) -> String {
+    match found {
+        Some(found) => format!(": this is {found}, not an ASCII grid or JSON; send or name it as that"),
+        None => ": is this really an ASCII grid or JSON?".to_owned(),
     }
 }

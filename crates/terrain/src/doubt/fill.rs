@@ -14,7 +14,7 @@ const FALSE_ALARM: f64 = 1e-6;
 /// value must be a conventional fill value ([`fill_value::is_conventional`]) beside ground with relief of its own, or stand
 /// off by more than anything that stands on the ground.
 pub(super) fn fill_value(steps: &Steps) -> Option<Warning> {
-    let candidate = steps.candidates.iter().filter(|one| is_fill(one, steps)).max_by_key(|one| one.cells)?;
+    let candidate = steps.candidates.iter().filter(|one| is_fill(one)).max_by_key(|one| one.cells)?;
     let Candidate { value, cells, least_edge_m, .. } = *candidate;
     let verb = if cells == 1 { "cell holds" } else { "cells hold" };
     let detail = format!(
@@ -23,14 +23,15 @@ pub(super) fn fill_value(steps: &Steps) -> Option<Warning> {
     Some(Warning::new(WarningKind::FillValue, detail))
 }
 
-fn is_fill(candidate: &Candidate, steps: &Steps) -> bool {
-    if candidate.edges == 0 || candidate.least_edge_m <= steps.highest_m {
+fn is_fill(candidate: &Candidate) -> bool {
+    if candidate.edges == 0 || candidate.least_edge_m <= candidate.highest_other_m {
         return false;
     }
     let is_taller_than_things = candidate.least_edge_m > TALLEST_TREE_M;
-    let has_relief_beside = steps.sloped >= candidate.edges;
+    let has_relief_beside = candidate.sloped_others >= candidate.edges;
     let is_conventional = fill_value::is_conventional(candidate.value) && has_relief_beside;
-    (is_taller_than_things || is_conventional) && log_chance(candidate.edges, steps.count) < FALSE_ALARM.ln()
+    (is_taller_than_things || is_conventional)
+        && log_chance(candidate.edges, candidate.others) < FALSE_ALARM.ln()
 }
 
 /// Logarithm of the chance that so many steps drawn at random are the highest of all: of 1 / (e + n over e).
