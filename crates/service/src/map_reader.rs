@@ -14,8 +14,9 @@ use crate::{
 
 /// Bytes of a cell while an ESRI ASCII grid is read: as it comes, from the south, and as it is kept.
 const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
-/// The same of a GeoTIFF, of which a chunk of samples is at hand beside them, as it stands and as numbers.
-const TIFF_CELL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8;
+/// The same of a GeoTIFF: samples in double precision, what its mask shows, their interpolation onto other cells, and cells as
+/// they are kept.
+const TIFF_CELL_BYTES: u64 = 8 + 1 + 8 + 4;
 /// The same of a ROS map: a pixel of four colours in 16 bits, as it is decoded and as one colour, and what it stands for.
 const PIXEL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8 + 2;
 /// Bytes of a cell while holes are filled: two sums, two marks and its place in a hole.

@@ -86,6 +86,14 @@ pub enum Error {
         /// Largest magnitude accepted.
         limit: f64,
     },
+    /// A coordinate reference system that a map's metres cannot be in.
+    #[error(
+        "crs is `{found}`, but must be `EPSG:` and the code of a projected system, or its WKT: leave it out if there is none"
+    )]
+    Crs {
+        /// The text found, or its beginning.
+        found: String,
+    },
     /// More surface classes than a byte can index.
     #[error("surface names more than {limit} classes, the last of them `{name}`")]
     TooManySurfaces {
@@ -175,15 +183,47 @@ pub enum Error {
         /// Name of the missing tag.
         tag: &'static str,
     },
-    /// A GeoTIFF in degrees, feet or a rotated frame.
-    #[error("the GeoTIFF's {what} is {value}, but must be {expected}: reproject it to north-up metres")]
-    TiffFrame {
-        /// The property at fault.
-        what: &'static str,
+    /// A property of a GeoTIFF that cannot be honoured.
+    #[error("the GeoTIFF's {tag} is `{value}`, but must be {expected}")]
+    TiffValue {
+        /// The property and where it stands.
+        tag: &'static str,
         /// The value found.
-        value: f64,
-        /// The value needed.
+        value: String,
+        /// What it must be, and the command that makes it so where there is one.
         expected: &'static str,
+    },
+    /// A compression that is not read.
+    #[error(
+        "the GeoTIFF is compressed with {name} (compression {code}), which is not read: recompress it with `gdal_translate -co COMPRESS=DEFLATE in.tif out.tif`"
+    )]
+    TiffCompression {
+        /// The code that stands in the file.
+        code: u64,
+        /// The compression's name.
+        name: &'static str,
+    },
+    /// A strip or tile that cannot be decoded.
+    #[error("a block of the GeoTIFF is damaged: {why}; copy or export the file again")]
+    TiffBlock {
+        /// What the decoder says.
+        why: String,
+    },
+    /// A Mercator projection whose scale changes over the map by more than its cells can tell.
+    #[error(
+        "the map is in a Mercator projection ({crs}), of which a metre is {south:.4} m of ground in its south and {north:.4} m in its north: bring it to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif`"
+    )]
+    MercatorScale {
+        /// The coordinate reference system.
+        crs: String,
+        /// Ground by map at the southern edge.
+        south: f64,
+        /// Ground by map at the northern edge.
+        north: f64,
+        /// Ending of the file's name.
+        ending: &'static str,
+        /// EPSG code of the UTM zone of the middle.
+        epsg: u32,
     },
     /// A TIFF whose samples are not one elevation per pixel.
     #[error("the GeoTIFF holds {found}, but one band of integer or float elevation is needed")]
@@ -273,6 +313,7 @@ impl Error {
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
+            Error::Crs { .. } => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),

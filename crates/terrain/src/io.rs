@@ -16,7 +16,7 @@ use std::{
 use flate2::read::MultiGzDecoder;
 use tiff::{ColorType, decoder::Decoder};
 
-use crate::{Error, Terrain};
+use crate::{Error, Terrain, crs::Crs};
 
 /// How a map is to be read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,8 +69,8 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
     let has = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
     let terrain = match () {
         () if has(&[".json"]) => read_bytes(Format::Json, &bytes()?, options)?,
-        () if has(&[".asc"]) => read_bytes(Format::Ascii, &bytes()?, options)?,
-        () if has(&[".asc.gz"]) => read_bytes(Format::Ascii, &unpacked(&bytes()?, path)?, options)?,
+        () if has(&[".asc"]) => read_ascii_beside(&bytes()?, path, options)?,
+        () if has(&[".asc.gz"]) => read_ascii_beside(&unpacked(&bytes()?, path)?, path, options)?,
         () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
         () if has(&[".yaml", ".yml"]) => {
             let folder = path.parent().unwrap_or(Path::new("."));
@@ -112,6 +112,22 @@ pub fn read_ros_map(
     image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<Terrain, Error> {
     ros_map::read(text(yaml)?, options.most_cells, image)?.as_asked(options)
+}
+
+/// An ESRI ASCII grid, placed in the system that a `.prj` file beside it names, if there is one that can be read.
+fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Terrain, Error> {
+    let stem = path.with_extension("");
+    let bare =
+        if stem.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("asc")) { &stem } else { path };
+    let beside = ["prj", "PRJ"].iter().find_map(|ending| {
+        let bytes = fs::read(bare.with_extension(ending)).ok()?;
+        Crs::parse(text(&bytes).ok()?)
+    });
+    let terrain = ascii::read(text(bytes)?, options)?;
+    match beside {
+        Some(crs) => terrain.placed_in(&crs, "asc")?.as_asked(options),
+        None => terrain.as_asked(options),
+    }
 }
 
 /// The bytes as text, without a byte order mark.

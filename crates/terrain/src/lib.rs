@@ -4,6 +4,7 @@
 //! southernmost, `origin_m` the south-west corner of cell (0, 0), so the centre of a cell lies half a cell further in.
 //! This crate knows nothing of robots.
 
+pub mod crs;
 mod doubt;
 mod error;
 pub mod fill_value;
@@ -14,6 +15,8 @@ pub mod hillshade;
 pub mod io;
 mod nodata;
 mod patch;
+mod resample;
+mod samples;
 pub mod slope;
 pub mod synthetic;
 mod terrain;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Cell, Error, Grid, Warning, WarningKind, fill_value};
+use crate::{Cell, Error, Grid, Warning, fill_value, samples::Survey};
 
 /// Ground on a grid. Unknown cells and obstacles are impassable. Clones share their cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Terrain {
     /// Cells whose elevation was worked out from the ground around a hole.
     pub(crate) filled: Option<Arc<Vec<bool>>>,
     pub(crate) warnings: Arc<Vec<Warning>>,
+    /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
+    pub crs: Option<String>,
 }
 
 /// What the ground is made of, cell by cell.
@@ -80,23 +82,7 @@ impl Terrain {
     /// Any of the grid's numbers out of range, an absurd elevation, or no known cell at all.
     pub fn new(grid: Grid, elevation_m: &[f64]) -> Result<Self, Error> {
         check_grid(&grid)?;
-        let mut lowest_m = f64::INFINITY;
-        let mut unmarked = UnmarkedNodata::default();
-        for (index, &value) in elevation_m.iter().enumerate() {
-            if value.is_nan() {
-                continue;
-            }
-            if fill_value::is_never_ground(value) {
-                unmarked.count(value);
-                continue;
-            }
-            if !Self::holds(value) {
-                let Cell { row, column } = grid.cell(index);
-                let (min, max) = (Self::LOWEST_M, Self::HIGHEST_M);
-                return Err(Error::Elevation { row, column, value, min, max });
-            }
-            lowest_m = lowest_m.min(value);
-        }
+        let survey = Survey::of(&grid, elevation_m, &|z| z)?;
         if elevation_m.len() != grid.cells() {
             return Err(Error::RowCount {
                 layer: "elevation_m",
@@ -104,22 +90,21 @@ impl Terrain {
                 expected: grid.rows,
             });
         }
-        if lowest_m.is_infinite() {
-            return Err(Error::AllUnknown);
-        }
+        let lowest_m = survey.lowest_m;
         let relative =
             |z: &f64| if fill_value::is_never_ground(*z) { f32::NAN } else { (z - lowest_m) as f32 };
-        let relative_m = Arc::new(elevation_m.iter().map(relative).collect());
-        let warnings = Arc::new(unmarked.warning().into_iter().collect());
-        Ok(Terrain {
-            grid,
-            base_m: lowest_m,
-            relative_m,
-            surfaces: None,
-            obstacle: None,
-            filled: None,
-            warnings,
+        let terrain = Self::of_relative(grid, lowest_m, elevation_m.iter().map(relative).collect());
+        Ok(match survey.warning() {
+            Some(warning) => terrain.with_warning(warning),
+            None => terrain,
         })
+    }
+
+    /// Ground without anything but elevations, counted from the lowest of them.
+    pub(crate) fn of_relative(grid: Grid, base_m: f64, relative_m: Vec<f32>) -> Self {
+        let relative_m = Arc::new(relative_m);
+        let (surfaces, obstacle, filled, warnings, crs) = (None, None, None, Arc::default(), None);
+        Terrain { grid, base_m, relative_m, surfaces, obstacle, filled, warnings, crs }
     }
 
     /// Checks rows, columns, cell size and origin before anything of their size is allocated.
@@ -280,34 +265,11 @@ impl Terrain {
             hash.update((warning.detail.len() as u64).to_le_bytes());
             hash.update(warning.detail.as_bytes());
         }
-        hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
-    }
-}
-
-/// Cells of conventional fill values that nothing marks.
-#[derive(Default)]
-struct UnmarkedNodata {
-    first: f64,
-    cells: usize,
-}
-
-impl UnmarkedNodata {
-    fn count(&mut self, value: f64) {
-        if self.cells == 0 {
-            self.first = value;
+        if let Some(crs) = &self.crs {
+            hash.update(b"crs");
+            hash.update(crs.as_bytes());
         }
-        self.cells += 1;
-    }
-
-    fn warning(&self) -> Option<Warning> {
-        let UnmarkedNodata { first, cells } = *self;
-        let word = if cells == 1 { "cell holds" } else { "cells hold" };
-        (cells > 0).then(|| {
-            let detail = format!(
-                "{cells} {word} {first:?}, a value by which programs mark missing ground and which no header marks here: taken as unknown ground"
-            );
-            Warning::new(WarningKind::UnmarkedNodata, detail)
-        })
+        hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
@@ -329,6 +291,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::WarningKind;
 
     fn plane() -> Terrain {
         let grid = Grid { rows: 4, columns: 6, cell_size_m: 0.5, origin_m: [0.0, 0.0] };

@@ -38,6 +38,18 @@ pub enum WarningKind {
     UnusualElevation,
     /// Coordinates could be degrees, and nothing says that they are metres.
     UnknownUnit,
+    /// The file holds several images or bands, of which one was read.
+    FirstOfSeveral,
+    /// The unit of coordinates was assumed, or is disputed by the file itself.
+    AssumedUnit,
+    /// The unit of elevations was assumed, or is disputed by the file itself.
+    AssumedHeightUnit,
+    /// Coordinates were multiplied by the scale of their projection.
+    ProjectionScale,
+    /// Elevations were interpolated onto square cells.
+    Interpolated,
+    /// Parts of the file that were never written hold zero.
+    UnwrittenBlocks,
     /// Cells far larger than the robot.
     CoarseCells,
     /// Moving the ends to the centres of cells matters to the energy.

@@ -37,6 +37,11 @@ pub struct MapSummary {
     /// South-west corner, x and y [m].
     #[schema(min_items = 2, max_items = 2)]
     pub origin_m: [f64; 2],
+    /// Coordinate reference system whose easting and northing, in metres, are x and y: `EPSG:` and a code, or WKT. Left out
+    /// where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, example = "EPSG:26915")]
+    pub crs: Option<String>,
     /// Lowest and highest known elevation [m].
     #[schema(min_items = 2, max_items = 2)]
     pub elevation_range_m: [f64; 2],
@@ -68,6 +73,7 @@ impl MapSummary {
             columns: grid.columns,
             cell_size_m: grid.cell_size_m,
             origin_m: grid.origin_m,
+            crs: terrain.crs.clone(),
             elevation_range_m: [terrain.base_m(), terrain.base_m() + f64::from(highest_m)],
             passable_fraction: passable as f64 / grid.cells() as f64,
             surfaces: terrain.surfaces().map_or(Vec::new(), |s| s.names.clone()),

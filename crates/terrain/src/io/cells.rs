@@ -6,12 +6,13 @@
 //! 4 bytes  "JPT1"
 //! u64 × 2  rows, columns
 //! f64 × 4  cell_size_m, x and y of the south-west corner [m], elevation that the others count from [m]
-//! u8       sum of 1: surfaces follow, 2: obstacles follow, 8: filled cells follow, 16: warnings follow
+//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: a system follows, 8: filled cells follow, 16: warnings follow
 //! f32 each elevation above it, NaN where unknown [m]
 //! u16      how many surfaces, then each name as u32 length and UTF-8, then u8 each cell: its class
 //! u8 each  1 where there is an obstacle
 //! u8 each  1 where the elevation was filled in
 //! u32      length of the warnings, then as many bytes of them as JSON
+//! u32      length of the system's name or text, then its UTF-8
 //! ```
 
 use std::{
@@ -24,11 +25,12 @@ use crate::{Surfaces, Terrain, Warning};
 const MAGIC: &[u8; 4] = b"JPT1";
 const SURFACES: u8 = 1;
 const OBSTACLES: u8 = 2;
+const CRS: u8 = 4;
 const FILLED: u8 = 8;
 const WARNINGS: u8 = 16;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
-/// Longest name of a surface that is read [bytes].
+/// Longest name of a surface or system that is read [bytes].
 const LONGEST_NAME: u32 = 1 << 16;
 /// Longest warnings that are read [bytes]; escapes of JSON make six bytes of one at most.
 const LONGEST_WARNINGS: u32 = (Warning::MOST * (100 + 6 * Warning::LONGEST_DETAIL)) as u32;
@@ -49,7 +51,8 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
     let layers = terrain.surfaces.as_ref().map_or(0, |_| SURFACES)
         | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES)
         | terrain.filled.as_ref().map_or(0, |_| FILLED)
-        | if terrain.warnings.is_empty() { 0 } else { WARNINGS };
+        | if terrain.warnings.is_empty() { 0 } else { WARNINGS }
+        | terrain.crs.as_ref().map_or(0, |_| CRS);
     to.write_all(&[layers])?;
     for chunk in terrain.relative_m.chunks(CHUNK_CELLS) {
         let bytes: Vec<u8> = chunk.iter().flat_map(|z| z.to_le_bytes()).collect();
@@ -58,8 +61,7 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
     if let Some(surfaces) = &terrain.surfaces {
         to.write_all(&(surfaces.names.len() as u16).to_le_bytes())?;
         for name in &surfaces.names {
-            to.write_all(&(name.len() as u32).to_le_bytes())?;
-            to.write_all(name.as_bytes())?;
+            write_text(name, &mut to)?;
         }
         to.write_all(&surfaces.class)?;
     }
@@ -74,7 +76,15 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
         to.write_all(&(text.len() as u32).to_le_bytes())?;
         to.write_all(&text)?;
     }
+    if let Some(crs) = &terrain.crs {
+        write_text(crs, &mut to)?;
+    }
     to.flush()
+}
+
+fn write_text(text: &str, to: &mut impl Write) -> io::Result<()> {
+    to.write_all(&(text.len() as u32).to_le_bytes())?;
+    to.write_all(text.as_bytes())
 }
 
 /// Reads what [`write`] wrote.
@@ -93,15 +103,7 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
     let z = bytes(&mut from, 4 * grid.cells())?;
     let relative_m: Vec<f32> = z.as_chunks().0.iter().map(|z| f32::from_le_bytes(*z)).collect();
     drop(z);
-    let mut terrain = Terrain {
-        grid,
-        base_m,
-        relative_m: relative_m.into(),
-        surfaces: None,
-        obstacle: None,
-        filled: None,
-        warnings: Arc::default(),
-    };
+    let mut terrain = Terrain::of_relative(grid, base_m, relative_m);
     let cells = terrain.grid.cells();
     if layers & SURFACES != 0 {
         let count = u16::from_le_bytes(array(&mut from)?);
@@ -126,6 +128,9 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
         let text = bytes(&mut from, length as usize)?;
         terrain.warnings = Arc::new(serde_json::from_slice(&text).map_err(invalid)?);
     }
+    if layers & CRS != 0 {
+        terrain.crs = Some(name(&mut from)?);
+    }
     Ok(terrain)
 }
 
@@ -136,7 +141,7 @@ fn flags(from: &mut impl Read, cells: usize) -> io::Result<Vec<bool>> {
 fn name(from: &mut impl Read) -> io::Result<String> {
     let length = u32::from_le_bytes(array(from)?);
     if length > LONGEST_NAME {
-        return Err(invalid("a surface's name is too long"));
+        return Err(invalid("a name is too long"));
     }
     String::from_utf8(bytes(from, length as usize)?).map_err(invalid)
 }

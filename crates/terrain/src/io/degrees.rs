@@ -28,9 +28,15 @@ impl Coordinates {
         if !self.lie_on_globe() || !(is_at_edge || is_fine) {
             return Ok(());
         }
+        Err(self.degrees(ending))
+    }
+
+    /// The refusal of coordinates that are degrees, with the command that projects the file.
+    pub(crate) fn degrees(&self, ending: &'static str) -> Error {
         let [longitude_deg, latitude_deg] = self.middle();
+        let [west, south] = self.origin;
         let epsg = utm_epsg(longitude_deg, latitude_deg);
-        Err(Error::Degrees { cell_size: self.cell_size, west, south, ending, epsg })
+        Error::Degrees { cell_size: self.cell_size, west, south, ending, epsg }
     }
 
     /// A warning where coordinates could be degrees and could be metres. A local frame in metres has its origin in the map,

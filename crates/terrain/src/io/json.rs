@@ -9,7 +9,7 @@ pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{Error, Terrain, Warning};
+use crate::{Error, Terrain, Warning, crs::Crs};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -28,6 +28,11 @@ pub struct MapFile {
     /// Number of columns.
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub columns: u64,
+    /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
+    /// Default: not known.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(example = "EPSG:26915"))]
+    pub crs: Option<String>,
     /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
     pub elevation_m: Layer<Vec<f64>>,
@@ -70,6 +75,7 @@ impl TryFrom<MapFile> for Terrain {
 
     fn try_from(file: MapFile) -> Result<Self, Error> {
         let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
+        let crs = file.crs.map(Crs::of_metres).transpose()?;
         let shape = (grid.rows, grid.columns);
         let mut terrain = Terrain::new(grid, &file.elevation_m.shaped("elevation_m", shape)?)?;
         if let Some(surface) = file.surface {
@@ -78,6 +84,7 @@ impl TryFrom<MapFile> for Terrain {
         if let Some(obstacle) = file.obstacle {
             terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
         }
+        terrain.crs = crs;
         if let Some(filled) = file.filled {
             terrain = terrain.with_filled(filled.shaped("filled", shape)?);
         }
@@ -120,6 +127,20 @@ mod tests {
         assert!(!terrain.is_blocked(cell(0, 0)));
         assert_eq!(terrain.surface_class(cell(0, 1)), Surfaces::UNNAMED);
         assert_eq!(terrain.surfaces().unwrap().names, ["grass", "mud"]);
+    }
+
+    #[test]
+    fn a_coordinate_reference_system_is_kept_and_must_be_one_of_metres() {
+        let with = |crs: &str| {
+            format!(r#"{{"cell_size_m": 1, "crs": {crs}, "rows": 1, "columns": 1, "elevation_m": [[1]]}}"#)
+        };
+        for crs in [r#""EPSG:26915""#, r#""LOCAL_CS[\"yard\",UNIT[\"metre\",1]]""#] {
+            let terrain = read(&with(crs)).unwrap();
+            let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
+            assert!(String::from_utf8(again).unwrap().contains(&format!(r#""crs":{crs}"#)));
+        }
+        assert!(refused(&with(r#""EPSG:4326""#)).contains("crs is `EPSG:4326`"));
+        assert!(refused(&with(r#""Minnesota""#)).contains("crs is `Minnesota`"));
     }
 
     #[test]

@@ -33,10 +33,11 @@ impl JsonText {
         let grid = &self.terrain.grid;
         match layer {
             Layer::Elevation => format!(
-                "{{\"cell_size_m\":{},\"origin_m\":[{},{}],\"rows\":{},\"columns\":{},\"elevation_m\":[",
+                "{{\"cell_size_m\":{},\"origin_m\":[{},{}],{}\"rows\":{},\"columns\":{},\"elevation_m\":[",
                 number(grid.cell_size_m),
                 number(grid.origin_m[0]),
                 number(grid.origin_m[1]),
+                self.crs(),
                 grid.rows,
                 grid.columns
             ),
@@ -44,6 +45,11 @@ impl JsonText {
             Layer::Obstacle => ",\"obstacle\":[".to_owned(),
             Layer::Filled => ",\"filled\":[".to_owned(),
         }
+    }
+
+    fn crs(&self) -> String {
+        let quoted = |crs: &String| format!("\"crs\":{},", serde_json::Value::from(crs.as_str()));
+        self.terrain.crs.as_ref().map(quoted).unwrap_or_default()
     }
 
     /// The end of the document.
