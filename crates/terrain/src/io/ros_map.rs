@@ -46,7 +46,10 @@ pub fn read(
     let picture = map.decoded(&bytes)?;
     let (rows, columns) = (u64::from(picture.height()), u64::from(picture.width()));
     let origin_m = map.origin_m([columns, rows])?;
-    let grid = Terrain::check_size(rows, columns, map.resolution, origin_m)?;
+    let grid = Terrain::check_size(rows, columns, map.resolution, origin_m).map_err(|error| match error {
+        Error::CellSize { value, min, max } => RosMapError::Resolution { value, min, max }.into(),
+        other => other,
+    })?;
     let cells: Vec<Occupancy> = pixels(&picture).map(|pixel| rule.occupancy(pixel)).collect();
     let all_unknown = || RosMapError::AllUnknown {
         name: map.image.clone(),
@@ -253,6 +256,7 @@ mod tests {
             ("0.196", ".nan", "free_thresh"),
             ("0.196", "0.7", "swap"),
             ("resolution: 0.05\n", "", "resolution"),
+            ("0.05", "-0.05", "resolution of the map_server YAML is -0.05"),
             ("[-1.0, 2.0, 0.0]", "[1.0]", "origin of the map_server YAML has 1"),
         ] {
             let message = read_pgm(&YAML.replace(from, to)).unwrap_err().to_string();
