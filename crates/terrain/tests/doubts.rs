@@ -60,7 +60,7 @@ fn grounds() -> Vec<(String, Grid, Vec<f64>)> {
         (0..60 * 60).map(|i| height(i / 60, i % 60)).collect()
     };
     let in_block = |row: usize, column: usize| (20..30).contains(&row) && (20..40).contains(&column);
-    for height_m in [0.2, 2.0, 10.0, 60.0] {
+    for height_m in [0.2, 2.0, 10.0, 45.0] {
         let block = floor(&|row, column| if in_block(row, column) { height_m } else { 0.0 });
         let pit = floor(&|row, column| if in_block(row, column) { -height_m } else { 0.0 });
         grounds.push((format!("a block of {height_m} m on a level floor"), grid(60, 60, 1.0), block));
