@@ -1,4 +1,4 @@
-//! Reads a GeoTIFF and prints how long that took, how many cells it has and how much memory was needed at most.
+//! Reads a GeoTIFF and prints what it is, how long reading took and how much memory was needed at most.
 //!
 //!     cargo run --release --example read_geotiff -- MAP
 
@@ -16,6 +16,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let terrain = terrain::io::geotiff::read(&std::fs::read(&path)?, terrain::Terrain::MAX_CELLS)?;
     let ms = start.elapsed().as_secs_f64() * 1e3;
     let peak_kb = resident_kb().unwrap_or(0) - before_kb;
-    println!("{{\"ms\": {ms:.1}, \"cells\": {}, \"peak_kb\": {peak_kb}}}", terrain.grid.cells());
+    let said: Vec<&str> = terrain.warnings().iter().map(|warning| warning.detail.as_str()).collect();
+    let answer = serde_json::json!({
+        "ms": ms, "cells": terrain.grid.cells(), "peak_kb": peak_kb, "cell_size_m": terrain.grid.cell_size_m,
+        "origin_m": terrain.grid.origin_m, "lowest_m": terrain.base_m(), "crs": terrain.crs, "warnings": said,
+    });
+    println!("{answer}");
     Ok(())
 }

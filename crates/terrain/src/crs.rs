@@ -14,7 +14,7 @@ pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
-    mercator::{GroundScale, Mercator},
+    mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},
 };
 
@@ -29,7 +29,7 @@ pub struct Crs {
     pub is_geographic: bool,
     /// Unit of its easting and northing, if it is projected and says so.
     pub unit: Option<LinearUnit>,
-    /// Its projection, where that is a Mercator, whose metres are no metres of the ground.
+    /// Its projection, where that is a Mercator or equidistant cylindrical one, whose metres are no metres of the ground.
     pub mercator: Option<Mercator>,
     /// Unit and direction of its heights, if it has any.
     pub vertical: Option<Vertical>,

@@ -11,11 +11,11 @@ use std::sync::Arc;
 
 use self::{
     fill::fill_value,
-    picture::{aspect, image},
+    picture::{aspect, byte_picture, image},
     range::unusual_elevation,
     steps::{Steps, impossible_slopes},
 };
-use crate::Terrain;
+use crate::{Terrain, WarningKind};
 
 /// What all doubts ask about single cells.
 struct Values {
@@ -39,6 +39,15 @@ impl Values {
 }
 
 impl Terrain {
+    /// The ground of an 8-bit file, with the doubt whether it is a picture.
+    pub(crate) fn with_doubt_of_bytes(self) -> Self {
+        match byte_picture(&Values::of(&self)) {
+            Some(_) if self.warnings.iter().any(|warning| warning.kind == WarningKind::Image) => self,
+            Some(warning) => self.with_warning(warning),
+            None => self,
+        }
+    }
+
     /// The ground with the doubts that its cells give rise to, in place of those of before.
     #[must_use]
     pub fn with_doubts(self) -> Self {

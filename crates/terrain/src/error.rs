@@ -157,10 +157,12 @@ pub enum Error {
         epsg: u32,
     },
     /// Text that is not UTF-8.
-    #[error("byte {position} is not UTF-8 text: is this really an ASCII grid or JSON?")]
+    #[error("byte {position} is not UTF-8 text{}", is_of(*found))]
     NotText {
         /// Offset of the first bad byte.
         position: usize,
+        /// What the first bytes say it is.
+        found: Option<&'static str>,
     },
     /// The TIFF decoder refused the file.
     #[error("not a readable GeoTIFF: {0}")]
@@ -209,7 +211,7 @@ pub enum Error {
     },
     /// A Mercator projection whose scale changes over the map by more than its cells can tell.
     #[error(
-        "the map is in a Mercator projection ({crs}), of which a metre is {south:.4} m of ground in its south and {north:.4} m in its north: bring it to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif`"
+        "the map is in a cylindrical projection ({crs}), of which a metre is {south:.4} m of ground in its south and {north:.4} m in its north: bring it to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif`"
     )]
     MercatorScale {
         /// The coordinate reference system.
@@ -317,5 +319,13 @@ impl Error {
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),
             _ => return None,
         })
+    }
+}
+
+/// What bytes are that should be text.
+fn is_of(found: Option<&str>) -> String {
+    match found {
+        Some(found) => format!(": this is {found}, not an ASCII grid or JSON; send or name it as that"),
+        None => ": is this really an ASCII grid or JSON?".to_owned(),
     }
 }

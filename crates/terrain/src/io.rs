@@ -7,9 +7,14 @@ pub mod geotiff;
 pub mod json;
 pub mod ros_map;
 
-use std::{fs, io::Read, path::Path};
+use std::{
+    fs,
+    io::{Cursor, Read},
+    path::Path,
+};
 
 use flate2::read::MultiGzDecoder;
+use tiff::{ColorType, decoder::Decoder};
 
 use crate::{Error, Terrain, crs::Crs};
 
@@ -86,7 +91,15 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
         Format::Ascii => ascii::read(text(bytes)?, options),
         Format::GeoTiff => geotiff::read(bytes, options.most_cells).map_err(Error::in_geotiff),
     }?;
-    terrain.as_asked(options)
+    let terrain = terrain.as_asked(options)?;
+    let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
+    Ok(if is_bytes { terrain.with_doubt_of_bytes() } else { terrain })
+}
+
+/// Whether a TIFF holds one number of 8 bits for each pixel.
+fn holds_bytes(tiff: &[u8]) -> bool {
+    let color = Decoder::new(Cursor::new(tiff)).and_then(|mut decoder| decoder.colortype());
+    matches!(color, Ok(ColorType::Gray(8)))
 }
 
 /// Reads a ROS `map_server` map, whose image `image` finds by the name that the YAML has for it.
@@ -98,7 +111,7 @@ pub fn read_ros_map(
     options: &Options,
     image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<Terrain, Error> {
-    ros_map::read(text(yaml)?, image)?.as_asked(options)
+    ros_map::read(text(yaml)?, options.most_cells, image)?.as_asked(options)
 }
 
 /// An ESRI ASCII grid, placed in the system that a `.prj` file beside it names, if there is one that can be read.
@@ -122,8 +135,22 @@ fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Ter
 /// # Errors
 /// [`Error::NotText`] with the first byte that is not UTF-8.
 pub fn text(bytes: &[u8]) -> Result<&str, Error> {
-    let text = std::str::from_utf8(bytes).map_err(|e| Error::NotText { position: e.valid_up_to() })?;
+    let text = std::str::from_utf8(bytes)
+        .map_err(|error| Error::NotText { position: error.valid_up_to(), found: named_by_magic(bytes) })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// What a file is by its first bytes.
+fn named_by_magic(bytes: &[u8]) -> Option<&'static str> {
+    const MAGIC: [(&[u8], &str); 6] = [
+        (b"II*\0", "a TIFF"),
+        (b"MM\0*", "a TIFF"),
+        (b"II+\0", "a TIFF"),
+        (b"\x1f\x8b", "a gzip file"),
+        (b"\x89PNG", "a PNG image"),
+        (b"PK\x03\x04", "a ZIP file"),
+    ];
+    MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
 }
 
 fn unpacked(bytes: &[u8], path: &Path) -> Result<Vec<u8>, Error> {
@@ -147,5 +174,36 @@ impl Terrain {
             Some(fill_voids_m) => terrain.with_filled_voids(fill_voids_m),
             None => Ok(terrain),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    const GRID: &str = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n";
+
+    #[test]
+    fn a_packed_grid_is_the_grid() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("Ground.ASC.gz");
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packed.write_all(GRID.as_bytes()).unwrap();
+        fs::write(&path, packed.finish().unwrap()).unwrap();
+        let plain = read_bytes(Format::Ascii, GRID.as_bytes(), &Options::default()).unwrap();
+        assert_eq!(read_path(&path).unwrap(), plain);
+        fs::write(&path, b"\x1f\x8b broken").unwrap();
+        assert!(read_path(&path).unwrap_err().to_string().contains("Ground.ASC.gz"));
+    }
+
+    #[test]
+    fn bytes_in_the_place_of_text_are_named() {
+        let said = read_bytes(Format::Ascii, b"II*\0\xff\xff", &Options::default()).unwrap_err().to_string();
+        assert!(said.contains("byte 4") && said.contains("this is a TIFF"), "{said}");
+        let said =
+            read_bytes(Format::Json, b"{\"a\": \"\xff\"}", &Options::default()).unwrap_err().to_string();
+        assert!(said.contains("is this really"), "{said}");
     }
 }

@@ -60,7 +60,7 @@ fn grounds() -> Vec<(String, Grid, Vec<f64>)> {
         (0..60 * 60).map(|i| height(i / 60, i % 60)).collect()
     };
     let in_block = |row: usize, column: usize| (20..30).contains(&row) && (20..40).contains(&column);
-    for height_m in [0.2, 2.0, 10.0, 60.0] {
+    for height_m in [0.2, 2.0, 10.0, 45.0] {
         let block = floor(&|row, column| if in_block(row, column) { height_m } else { 0.0 });
         let pit = floor(&|row, column| if in_block(row, column) { -height_m } else { 0.0 });
         grounds.push((format!("a block of {height_m} m on a level floor"), grid(60, 60, 1.0), block));
@@ -133,6 +133,35 @@ fn pictures_of_ground_are_no_elevation() {
         assert_eq!(doubts(grid, &stretched), [WarningKind::Image], "stretched, at {every} m");
         let aspect: Vec<f64> = (0..z.len()).map(|index| aspect_deg(&grid, &z, index)).collect();
         assert_eq!(doubts(grid, &aspect), [WarningKind::Aspect], "at {every} m");
+    }
+}
+
+/// A GeoTIFF of bytes, rows from the south.
+fn byte_tiff(grid: &Grid, bytes: &[u8]) -> Vec<u8> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).unwrap();
+    let mut image =
+        encoder.new_image::<tiff::encoder::colortype::Gray8>(grid.columns as u32, grid.rows as u32).unwrap();
+    let tags = image.encoder();
+    let size = grid.cell_size_m;
+    tags.write_tag(tiff::tags::Tag::ModelPixelScaleTag, &[size, size, 0.0][..]).unwrap();
+    let corner = [0.0, 0.0, 0.0, grid.origin_m[0], grid.far_corner_m()[1], 0.0];
+    tags.write_tag(tiff::tags::Tag::ModelTiepointTag, &corner[..]).unwrap();
+    tags.write_tag(tiff::tags::Tag::GeoKeyDirectoryTag, &[1u16, 1, 0, 1, 1024, 0, 1, 1][..]).unwrap();
+    let from_north: Vec<u8> = bytes.chunks(grid.columns).rev().flatten().copied().collect();
+    image.write_data(&from_north).unwrap();
+    file.into_inner()
+}
+
+#[test]
+fn hillshades_in_bytes_are_said_at_any_scale() {
+    for every in [1, 5, 10, 20] {
+        let (grid, z) = thinned(every);
+        let ground = Terrain::new(grid, &z).unwrap();
+        let shade = byte_tiff(&grid, &hillshade::hillshade(&ground, &SlopeMap::new(&ground), 1.0));
+        let shade = io::read_bytes(io::Format::GeoTiff, &shade, &io::Options::default()).unwrap();
+        let kinds: Vec<WarningKind> = shade.warnings().iter().map(|warning| warning.kind).collect();
+        assert!(kinds.contains(&WarningKind::Image), "a hillshade at {every} m: {kinds:?}");
     }
 }
 

@@ -197,7 +197,7 @@ fn a_mercator_is_brought_to_the_ground_or_refused_where_one_scale_does_not_do() 
         let terrain = file.read();
         assert!((terrain.grid.cell_size_m - 1.0).abs() < 0.01, "{}", terrain.grid.cell_size_m);
         assert!(
-            terrain.warnings().iter().any(|warning| warning.detail.contains("Mercator")),
+            terrain.warnings().iter().any(|warning| warning.detail.contains("m of ground")),
             "{:?}",
             terrain.warnings()
         );

@@ -8,7 +8,7 @@ use std::{
 };
 
 use clap::{Args, ValueEnum, builder::FalseyValueParser};
-use service::{Access, Engine, Hosts, Limits, Tokens, serve};
+use service::{Access, Engine, Hosts, Tokens, serve};
 use tracing_subscriber::EnvFilter;
 
 use crate::{allocator::give_back_freed_memory, failure::BadInput, limit_arguments::LimitArguments, output};
@@ -56,13 +56,6 @@ pub(crate) struct Arguments {
     /// Ask the service that listens at --bind whether it is ready; exits with 0 if so, 1 if not
     #[arg(long)]
     check: bool,
-    /// Fill holes of unknown ground up to this wide, of maps whose request does not say, from the ground around them [m]
-    /// [default: none]
-    #[arg(long, visible_alias = "fill-voids", env = "JOULEPATH_FILL_VOIDS_M", value_name = "M")]
-    fill_voids_m: Option<f64>,
-    /// Elevation of unknown cells of maps whose request does not say, beside those that the map marks [m] [default: none]
-    #[arg(long, env = "JOULEPATH_NODATA", value_name = "V", allow_hyphen_values = true)]
-    nodata: Option<f64>,
     #[command(flatten)]
     limits: LimitArguments,
 }
@@ -85,11 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     log(arguments.log_format);
     let listener = TcpListener::bind(&addresses[..])
         .map_err(|error| BadInput(format!("cannot listen on --bind {}: {error}", arguments.bind)))?;
-    let limits = Limits {
-        fill_voids_m: arguments.fill_voids_m,
-        nodata_m: arguments.nodata,
-        ..arguments.limits.limits(&access.tokens)
-    };
+    let limits = arguments.limits.limits(&access.tokens);
     let engine =
         Engine::new(limits, arguments.store.as_deref()).map_err(|error| BadInput(error.to_string()))?;
     // The service is there for who asks it, whether or not somebody reads its output.

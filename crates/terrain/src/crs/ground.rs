@@ -96,7 +96,8 @@ fn mercator_to_ground(
     }
     let mean = (scale.east * scale.north).sqrt();
     let detail = format!(
-        "a metre of the Mercator projection ({name}) is {mean:.4} m of ground here: coordinates were multiplied by that"
+        "a metre of the projection ({name}) is {:.4} m of ground eastwards and {:.4} m northwards here: coordinates were multiplied by that",
+        scale.east, scale.north
     );
     warnings.push(Warning::new(WarningKind::ProjectionScale, detail));
     if (scale.east / mean - 1.0).abs() * longest <= UNTOLD_CELLS {

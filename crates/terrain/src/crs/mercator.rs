@@ -1,10 +1,10 @@
-//! Mercator projections, whose metres are metres of the ground on one parallel only.
+//! Mercator and equidistant cylindrical projections, whose metres are metres of the ground on one parallel only.
 
-/// A Mercator projection.
+/// A Mercator projection, or one that spaces parallels evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mercator {
-    /// Whether latitudes of the ellipsoid are projected as if on a sphere (Web Mercator).
-    pub is_spherical: bool,
+    /// How parallels are spaced.
+    pub spacing: Spacing,
     /// Whether latitudes and longitudes are those of WGS 84.
     pub is_on_wgs84: bool,
     /// Scale on the equator; less than 1 where another parallel is true to scale.
@@ -13,6 +13,17 @@ pub struct Mercator {
     pub central_meridian_deg: f64,
     /// Easting of the central meridian and northing of the equator [m].
     pub false_origin_m: [f64; 2],
+}
+
+/// How a cylindrical projection spaces parallels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spacing {
+    /// So that angles on the ellipsoid are true (Mercator).
+    Conformal,
+    /// As the same would be on a sphere (Web Mercator).
+    Spherical,
+    /// Evenly (equirectangular, plate carrée).
+    Even,
 }
 
 /// Lengths on the ground by lengths on the map.
@@ -26,14 +37,14 @@ pub struct GroundScale {
 
 /// Web Mercator, EPSG:3857.
 pub(super) const WEB: Mercator = Mercator {
-    is_spherical: true,
+    spacing: Spacing::Spherical,
     is_on_wgs84: true,
     equator_scale: 1.0,
     central_meridian_deg: 0.0,
     false_origin_m: [0.0; 2],
 };
 /// World Mercator, EPSG:3395.
-pub(super) const WORLD: Mercator = Mercator { is_spherical: false, ..WEB };
+pub(super) const WORLD: Mercator = Mercator { spacing: Spacing::Conformal, ..WEB };
 
 /// Semi-major axis of WGS 84 [m] (NIMA TR8350.2, table 3.1). Other ellipsoids change a scale by less than 1e-4.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
@@ -43,14 +54,19 @@ const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
 impl Mercator {
     /// The projection of a PROJ definition, looked up by key, if it is a Mercator.
     pub(super) fn from_proj<'a>(value: impl Fn(&str) -> Option<&'a str>) -> Option<Self> {
-        if value("proj") != Some("merc") {
+        let is_even = value("proj") == Some("eqc");
+        if !is_even && value("proj") != Some("merc") {
             return None;
         }
         let number = |key: &str| value(key).and_then(|text| text.parse::<f64>().ok());
         let true_scale_rad = number("lat_ts").unwrap_or(0.0).to_radians();
         let is_spherical = value("a").is_some() && value("a") == value("b");
         Some(Mercator {
-            is_spherical,
+            spacing: match (is_even, is_spherical) {
+                (true, _) => Spacing::Even,
+                (false, true) => Spacing::Spherical,
+                (false, false) => Spacing::Conformal,
+            },
             is_on_wgs84: is_spherical || value("datum") == Some("WGS84"),
             equator_scale: number("k")
                 .or(number("k_0"))
@@ -78,14 +94,14 @@ impl Mercator {
             ",EXTENSION[\"PROJ4\",\"+proj=merc +a={SEMI_MAJOR_M} +b={SEMI_MAJOR_M} +lat_ts=0 +lon_0={meridian_deg} +x_0={x_m} \
              +y_0={y_m} +k={scale} +units=m +nadgrids=@null +wktext +no_defs\"]"
         );
-        self.is_on_wgs84.then(|| {
+        (self.is_on_wgs84 && self.spacing != Spacing::Even).then(|| {
             format!(
                 "PROJCS[\"Mercator in metres of the ground\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",\
                  6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],\
                  PROJECTION[\"Mercator_1SP\"],PARAMETER[\"central_meridian\",{meridian_deg}],\
                  PARAMETER[\"scale_factor\",{scale}],PARAMETER[\"false_easting\",{x_m}],\
                  PARAMETER[\"false_northing\",{y_m}],UNIT[\"metre\",1]{}]",
-                if self.is_spherical { sphere.as_str() } else { "" }
+                if self.spacing == Spacing::Spherical { sphere.as_str() } else { "" }
             )
         })
     }
@@ -97,9 +113,13 @@ impl Mercator {
     /// Snyder (1987), eqs 7-4, 7-10 and 3-5. Good to 1e-9 rad.
     pub fn place_deg(&self, x_m: f64, y_m: f64) -> [f64; 2] {
         let radius_m = SEMI_MAJOR_M * self.equator_scale;
-        let chi =
-            std::f64::consts::FRAC_PI_2 - 2.0 * (-(y_m - self.false_origin_m[1]) / radius_m).exp().atan();
-        let latitude_rad = if self.is_spherical { chi } else { chi + conformal_difference_rad(chi) };
+        let north_m = y_m - self.false_origin_m[1];
+        let chi = std::f64::consts::FRAC_PI_2 - 2.0 * (-north_m / radius_m).exp().atan();
+        let latitude_rad = match self.spacing {
+            Spacing::Conformal => chi + conformal_difference_rad(chi),
+            Spacing::Spherical => chi,
+            Spacing::Even => north_m / SEMI_MAJOR_M,
+        };
         let longitude_rad = (x_m - self.false_origin_m[0]) / radius_m;
         [self.central_meridian_deg + longitude_rad.to_degrees(), latitude_rad.to_degrees()]
     }
@@ -107,14 +127,20 @@ impl Mercator {
     /// Ground by map at a northing.
     ///
     ///     east:  ν cos φ / (a k0)        ν = a / √(1 − e² sin² φ)
-    ///     north: ρ cos φ / (a k0) where projected as on a sphere, else as east        ρ = ν (1 − e²) / (1 − e² sin² φ)
+    ///     north: as east; ρ cos φ / (a k0) where projected as on a sphere; ρ / a where parallels are evenly spaced
+    ///                                           ρ = ν (1 − e²) / (1 − e² sin² φ)
     ///
     /// Snyder (1987), eqs 4-18, 4-20, 7-8; Battersby et al. (2014), doi:10.3138/carto.49.2.2313, for the sphere.
     pub fn ground_scale(&self, y_m: f64) -> GroundScale {
         let latitude_rad = self.place_deg(self.false_origin_m[0], y_m)[1].to_radians();
         let flattening = 1.0 - ECCENTRICITY_2 * latitude_rad.sin().powi(2);
         let east = latitude_rad.cos() / flattening.sqrt() / self.equator_scale;
-        let north = if self.is_spherical { east * (1.0 - ECCENTRICITY_2) / flattening } else { east };
+        let meridian = (1.0 - ECCENTRICITY_2) / flattening;
+        let north = match self.spacing {
+            Spacing::Conformal => east,
+            Spacing::Spherical => east * meridian,
+            Spacing::Even => meridian / flattening.sqrt(),
+        };
         GroundScale { east, north }
     }
 }
@@ -152,11 +178,22 @@ mod tests {
     fn a_projection_brought_to_the_ground_is_true_to_scale_and_keeps_its_places() {
         let (y_m, by) = (8_399_737.889_82, 0.500_8);
         let ground = crate::crs::Crs::parse(&WEB.scaled_wkt(by).unwrap()).unwrap().mercator.unwrap();
-        assert!(ground.is_spherical);
+        assert_eq!(ground.spacing, Spacing::Spherical);
         let [longitude_deg, latitude_deg] = ground.place_deg(1_113_194.907_93 * by, y_m * by);
         assert_abs_diff_eq!(longitude_deg, 10.0, epsilon = 1e-9);
         assert_abs_diff_eq!(latitude_deg, 60.0, epsilon = 1e-9);
         assert_abs_diff_eq!(ground.ground_scale(y_m * by).east, 0.501_260 / by, epsilon = 1e-5);
+    }
+
+    #[test]
+    fn evenly_spaced_parallels_keep_north_and_stretch_east() {
+        let even = crate::crs::Crs::from_epsg(4087).mercator.unwrap();
+        let y_m = SEMI_MAJOR_M * 60f64.to_radians();
+        assert_abs_diff_eq!(even.place_deg(0.0, y_m)[1], 60.0, epsilon = 1e-9);
+        let scale = even.ground_scale(y_m);
+        assert_abs_diff_eq!(scale.east, 0.501_260, epsilon = 2e-6);
+        // The meridian's radius of curvature at 60° by the equator's: 6 383 453.857 / 6 378 137.
+        assert_abs_diff_eq!(scale.north, 1.000_834, epsilon = 2e-6);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Well-known text: of the tree that it writes, kind, unit, code and projection. Also the older `.prj` of Esri, a word a line.
 
-use super::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, by_name, epsg, mercator};
+use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, mercator};
 
 /// Deepest nesting that is read; texts of the EPSG registry have 8.
 const DEEPEST: usize = 32;
@@ -132,7 +132,9 @@ impl<'a> Node<'a> {
         let conversion = self.child(&["CONVERSION"]).unwrap_or(self);
         let method = conversion.child(&["PROJECTION", "METHOD"])?.words.first()?.to_lowercase();
         let variant = ["transverse", "oblique", "gauss", "space"].iter().any(|kind| method.contains(kind));
-        if !method.contains("mercator") || variant {
+        let is_even = method.contains("equidistant") && method.contains("cylindrical")
+            || ["equirectangular", "plate"].iter().any(|kind| method.contains(kind));
+        if !(method.contains("mercator") || is_even) || variant {
             return None;
         }
         let number = |names: &[&str]| {
@@ -145,15 +147,19 @@ impl<'a> Node<'a> {
         let metres = self.unit().map_or(1.0, |unit| unit.metres);
         let true_scale_rad =
             number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0).to_radians();
-        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]);
+        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]).filter(|scale| *scale > 0.0);
         let spherical = ["auxiliary", "pseudo", "visualisation", "web"];
+        let words = |node: &Node<'_>| node.words.iter().any(|word| word.contains("+b=6378137"));
+        let is_spherical = spherical.iter().any(|kind| method.contains(kind))
+            || self.child(&["EXTENSION"]).is_some_and(words);
         let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]).and_then(|base| base.words.first());
         Some(Mercator {
             is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
-            is_spherical: spherical.iter().any(|kind| method.contains(kind))
-                || self
-                    .child(&["EXTENSION"])
-                    .is_some_and(|node| node.words.iter().any(|w| w.contains("+b=6378137"))),
+            spacing: match () {
+                () if is_even => Spacing::Even,
+                () if is_spherical => Spacing::Spherical,
+                () => Spacing::Conformal,
+            },
             equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
             central_meridian_deg: number(&["centralmeridian", "longitudeofnaturalorigin"]).unwrap_or(0.0),
             false_origin_m: [
@@ -231,9 +237,10 @@ mod tests {
             parse(&text).unwrap().mercator
         };
         assert_eq!(mercator("Transverse_Mercator"), None);
-        assert!(!mercator("Mercator_1SP").unwrap().is_spherical);
+        assert_eq!(mercator("Mercator_1SP").unwrap().spacing, Spacing::Conformal);
+        assert_eq!(mercator("Plate_Carree").unwrap().spacing, Spacing::Even);
         let web = mercator("Mercator_Auxiliary_Sphere").unwrap();
-        assert!(web.is_spherical && web.equator_scale == 0.5);
+        assert_eq!((web.spacing, web.equator_scale), (Spacing::Spherical, 0.5));
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use super::steps::{Candidate, Steps};
 use crate::{Warning, WarningKind, fill_value};
 
-/// Highest thing that stands on the ground as a wall, and that a map of surfaces may show [m]: the tallest tree has 116.
-const TALLEST_TREE_M: f64 = 116.0;
+/// Height of blocks that a map of surfaces may show on level ground [m]: trees and houses seldom reach it.
+const TALL_BLOCK_M: f64 = 50.0;
 /// Chance that steps at random make a fill value of an ordinary one.
 const FALSE_ALARM: f64 = 1e-6;
 
@@ -12,9 +12,9 @@ const FALSE_ALARM: f64 = 1e-6;
 /// the highest step anywhere else. If steps were dealt at random, `e` edges would be the highest of `e + n` by a chance of
 /// `e! n! / (e + n)!`, which must be below [`FALSE_ALARM`]. Walls and blocks on level ground stand off so too; therefore the
 /// value must be a conventional fill value ([`fill_value::is_conventional`]) beside ground with relief of its own, or stand
-/// off by more than anything that stands on the ground.
+/// off by more than trees and houses do.
 pub(super) fn fill_value(steps: &Steps) -> Option<Warning> {
-    let candidate = steps.candidates.iter().filter(|one| is_fill(one, steps)).max_by_key(|one| one.cells)?;
+    let candidate = steps.candidates.iter().filter(|one| is_fill(one)).max_by_key(|one| one.cells)?;
     let Candidate { value, cells, least_edge_m, .. } = *candidate;
     let verb = if cells == 1 { "cell holds" } else { "cells hold" };
     let detail = format!(
@@ -23,14 +23,15 @@ pub(super) fn fill_value(steps: &Steps) -> Option<Warning> {
     Some(Warning::new(WarningKind::FillValue, detail))
 }
 
-fn is_fill(candidate: &Candidate, steps: &Steps) -> bool {
-    if candidate.edges == 0 || candidate.least_edge_m <= steps.highest_m {
+fn is_fill(candidate: &Candidate) -> bool {
+    if candidate.edges == 0 || candidate.least_edge_m <= candidate.highest_other_m {
         return false;
     }
-    let is_taller_than_things = candidate.least_edge_m > TALLEST_TREE_M;
-    let has_relief_beside = steps.sloped >= candidate.edges;
+    let is_taller_than_blocks = candidate.least_edge_m > TALL_BLOCK_M;
+    let has_relief_beside = candidate.sloped_others >= candidate.edges;
     let is_conventional = fill_value::is_conventional(candidate.value) && has_relief_beside;
-    (is_taller_than_things || is_conventional) && log_chance(candidate.edges, steps.count) < FALSE_ALARM.ln()
+    (is_taller_than_blocks || is_conventional)
+        && log_chance(candidate.edges, candidate.others) < FALSE_ALARM.ln()
 }
 
 /// Logarithm of the chance that so many steps drawn at random are the highest of all: of 1 / (e + n over e).

@@ -16,6 +16,18 @@ pub(super) fn image(values: &Values) -> Option<Warning> {
     })
 }
 
+/// A warning where a file of 8 bits holds whole numbers. So do pictures; and elevations in whole metres make slopes of 45° out of
+/// level ground on cells of a metre.
+pub(super) fn byte_picture(values: &Values) -> Option<Warning> {
+    values.are_whole.then(|| {
+        let detail = format!(
+            "the file holds 8-bit whole numbers from {} to {}, as images and hillshades do: if they are elevations, whole metres are too coarse for slopes and energies",
+            values.lowest_m, values.highest_m
+        );
+        Warning::new(WarningKind::Image, detail)
+    })
+}
+
 /// A warning where all values lie within a circle of degrees, fill it, and some neighbours differ by more than half of it: so do
 /// directions on both sides of north, and no ground that spans 360 m in all rises by half of that from a cell to the next.
 pub(super) fn aspect(values: &Values, steps: &Steps) -> Option<Warning> {

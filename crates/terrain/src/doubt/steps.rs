@@ -5,33 +5,35 @@ use rayon::prelude::*;
 use super::Values;
 use crate::{Cell, Terrain, Warning, WarningKind, fill_value};
 
-/// Steps between cells of a map, those at cells of a candidate for a fill value apart.
+/// Steps between cells of a map, but for those at cells of conventional fill values.
 pub(super) struct Steps {
     /// Edge of a cell [m].
     pub(super) cell_size_m: f64,
-    /// Steps between cells that hold no candidate.
     pub(super) count: usize,
-    /// Those that are not level.
-    pub(super) sloped: usize,
     /// Those that are steeper than 45°.
     pub(super) steep: usize,
     /// Those of more than half a circle, were they degrees.
     pub(super) beyond_half_circle: usize,
-    /// Highest of them [m].
-    pub(super) highest_m: f64,
     pub(super) candidates: Vec<Candidate>,
 }
 
-/// A value that may be a fill value, and the steps from its cells to others.
+/// A value that may be a fill value, and the steps at its cells and elsewhere.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     pub(super) value: f64,
     relative_m: f32,
+    is_conventional: bool,
     pub(super) cells: usize,
-    /// Steps to cells of other values.
+    /// Steps from its cells to others.
     pub(super) edges: usize,
     /// Lowest of them [m].
     pub(super) least_edge_m: f64,
+    /// Steps away from its cells and from those of conventional fill values.
+    pub(super) others: usize,
+    /// Those of them that are not level.
+    pub(super) sloped_others: usize,
+    /// Highest of them [m].
+    pub(super) highest_other_m: f64,
 }
 
 impl Steps {
@@ -48,15 +50,8 @@ impl Steps {
     }
 
     fn empty(cell_size_m: f64, candidates: &[Candidate]) -> Self {
-        Steps {
-            cell_size_m,
-            count: 0,
-            sloped: 0,
-            steep: 0,
-            beyond_half_circle: 0,
-            highest_m: 0.0,
-            candidates: candidates.to_vec(),
-        }
+        let candidates = candidates.to_vec();
+        Steps { cell_size_m, count: 0, steep: 0, beyond_half_circle: 0, candidates }
     }
 
     /// Adds the cells of a row, and its steps to the east and north.
@@ -83,20 +78,29 @@ impl Steps {
     fn add_step(&mut self, at_here: Option<usize>, here: f32, there: f32) {
         let at_there = self.candidate_of(there);
         let step_m = f64::from((there - here).abs());
-        if at_here.is_none() && at_there.is_none() {
+        let is_conventional = |at: Option<usize>| {
+            at.and_then(|at| self.candidates.get(at)).is_some_and(|one| one.is_conventional)
+        };
+        let is_of_ground = !is_conventional(at_here) && !is_conventional(at_there);
+        if is_of_ground {
             self.count += 1;
-            self.sloped += usize::from(step_m > 0.0);
             self.steep += usize::from(step_m > self.cell_size_m);
             self.beyond_half_circle += usize::from(step_m > 180.0);
-            self.highest_m = self.highest_m.max(step_m);
         }
-        if at_here == at_there {
-            return;
-        }
-        for at in [at_here, at_there].into_iter().flatten() {
-            if let Some(candidate) = self.candidates.get_mut(at) {
-                candidate.edges += 1;
-                candidate.least_edge_m = candidate.least_edge_m.min(step_m);
+        for (at, candidate) in self.candidates.iter_mut().enumerate() {
+            let touches = [at_here, at_there].map(|other| other == Some(at));
+            match touches {
+                [true, true] => {}
+                [true, false] | [false, true] => {
+                    candidate.edges += 1;
+                    candidate.least_edge_m = candidate.least_edge_m.min(step_m);
+                }
+                [false, false] if is_of_ground => {
+                    candidate.others += 1;
+                    candidate.sloped_others += usize::from(step_m > 0.0);
+                    candidate.highest_other_m = candidate.highest_other_m.max(step_m);
+                }
+                [false, false] => {}
             }
         }
     }
@@ -107,14 +111,15 @@ impl Steps {
 
     fn joined(mut self, other: Steps) -> Self {
         self.count += other.count;
-        self.sloped += other.sloped;
         self.steep += other.steep;
         self.beyond_half_circle += other.beyond_half_circle;
-        self.highest_m = self.highest_m.max(other.highest_m);
         for (own, other) in self.candidates.iter_mut().zip(other.candidates) {
             own.cells += other.cells;
             own.edges += other.edges;
             own.least_edge_m = own.least_edge_m.min(other.least_edge_m);
+            own.others += other.others;
+            own.sloped_others += other.sloped_others;
+            own.highest_other_m = own.highest_other_m.max(other.highest_other_m);
         }
         self
     }
@@ -124,11 +129,23 @@ impl Steps {
 fn candidates(terrain: &Terrain, values: &Values) -> Vec<Candidate> {
     let mut candidates: Vec<Candidate> = Vec::new();
     let conventional = fill_value::POSSIBLY_GROUND;
+    // As the cells have them, in single precision.
+    let cells_m = 0.0..=(values.highest_m - terrain.base_m) as f32;
     for value in conventional.into_iter().chain([values.lowest_m, values.highest_m]) {
         let relative_m = (value - terrain.base_m) as f32;
         let is_new = candidates.iter().all(|candidate| candidate.relative_m != relative_m);
-        if is_new && (values.lowest_m..=values.highest_m).contains(&value) {
-            candidates.push(Candidate { value, relative_m, cells: 0, edges: 0, least_edge_m: f64::INFINITY });
+        if is_new && cells_m.contains(&relative_m) {
+            candidates.push(Candidate {
+                value,
+                relative_m,
+                is_conventional: fill_value::is_conventional(value),
+                cells: 0,
+                edges: 0,
+                least_edge_m: f64::INFINITY,
+                others: 0,
+                sloped_others: 0,
+                highest_other_m: 0.0,
+            });
         }
     }
     candidates

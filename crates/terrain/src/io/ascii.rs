@@ -25,7 +25,13 @@ pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
         columns: header.columns,
     };
     coordinates.refuse_degrees("asc")?;
-    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size, header.origin)?;
+    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size, header.origin).map_err(
+        |error| match error {
+            Error::CellSize { value, min, max } => AsciiError::CellSize { value, min, max }.into(),
+            Error::Origin { axis, value, limit } => AsciiError::Corner { axis, value, limit }.into(),
+            other => other,
+        },
+    )?;
     let values = Values {
         notation,
         marks: [header.nodata, options.nodata_m.filter(|mark| !Terrain::holds(*mark))],
@@ -194,7 +200,8 @@ mod tests {
             (SMALL.replace("NODATA_value -9999", "NODATA_value none at all"), "line 6: NODATA_value"),
             (SMALL.replace("4 -9999 6\n", ""), "truncated"),
             (long_row, "7 values"),
-            (SMALL.replace("cellsize 0.5", "cellsize -2"), "cell_size_m"),
+            (SMALL.replace("cellsize 0.5", "cellsize -2"), "cellsize is -2"),
+            (SMALL.replace("xllcorner 10", "xllcorner 1e12"), "xllcorner is 1000000000000"),
             (SMALL.replace("ncols 3", "ncols 2.5"), "line 1"),
             (SMALL.replace("ncols 3", "ncols -3"), "ncols is `-3`"),
             (SMALL.replace("4 -9999 6", "4 5 6e7"), "line 8, value 3 is 60000000.0"),

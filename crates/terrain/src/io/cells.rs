@@ -6,7 +6,7 @@
 //! 4 bytes  "JPT1"
 //! u64 × 2  rows, columns
 //! f64 × 4  cell_size_m, x and y of the south-west corner [m], elevation that the others count from [m]
-//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: filled cells follow, 8: warnings follow, 16: a coordinate reference system follows
+//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: a system follows, 8: filled cells follow, 16: warnings follow
 //! f32 each elevation above it, NaN where unknown [m]
 //! u16      how many surfaces, then each name as u32 length and UTF-8, then u8 each cell: its class
 //! u8 each  1 where there is an obstacle
@@ -25,9 +25,9 @@ use crate::{Surfaces, Terrain, Warning};
 const MAGIC: &[u8; 4] = b"JPT1";
 const SURFACES: u8 = 1;
 const OBSTACLES: u8 = 2;
-const FILLED: u8 = 4;
-const WARNINGS: u8 = 8;
-const CRS: u8 = 16;
+const CRS: u8 = 4;
+const FILLED: u8 = 8;
+const WARNINGS: u8 = 16;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
 /// Longest name of a surface or system that is read [bytes].

@@ -32,14 +32,24 @@ struct RosMap {
 ///
 /// # Errors
 /// What the YAML lacks, an image that cannot be read, or an origin that is rotated.
-pub fn read(yaml: &str, image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>) -> Result<Terrain, Error> {
+pub fn read(
+    yaml: &str,
+    most_cells: u64,
+    image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
+) -> Result<Terrain, Error> {
     let map: RosMap = serde_yaml_ng::from_str(yaml).map_err(RosMapError::Yaml)?;
     let rule = map.rule()?;
     let bytes = image(&map.image).map_err(|source| RosMapError::Read { name: map.image.clone(), source })?;
+    if let Some((rows, columns)) = size(&bytes).filter(|(rows, columns)| rows * columns > most_cells) {
+        return Err(Error::TooManyCells { rows, columns, limit: most_cells });
+    }
     let picture = map.decoded(&bytes)?;
     let (rows, columns) = (u64::from(picture.height()), u64::from(picture.width()));
     let origin_m = map.origin_m([columns, rows])?;
-    let grid = Terrain::check_size(rows, columns, map.resolution, origin_m)?;
+    let grid = Terrain::check_size(rows, columns, map.resolution, origin_m).map_err(|error| match error {
+        Error::CellSize { value, min, max } => RosMapError::Resolution { value, min, max }.into(),
+        other => other,
+    })?;
     let cells: Vec<Occupancy> = pixels(&picture).map(|pixel| rule.occupancy(pixel)).collect();
     let all_unknown = || RosMapError::AllUnknown {
         name: map.image.clone(),
@@ -52,9 +62,13 @@ pub fn read(yaml: &str, image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>) ->
 
 /// Pixels of an image, as its head has it; 0 where it is none.
 pub fn pixels_of(image: &[u8]) -> u64 {
-    let reader = ImageReader::new(Cursor::new(image)).with_guessed_format();
-    let size = reader.ok().and_then(|reader| reader.into_dimensions().ok());
-    size.map_or(0, |(columns, rows)| u64::from(columns) * u64::from(rows))
+    size(image).map_or(0, |(rows, columns)| rows * columns)
+}
+
+/// Rows and columns of an image, as its head has them.
+fn size(image: &[u8]) -> Option<(u64, u64)> {
+    let reader = ImageReader::new(Cursor::new(image)).with_guessed_format().ok()?;
+    reader.into_dimensions().ok().map(|(columns, rows)| (u64::from(rows), u64::from(columns)))
 }
 
 /// Level ground with obstacles; none where every cell is unknown.
@@ -166,6 +180,17 @@ mod tests {
         pgm
     }
 
+    fn read(yaml: &str, image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>) -> Result<Terrain, Error> {
+        super::read(yaml, Terrain::MAX_CELLS, image)
+    }
+
+    #[test]
+    fn an_image_that_is_too_large_is_not_decoded() {
+        let huge = b"P5\n30000 30000\n255\n".to_vec();
+        let error = super::read(YAML, 1000, |_| Ok(huge)).unwrap_err();
+        assert!(matches!(error, Error::TooManyCells { limit: 1000, .. }), "{error}");
+    }
+
     fn read_pgm(yaml: &str) -> Result<Terrain, Error> {
         read(yaml, |_| Ok(pgm()))
     }
@@ -231,6 +256,7 @@ mod tests {
             ("0.196", ".nan", "free_thresh"),
             ("0.196", "0.7", "swap"),
             ("resolution: 0.05\n", "", "resolution"),
+            ("0.05", "-0.05", "resolution of the map_server YAML is -0.05"),
             ("[-1.0, 2.0, 0.0]", "[1.0]", "origin of the map_server YAML has 1"),
         ] {
             let message = read_pgm(&YAML.replace(from, to)).unwrap_err().to_string();

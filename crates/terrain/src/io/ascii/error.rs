@@ -42,6 +42,26 @@ pub enum AsciiError {
         /// The key.
         key: &'static str,
     },
+    /// Cells of a size that no terrain grid has.
+    #[error("cellsize is {value}, but must lie in {min} to {max}: give metres")]
+    CellSize {
+        /// The value found.
+        value: f64,
+        /// Smallest accepted [m].
+        min: f64,
+        /// Largest accepted [m].
+        max: f64,
+    },
+    /// A corner that is no place in projected metres.
+    #[error("{}llcorner is {value}, but must lie within ±{limit} m", if *axis == 0 { "x" } else { "y" })]
+    Corner {
+        /// 0 for x, 1 for y.
+        axis: usize,
+        /// The value found.
+        value: f64,
+        /// Largest magnitude accepted [m].
+        limit: f64,
+    },
     /// Cells that are not square.
     #[error(
         "dx is {dx} and dy is {dy}, but cells must be square: resample the grid, as by `gdalwarp -tr {least} {least} -r bilinear in.asc out.tif`",

@@ -5,13 +5,16 @@ use tiff::tags::Tag;
 use super::directory::Tags;
 use crate::{
     Error, Warning, WarningKind,
-    crs::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, vertical},
+    crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, vertical},
 };
 
 const MODEL_TYPE: u16 = 1024;
 const RASTER_TYPE: u16 = 1025;
 const CITATION: u16 = 1026;
 const GEODETIC_CRS: u16 = 2048;
+const SEMI_MAJOR_AXIS: u16 = 2057;
+const SEMI_MINOR_AXIS: u16 = 2058;
+const INVERSE_FLATTENING: u16 = 2059;
 const PROJECTED_CRS: u16 = 3072;
 const PROJECTED_CITATION: u16 = 3073;
 const PROJECTION_METHOD: u16 = 3075;
@@ -134,22 +137,31 @@ impl GeoKeys {
     fn own_system(&self) -> Crs {
         const ESRI: &str = "ESRI PE String = ";
         const MERCATOR: u32 = 7;
+        const EQUIRECTANGULAR: u32 = 17;
         const WGS_84: u32 = 4326;
         let citations = [self.citation(PROJECTED_CITATION), self.citation(CITATION)];
         let of_esri = citations.iter().flatten().find_map(|text| Crs::parse(text.strip_prefix(ESRI)?));
         if let Some(crs) = of_esri {
             return crs;
         }
-        if self.code(PROJECTION_METHOD) != Some(MERCATOR) {
+        let method = self.code(PROJECTION_METHOD);
+        if method != Some(MERCATOR) && method != Some(EQUIRECTANGULAR) {
             return Crs::default();
         }
+        let major_m = self.double(SEMI_MAJOR_AXIS);
+        let is_sphere = major_m.is_some() && major_m == self.double(SEMI_MINOR_AXIS)
+            || self.double(INVERSE_FLATTENING) == Some(0.0);
         let names = citations.iter().flatten().copied().collect::<String>().to_lowercase();
         let spherical = ["pseudo", "web", "google", "visualisation", "sphere"];
         let true_scale_rad = self.double(STANDARD_PARALLEL).unwrap_or(0.0).to_radians();
         let scale = self.double(NATURAL_ORIGIN_SCALE).filter(|scale| *scale > 0.0);
         let mercator = Some(Mercator {
             is_on_wgs84: self.code(GEODETIC_CRS) == Some(WGS_84),
-            is_spherical: spherical.iter().any(|word| names.contains(word)),
+            spacing: match () {
+                () if method == Some(EQUIRECTANGULAR) => Spacing::Even,
+                () if is_sphere || spherical.iter().any(|word| names.contains(word)) => Spacing::Spherical,
+                () => Spacing::Conformal,
+            },
             equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
             central_meridian_deg: self.double(NATURAL_ORIGIN_LONGITUDE).unwrap_or(0.0),
             false_origin_m: [

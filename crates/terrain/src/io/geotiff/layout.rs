@@ -80,7 +80,8 @@ impl Layout {
             extra: tags.unsigned_list(Tag::ExtraSamples)?,
             blocks: offsets.into_iter().zip(counts).collect(),
         };
-        let needed = layout.across() * layout.down() * if planar { bands } else { 1 };
+        let needed =
+            layout.across().saturating_mul(layout.down()).saturating_mul(if planar { bands } else { 1 });
         if layout.blocks.len() < needed {
             let found = format!("{} blocks where its size needs {needed}", layout.blocks.len());
             return Err(Error::TiffSamples { found });

@@ -11,6 +11,9 @@ use super::{
 };
 use crate::Error;
 
+/// Pixels that a block may have if the image has fewer: 2048 × 2048, more than any writer makes.
+const LARGEST_BLOCK: u64 = 1 << 22;
+
 /// Reads a block into rows; pixels that its mask leaves out hold NaN if they are floating-point numbers, `absent` otherwise.
 pub(super) fn read<'s, T: Number + 's>(
     band: &Band<'_>,
@@ -63,7 +66,8 @@ fn decoded<'s, S: Sample, T: Number + 's>(
     let fits = width == layout.block_columns
         && height <= layout.block_rows
         && depth * bands == layout.samples_per_pixel();
-    if !fits {
+    let pixels = u64::from(info.width) * u64::from(info.height);
+    if !fits || pixels > layout.cells().max(LARGEST_BLOCK) {
         let why = format!("LERC block of {width} × {height} pixels and {} bands", depth * bands);
         return Err(Error::TiffBlock { why });
     }

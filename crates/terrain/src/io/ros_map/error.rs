@@ -7,6 +7,18 @@ pub enum RosMapError {
     /// The YAML cannot be read.
     #[error("the map_server YAML cannot be read: {0}")]
     Yaml(#[from] serde_yaml_ng::Error),
+    /// A resolution that no map has.
+    #[error(
+        "resolution of the map_server YAML is {value}, but must lie in {min} to {max}: give metres per pixel"
+    )]
+    Resolution {
+        /// The value found [m].
+        value: f64,
+        /// Smallest accepted [m].
+        min: f64,
+        /// Largest accepted [m].
+        max: f64,
+    },
     /// An origin of another length.
     #[error("origin of the map_server YAML has {found} numbers, but must have 3: x [m], y [m], yaw [rad]")]
     Origin {
