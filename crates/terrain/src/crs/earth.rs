@@ -24,8 +24,13 @@ pub struct Earth {
 /// Why a system's way to WGS 84 is not known here.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EarthError {
+    /// A map that does not say.
+    #[error("the map has no crs, so that nothing says where on earth it lies")]
+    NoCrs,
     /// Text that names no system of the EPSG registry.
-    #[error("the map's crs, `{found}`, names no code of the EPSG registry, and other systems are not placed on earth here")]
+    #[error(
+        "the map's crs, `{found}`, names no code of the EPSG registry, and other systems are not placed on earth here"
+    )]
     NoCode {
         /// Its beginning.
         found: String,
