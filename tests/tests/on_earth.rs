@@ -34,12 +34,13 @@ fn near(value: &Value, wanted: f64, by: f64) -> bool {
 #[test]
 fn a_start_in_degrees_is_the_place_in_metres_and_answers_carry_both() {
     let server = Server::start();
-    let answer = server.post("/v1/plan", &plan(Some("EPSG:32632"))).json();
+    let answer = server.post_json("/v1/plan", &plan(Some("EPSG:32632"))).json();
     let first = &answer["poses"][0];
     assert!(near(&first["x_m"], 512_008.5, 0.0) && near(&first["y_m"], 5_422_976.5, 0.0), "{first}");
     assert!(near(&first["lon_deg"], START[0], 2e-9) && near(&first["lat_deg"], START[1], 2e-9), "{first}");
     assert_eq!(answer["crs"], "EPSG:32632");
-    let poses = answer["poses"].as_array().unwrap().iter().chain(answer["refined"]["poses"].as_array().unwrap());
+    let poses =
+        answer["poses"].as_array().unwrap().iter().chain(answer["refined"]["poses"].as_array().unwrap());
     assert!(poses.clone().count() > 2 && poses.into_iter().all(|pose| pose["lat_deg"].is_f64()));
 }
 
@@ -49,7 +50,8 @@ fn geojson_and_gpx_are_degrees_where_the_map_says_where_it_lies_and_say_so_where
     let asked = |crs, form: &str| {
         let mut request = plan(crs);
         request["start"] = json!({ "x_m": 512_008.5, "y_m": 5_422_976.5 });
-        server.post_as("/v1/plan", &request, form)
+        let headers = [("content-type", "application/json"), ("accept", form)];
+        server.ask("POST", "/v1/plan", &headers, request.to_string().as_bytes())
     };
     let placed = asked(Some("EPSG:32632"), "application/geo+json").json();
     assert!(placed.get("crs").is_none(), "RFC 7946 knows WGS 84 alone");
@@ -59,7 +61,7 @@ fn geojson_and_gpx_are_degrees_where_the_map_says_where_it_lies_and_say_so_where
     assert_eq!(british["crs"]["properties"]["name"], "EPSG:27700", "metres of a system that is named");
     let nowhere = asked(None, "application/geo+json").json();
     assert!(nowhere.get("crs").is_some_and(Value::is_null), "metres of nothing that is known");
-    let track = asked(Some("EPSG:32632"), "application/gpx+xml").text();
+    let track = asked(Some("EPSG:32632"), "application/gpx+xml").text;
     assert!(track.contains("<trkpt lat=\"48.959589321\" lon=\"9.164046814\">"), "{}", &track[..400]);
 }
 
@@ -74,12 +76,17 @@ fn a_place_that_is_not_given_or_cannot_be_placed_is_refused_by_its_field() {
         (crs, json!({ "lat_deg": 9.0 }), "/start/lon_deg", "give both"),
         (crs, json!({ "x_m": 512_008.5 }), "/start/y_m", "missing field `y_m`"),
         (crs, json!({}), "/start/x_m", "lon_deg"),
-        (crs, json!({ "x_m": 512_008.5, "y_m": 5_422_976.5, "lon_deg": 9.0, "lat_deg": 48.0 }), "/start/lon_deg", "one of them"),
+        (
+            crs,
+            json!({ "x_m": 512_008.5, "y_m": 5_422_976.5, "lon_deg": 9.0, "lat_deg": 48.0 }),
+            "/start/lon_deg",
+            "one of them",
+        ),
         (crs, json!({ "lon_deg": 9.0, "lat_deg": 148.0 }), "/start/lon_deg", "beyond"),
     ] {
         let mut request = plan(map);
         request["start"] = start.clone();
-        let answer = server.post("/v1/plan", &request);
+        let answer = server.post_json("/v1/plan", &request);
         assert_eq!(answer.status, 400, "{start}");
         let problem = answer.json();
         assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
@@ -98,8 +105,8 @@ fn every_question_takes_degrees() {
     };
     let goal = json!({ "x_m": 512_030.5, "y_m": 5_422_994.5 });
     let one = |name: &str, request: Value| {
-        let answer = server.post(&format!("/v1/{name}"), &request);
-        assert_eq!(answer.status, 200, "{name}: {}", answer.text());
+        let answer = server.post_json(&format!("/v1/{name}"), &request);
+        assert_eq!(answer.status, 200, "{name}: {}", answer.text);
         answer.json()
     };
     one("compare", with(json!({ "start": place, "goal": goal })));
