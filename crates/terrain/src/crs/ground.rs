@@ -80,7 +80,8 @@ fn mercator_to_ground(
     let sideways = (at_north.east - at_south.east).abs() / scale.east * columns / 4.0;
     let lengthways = (at_north.north - at_south.north).abs() / scale.north * rows / 8.0;
     let name = crs.text.clone().unwrap_or_else(|| "of the file's own".into());
-    if !(sideways + lengthways <= UNTOLD_CELLS) {
+    let displaced = sideways + lengthways;
+    if displaced.is_nan() || displaced > UNTOLD_CELLS {
         let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
         return Err(Error::MercatorScale {
             crs: name,
