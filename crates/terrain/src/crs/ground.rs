@@ -12,6 +12,9 @@ use crate::{
 /// Largest displacement that a grid cannot tell: half a cell.
 pub(crate) const UNTOLD_CELLS: f64 = 0.5;
 
+/// Scale error that is left to maps in UTM, which has 0.9996 on a zone's meridian and 1.0010 at its edges (Snyder 1987, page 58).
+const UTM_SCALE_ERROR: f64 = 1e-3;
+
 /// Pixels of a raster.
 #[derive(Clone, Copy)]
 pub(crate) struct Size {
@@ -92,7 +95,7 @@ fn mercator_to_ground(
         });
     }
     let longest = columns.max(rows);
-    if (scale.east - 1.0).abs().max((scale.north - 1.0).abs()) * longest <= UNTOLD_CELLS {
+    if (scale.east - 1.0).abs().max((scale.north - 1.0).abs()) <= UTM_SCALE_ERROR {
         return Ok((affine, crs.text.clone()));
     }
     let mean = (scale.east * scale.north).sqrt();
