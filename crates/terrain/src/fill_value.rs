@@ -11,6 +11,11 @@ const INTEGER_LIMITS: [f64; 6] =
 /// Whether a number is a conventional fill value that no ground has as its elevation: −9999 and −99 999 (nines, by habit of
 /// ESRI's grids), limits of integers, and magnitudes of the limits of single precision.
 pub fn is_never_ground(value: f64) -> bool {
+    /// None of them is less than this; most numbers are, and are asked nothing more.
+    const LEAST_MAGNITUDE: f64 = 9999.0;
+    if value.abs() < LEAST_MAGNITUDE {
+        return false;
+    }
     let is_nines = value == -9999.0 || value.abs() == 99_999.0 || value.abs() == 999_999.0;
     is_nines || INTEGER_LIMITS.contains(&value) || (value.is_finite() && value.abs() > NEVER_A_LENGTH_M)
 }

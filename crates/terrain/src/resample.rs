@@ -40,7 +40,7 @@ impl Affine {
     }
 
     /// The same map with pixels counted from the middle of the first one.
-    pub(crate) fn from_centres(&self) -> Self {
+    pub(crate) fn with_centred_pixels(&self) -> Self {
         Affine { origin: self.at(-0.5, -0.5), ..*self }
     }
 

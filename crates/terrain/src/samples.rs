@@ -77,7 +77,7 @@ impl Survey {
         let chunks = samples.par_chunks(CHUNK).enumerate();
         let parts: Vec<Survey> =
             chunks.map(|(i, chunk)| Self::of_chunk(i * CHUNK, chunk, elevation_m)).collect();
-        let survey = parts.into_iter().fold(Self::empty(), Self::followed_by);
+        let survey = parts.iter().fold(Self::empty(), Self::followed_by);
         if let Some((index, value)) = survey.absurd {
             let (min, max) = (Terrain::LOWEST_M, Terrain::HIGHEST_M);
             let cell = grid.cell(index);
@@ -108,7 +108,7 @@ impl Survey {
         survey
     }
 
-    fn followed_by(self, next: Self) -> Self {
+    fn followed_by(self, next: &Self) -> Self {
         Survey {
             lowest_m: self.lowest_m.min(next.lowest_m),
             first_unmarked: if self.unmarked > 0 { self.first_unmarked } else { next.first_unmarked },

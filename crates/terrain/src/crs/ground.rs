@@ -12,6 +12,9 @@ use crate::{
 /// Largest displacement that a grid cannot tell: half a cell.
 pub(crate) const UNTOLD_CELLS: f64 = 0.5;
 
+/// Scale error that is left to maps in UTM, which has 0.9996 on a zone's meridian and 1.0010 at its edges (Snyder 1987, page 58).
+const UTM_SCALE_ERROR: f64 = 1e-3;
+
 /// Pixels of a raster.
 #[derive(Clone, Copy)]
 pub(crate) struct Size {
@@ -80,7 +83,8 @@ fn mercator_to_ground(
     let sideways = (at_north.east - at_south.east).abs() / scale.east * columns / 4.0;
     let lengthways = (at_north.north - at_south.north).abs() / scale.north * rows / 8.0;
     let name = crs.text.clone().unwrap_or_else(|| "of the file's own".into());
-    if !(sideways + lengthways <= UNTOLD_CELLS) {
+    let displaced = sideways + lengthways;
+    if displaced.is_nan() || displaced > UNTOLD_CELLS {
         let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
         return Err(Error::MercatorScale {
             crs: name,
@@ -91,7 +95,7 @@ fn mercator_to_ground(
         });
     }
     let longest = columns.max(rows);
-    if (scale.east - 1.0).abs().max((scale.north - 1.0).abs()) * longest <= UNTOLD_CELLS {
+    if (scale.east - 1.0).abs().max((scale.north - 1.0).abs()) <= UTM_SCALE_ERROR {
         return Ok((affine, crs.text.clone()));
     }
     let mean = (scale.east * scale.north).sqrt();

@@ -13,6 +13,8 @@ pub(super) struct Heights {
     scale: f64,
     offset: f64,
     unit_m: f64,
+    /// Whether samples are heights in metres as they stand.
+    is_height: bool,
 }
 
 impl Heights {
@@ -43,20 +45,20 @@ impl Heights {
         };
         warnings.extend(doubt.map(|detail| Warning::new(WarningKind::AssumedHeightUnit, detail)));
         let unit = band.unit.or(of_system).unwrap_or(LinearUnit::METRE);
-        Ok(Heights {
-            scale: band.scale.unwrap_or(1.0),
-            offset: band.offset.unwrap_or(0.0),
-            unit_m: unit.metres,
-        })
+        let (scale, offset) = (band.scale.unwrap_or(1.0), band.offset.unwrap_or(0.0));
+        let is_height = scale == 1.0 && offset == 0.0 && unit.metres == 1.0;
+        Ok(Heights { scale, offset, unit_m: unit.metres, is_height })
     }
 
     /// Height of a sample [m]. Fill values that nothing marks stay as they are, unless a scale makes heights of all numbers.
     pub(super) fn height_m(&self, sample: f64) -> f64 {
+        if self.is_height {
+            return sample;
+        }
         let is_scaled = self.scale != 1.0 || self.offset != 0.0;
         if !is_scaled && is_never_ground(sample) {
-            sample
-        } else {
-            (sample * self.scale + self.offset) * self.unit_m
+            return sample;
         }
+        (sample * self.scale + self.offset) * self.unit_m
     }
 }

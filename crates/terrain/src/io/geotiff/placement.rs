@@ -39,7 +39,7 @@ impl Placement {
         crs: &Crs,
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, Error> {
-        let affine = if keys.pixel_is_point() { affine.from_centres() } else { affine };
+        let affine = if keys.pixel_is_point() { affine.with_centred_pixels() } else { affine };
         refuse_degrees(&affine, size, crs, "tif")?;
         if !keys.name_a_system() {
             doubt_nameless(&affine, size, warnings)?;
