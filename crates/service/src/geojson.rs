@@ -19,6 +19,7 @@ pub(crate) fn path(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
         "climb_m": plan.climb_m,
         "descent_m": plan.descent_m,
         "recovered_j": plan.recovered_j,
+        "warnings": plan.warnings,
     });
     out.write_all(br#"{"type":"FeatureCollection","#)?;
     if plan.poses.first().is_some_and(|pose| pose.lon_deg.is_none()) {
