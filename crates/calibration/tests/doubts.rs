@@ -98,3 +98,26 @@ fn seconds_that_are_not_counted_are_said_with_their_reason() {
     let nothing = changed(healthy(), &[Channel::RightPower], |_| f64::NAN);
     assert!(predict(&robot(), &nothing).is_err());
 }
+
+#[test]
+fn a_calibration_says_of_every_run_what_was_fitted_and_which_channel_left_the_rest_out() {
+    let mut recording = healthy();
+    let rows = recording.runs[0].rows.clone();
+    let right_w = recording.channels.get_mut(&Channel::RightPower).unwrap();
+    right_w[rows.start + 100..rows.start + 200].fill(f64::NAN);
+    let pitch = recording.channels.get_mut(&Channel::Pitch).unwrap();
+    pitch[rows.start + 300..rows.end].fill(f64::NAN);
+    let found = Method::Fit.calibrate(&robot(), &recording, &Options::default()).unwrap();
+    let first = &found.coverage.runs[0];
+    let left_out: Vec<_> = first.coverage.left_out.iter().map(|left| left.channel).collect();
+    assert_eq!(left_out, [Some(Channel::RightPower), Some(Channel::Pitch)], "{first:?}");
+    assert!((first.coverage.used_s - 19.8).abs() < 1e-6 && first.coverage.level_s == 0.0, "{first:?}");
+    assert_eq!(found.coverage.runs.len(), 3);
+    assert!(found.coverage.runs[1].coverage.left_out.is_empty());
+    assert!((found.coverage.total.recorded_s - 3.0 * 39.9).abs() < 1e-6);
+    let said = found.notes.iter().find(|note| note.contains("are counted")).unwrap();
+    assert!(said.contains("10.1 s `power_right_w` has no value"), "{said}");
+    assert_eq!(found.coverage.words_by_run().len(), 1);
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(document["coverage"]["runs"][0]["left_out"][1]["channel"], "pitch_rad");
+}
