@@ -86,6 +86,7 @@ impl Calibration {
     pub(crate) fn covering(mut self, recording: &Recording, drives: &Drives) -> Self {
         self.coverage = DrivesCoverage::of(recording, drives);
         self.notes.extend(self.coverage.total.words());
+        self.notes.extend(drives.meter_note());
         self
     }
 

@@ -110,7 +110,7 @@ pub(crate) fn coverage(recording: &Recording, drives: &Drives) -> Vec<Coverage> 
     }
     let mut is_counted = vec![false; drives.rows.len()];
     for average in &drives.averages {
-        for row in average.rows.clone() {
+        for row in average.span.clone() {
             is_counted[row] = drives.rows[row].used && !drives.rows[row].stuck;
         }
     }
@@ -171,6 +171,9 @@ impl Places<'_> {
         }
         if rows.iter().any(|row| self.drives.rows[*row].stuck) {
             return ("with wheels that turn against each other while the robot does not turn".to_owned(), None);
+        }
+        if rows.iter().any(|row| self.drives.rows[*row].window.reading > 0) {
+            return ("in periods of the power meter that are not there as a whole".to_owned(), None);
         }
         ("in seconds that are left out of the comparison".to_owned(), None)
     }

@@ -23,6 +23,7 @@ pub mod folds;
 pub mod lag;
 pub mod lift;
 pub mod losses;
+pub mod meter;
 mod method;
 mod noise;
 pub mod power;

@@ -73,7 +73,8 @@ pub fn diagnose_watched(
     let Prepared { suspect, healthy, contradictions, offset_w } = Prepared::new(question, watch)?;
     let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
-    let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+    let averages = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+    let seconds = (averages as f64 * series.average_s()) as usize;
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
@@ -84,6 +85,7 @@ pub fn diagnose_watched(
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
     doubts.extend(series.sampled());
     doubts.extend(covered(&series));
+    doubts.extend(series.meter_note());
     doubts.extend(series.watts_per_a().map(by_current));
     doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();

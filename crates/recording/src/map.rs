@@ -153,32 +153,6 @@ struct SourceFile {
 }
 
 impl Map {
-    /// Names of the built-in maps.
-    pub const BUILT_IN: [&'static str; 2] = ["husky", "borealtc"];
-
-    /// A built-in map: `husky` for the usual topics of a Clearpath Husky under ROS 1 and ROS 2, `borealtc` for the columns
-    /// of the recordings made from the BorealTC data set.
-    pub fn built_in(name: &str) -> Option<Map> {
-        let text = match name {
-            "husky" => include_str!("../maps/husky.json"),
-            "borealtc" => include_str!("../maps/borealtc.json"),
-            _ => return None,
-        };
-        Map::from_json(text).ok()
-    }
-
-    /// A built-in map with the wheels of another robot.
-    pub fn built_in_for(name: &str, wheel_radius_m: f64, wheel_separation_m: f64) -> Option<Map> {
-        let text = match name {
-            "husky" => include_str!("../maps/husky.json"),
-            _ => return Map::built_in(name),
-        };
-        let mut file: serde_json::Value = serde_json::from_str(text).ok()?;
-        file["wheel_radius_m"] = wheel_radius_m.into();
-        file["wheel_separation_m"] = wheel_separation_m.into();
-        Map::from_value(&file).ok()
-    }
-
     /// Reads and checks a map.
     ///
     /// # Errors

@@ -154,6 +154,16 @@ impl Series {
         self.parts.iter().filter_map(of).collect()
     }
 
+    /// Length of the averages [s].
+    pub(crate) fn average_s(&self) -> f64 {
+        self.parts.iter().map(|part| part.drives.average_s()).fold(0.0, f64::max)
+    }
+
+    /// What is to be said of power meters that are slower than the wheels.
+    pub(crate) fn meter_note(&self) -> Option<String> {
+        self.parts.iter().find_map(|part| part.drives.meter_note())
+    }
+
     /// What of the drives is compared, of those under suspicion and, where there are any, of healthy ones.
     pub(crate) fn coverage(&self) -> (DrivesCoverage, Option<DrivesCoverage>) {
         let of = |suspect: bool| self.parts.iter().find(|part| part.suspect == suspect);
