@@ -64,12 +64,7 @@ impl Drives {
     }
 
     /// The rows of one second.
-    fn second(
-        &self,
-        stretch: &Stretch,
-        span: Range<usize>,
-        (t_s, rhythm_s): (f64, f64),
-    ) -> Option<Average> {
+    fn second(&self, stretch: &Stretch, span: Range<usize>, (t_s, rhythm_s): (f64, f64)) -> Option<Average> {
         let used = span.clone().filter(|row| self.is_counted(*row)).count();
         let Stretch { run, surface, .. } = *stretch;
         let duration_s = used as f64 * rhythm_s;

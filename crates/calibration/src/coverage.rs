@@ -134,7 +134,8 @@ impl Places<'_> {
         for i in run.rows.clone().skip(1) {
             let step_s = self.recording.t_s[i] - self.recording.t_s[i - 1];
             coverage.recorded_s += step_s;
-            let of_one_stretch = self.stretch_of[i] != usize::MAX && self.stretch_of[i] == self.stretch_of[i - 1];
+            let of_one_stretch =
+                self.stretch_of[i] != usize::MAX && self.stretch_of[i] == self.stretch_of[i - 1];
             if of_one_stretch && self.is_counted[i - 1] && self.is_counted[i] {
                 coverage.used_s += step_s;
                 if self.drives.rows[i - 1].level || self.drives.rows[i].level {
@@ -170,7 +171,10 @@ impl Places<'_> {
             return (format!("`{name}` has no value"), channel);
         }
         if rows.iter().any(|row| self.drives.rows[*row].stuck) {
-            return ("with wheels that turn against each other while the robot does not turn".to_owned(), None);
+            return (
+                "with wheels that turn against each other while the robot does not turn".to_owned(),
+                None,
+            );
         }
         if rows.iter().any(|row| self.drives.rows[*row].window.reading > 0) {
             return ("in periods of the power meter that are not there as a whole".to_owned(), None);

@@ -7,9 +7,15 @@ use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
 use crate::{
-    Error, average::Average, copies::copies, losses,
+    Error,
+    average::Average,
+    copies::copies,
+    losses,
     meter::{Laid, Placement, best_placement, laid},
-    row, row::Row, slopes, standstill, stuck, watch::Watched,
+    row,
+    row::Row,
+    slopes, standstill, stuck,
+    watch::Watched,
 };
 
 /// Rows of one run on one surface without a gap.

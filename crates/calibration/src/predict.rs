@@ -142,7 +142,12 @@ fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Resul
         .collect();
     let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into(), of_all);
     Ok(PredictedDrives {
-        prediction: Prediction { runs, total, doubts: Vec::new(), notes: drives.meter_note().into_iter().collect() },
+        prediction: Prediction {
+            runs,
+            total,
+            doubts: Vec::new(),
+            notes: drives.meter_note().into_iter().collect(),
+        },
         drives,
         predicted_w,
         recorded_w,

@@ -33,8 +33,18 @@ const ALL: [BuiltIn; 6] = [
         after: Some("husky"),
         namespace: Some("j100"),
     },
-    BuiltIn { name: "jackal", text: include_str!("../maps/jackal.json"), after: Some("husky"), namespace: None },
-    BuiltIn { name: "scout", text: include_str!("../maps/scout.json"), after: Some("husky"), namespace: None },
+    BuiltIn {
+        name: "jackal",
+        text: include_str!("../maps/jackal.json"),
+        after: Some("husky"),
+        namespace: None,
+    },
+    BuiltIn {
+        name: "scout",
+        text: include_str!("../maps/scout.json"),
+        after: Some("husky"),
+        namespace: None,
+    },
     BuiltIn { name: "borealtc", text: include_str!("../maps/borealtc.json"), after: None, namespace: None },
 ];
 

@@ -37,7 +37,8 @@ pub(crate) fn reconcile(streams: &mut [Named], used: &[usize], repairs: &mut Vec
     let offsets_s = || used.iter().map(|at| offset_s(&streams[*at]));
     let least_s = offsets_s().fold(f64::INFINITY, f64::min);
     let most_s = offsets_s().fold(f64::NEG_INFINITY, f64::max);
-    let differ = offsets_s().any(is_off) && (most_s - least_s > CLOCK_JUMP_S || least_s < -AHEAD_S)
+    let differ = offsets_s().any(is_off)
+        && (most_s - least_s > CLOCK_JUMP_S || least_s < -AHEAD_S)
         && most_s - least_s > AHEAD_S;
     let mut told: Vec<usize> = used.to_vec();
     told.retain(|at| streams[*at].stream.clock == BY_HEADER);

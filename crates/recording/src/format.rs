@@ -49,6 +49,8 @@ impl Format {
             "parquet" if !is_packed => Ok(Format::Parquet),
             "mcap" if !is_packed => Ok(Format::Mcap),
             "bag" if !is_packed => Ok(Format::Bag),
+            // What `rosbag record` writes to until it is stopped.
+            "active" if !is_packed && ending_of(&path.with_extension("")) == "bag" => Ok(Format::Bag),
             "db3" if !is_packed => Ok(Format::Db3),
             _ if is_packed => Err(Error::UnknownFormat { ending: format!(".{ending}.{}", ending_of(path)) }),
             _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),

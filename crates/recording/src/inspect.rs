@@ -216,8 +216,11 @@ fn best_map(path: &Path) -> Result<(Candidate, String), Error> {
     match best {
         Some(best) => {
             let why = if best.is_named() { "its robots have such namespaces" } else { "it reads most" };
-            let taken =
-                format!("the built-in map `{}` was taken, since {why}; of all, {}", best.name, told.join(", "));
+            let taken = format!(
+                "the built-in map `{}` was taken, since {why}; of all, {}",
+                best.name,
+                told.join(", ")
+            );
             Ok((best, taken))
         }
         None => Err(first_error.unwrap_or(Error::Empty { found: "no map".into() })),

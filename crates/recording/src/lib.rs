@@ -9,6 +9,7 @@
 pub mod align;
 mod arrow_schema;
 mod bag;
+mod bag_loss;
 mod built_in_map;
 mod bursts;
 mod calendar;
@@ -28,6 +29,7 @@ mod cursor;
 mod definition;
 mod dialect;
 mod divide;
+mod drawn;
 mod error;
 mod field;
 mod format;
@@ -70,9 +72,9 @@ mod watch;
 pub use channel::{Channel, Quantity};
 pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, TimeUnit};
 pub use combine::Combine;
-pub use error::Error;
+pub use error::{Error, TimeError};
 pub use format::Format;
-pub use map::{Map, Place, Source, Stamp, Target};
+pub use map::{Map, Place, Sign, Source, Stamp, Target};
 pub use reading::{
     Reading, bytes_on_disk, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
     unwatched,

@@ -68,6 +68,19 @@ pub struct Source {
     pub unit: String,
     /// Whether the map names that unit.
     pub is_unit_given: bool,
+    /// How the sign of a current is known.
+    pub sign: Sign,
+}
+
+/// How the sign of a battery's current is known, of which drivers have both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sign {
+    /// As it comes, times the source's `scale`.
+    #[default]
+    Given,
+    /// So that the battery is drawn from while the wheels turn, on the whole: a drive that is charged on balance has to be read with `given`.
+    Drawn,
 }
 
 /// What a column or field becomes.
@@ -150,6 +163,8 @@ struct SourceFile {
     #[serde(default)]
     derivative: bool,
     wraps_at: Option<f64>,
+    #[serde(default)]
+    sign: Sign,
 }
 
 impl Map {
@@ -275,6 +290,9 @@ impl SourceFile {
         if self.derivative && !target.is_wheel_speed() {
             return Err(wrong(".derivative", "is for rim speeds only"));
         }
+        if self.sign == Sign::Drawn && target != Target::Channel(Channel::Current) {
+            return Err(wrong(".sign", "is for `current_a` only"));
+        }
         if self.wraps_at.is_some_and(|at| !(at.is_finite() && at > 0.0 && self.derivative)) {
             return Err(wrong(".wraps_at", "must be positive, beside `derivative`"));
         }
@@ -288,6 +306,7 @@ impl SourceFile {
             conversion,
             unit,
             is_unit_given,
+            sign: self.sign,
         })
     }
 }

@@ -3,16 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
+    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run, Sign, TimeError,
     align::{Between, interpolate},
     clock::implausible_steps,
-    clock_offset,
-    gap,
+    clock_offset, drawn, gap,
     map::{Place, Target},
     meter,
     namespace::{self, Others},
-    own_clocks,
-    publishers,
+    own_clocks, publishers,
     rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
@@ -152,12 +150,7 @@ impl Topics<'_> {
     }
 
     /// The stream of wheel speeds whose stamps become the rows, where the base is a power meter that is slower.
-    fn slow_meter(
-        &self,
-        streams: &[Named],
-        chosen: &[(usize, usize, usize)],
-        base: usize,
-    ) -> Option<usize> {
+    fn slow_meter(&self, streams: &[Named], chosen: &[(usize, usize, usize)], base: usize) -> Option<usize> {
         if self.map.base.is_some() {
             return None;
         }
@@ -239,6 +232,12 @@ impl Topics<'_> {
                 Target::Time | Target::Run | Target::Surface => {}
             }
         }
+        for &(source, at, _) in chosen {
+            if self.map.sources[source].sign == Sign::Drawn {
+                let place = format!("topic {}", streams[at].topic);
+                self.repairs.extend(drawn::settle(&mut recording, &place));
+            }
+        }
         let start_unix_s = (origin_ns > 0).then_some(origin_ns as f64 / 1e9);
         recording.runs = vec![Run::new(name.to_owned(), 0..t_s.len(), &t_s, start_unix_s)];
         recording.surface = self.map.surface.as_ref().map(|surface| Labels::constant(surface, t_s.len()));
@@ -255,7 +254,7 @@ fn check_steps(base: &Named) -> Result<(), Error> {
         None => Ok(()),
         Some(evidence) => {
             let other = if base.stream.clock == BY_HEADER { "log" } else { "header" };
-            Err(Error::TopicSteps { topic: base.topic.clone(), evidence, other })
+            Err(TimeError::TopicSteps { topic: base.topic.clone(), evidence, other }.into())
         }
     }
 }

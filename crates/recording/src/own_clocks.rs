@@ -37,8 +37,7 @@ pub(crate) fn onto_one_clock(
     if recording.channels.values().all(|values| values.iter().all(|value| !value.is_nan())) {
         return Ok(());
     }
-    let clocks: Vec<Clock> = 
-        recording.runs.iter().map(|run| Clock::of(recording, run, max_gap_s)).collect();
+    let clocks: Vec<Clock> = recording.runs.iter().map(|run| Clock::of(recording, run, max_gap_s)).collect();
     repairs.extend(clocks.iter().filter_map(|clock| clock.told(recording)));
     let is_thinner = clocks.iter().any(|clock| clock.base.is_some());
     let (mut all_filled, mut all_empty) = (Vec::new(), Vec::new());
@@ -145,8 +144,7 @@ struct Clock {
 
 impl Clock {
     fn of(recording: &Recording, run: &Run, max_gap_s: Option<f64>) -> Clock {
-        let all =
-            || Clock { run: run.clone(), rows: run.rows.clone().collect(), base: None, meter: None };
+        let all = || Clock { run: run.clone(), rows: run.rows.clone().collect(), base: None, meter: None };
         let Some((base, samples)) = slowest_of_power(recording, run) else { return all() };
         let is_dense = samples.len() as f64 >= ROWS_OWN_SHARE * run.rows.len() as f64;
         if is_dense || !has_rhythm(&recording.t_s, &samples) {
@@ -391,6 +389,9 @@ mod tests {
         // Nothing tells NaN from NaN: the rows without a reading are those after the last one.
         let (again, repairs) = aligned(recording.clone());
         assert_eq!(again.t_s, recording.t_s);
-        assert!(repairs.len() == 1 && repairs[0].what.starts_with("9 of 600 rows have no value"), "{repairs:?}");
+        assert!(
+            repairs.len() == 1 && repairs[0].what.starts_with("9 of 600 rows have no value"),
+            "{repairs:?}"
+        );
     }
 }

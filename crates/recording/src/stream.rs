@@ -2,7 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::{Channel, Error, Repair, Source, Stamp, Target, bursts::Bursts, clock_offset::offset_ns, coarse::Coarse, gap};
+use crate::{
+    Channel, Error, Repair, Source, Stamp, Target, TimeError, bursts::Bursts, clock_offset::offset_ns,
+    coarse::Coarse, gap,
+};
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
 /// messages are delayed by fractions of a second on a robot's own network.
@@ -186,7 +189,7 @@ fn refuse_jumps(
             match jump(at, moved).or_else(|| jump(at, back)) {
                 Some((message, by_s)) if is_recorders(at) => stalls.push(Stall { message, by_s }),
                 Some((message, by_s)) => {
-                    return Err(Error::ClockJump { topic: topic.to_owned(), message, by_s, other });
+                    return Err(TimeError::ClockJump { topic: topic.to_owned(), message, by_s, other }.into());
                 }
                 None => {}
             }

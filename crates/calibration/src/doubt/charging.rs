@@ -27,13 +27,14 @@ fn scatter_w(seconds: &[Second]) -> Option<f64> {
 
 /// Tells of a battery that is charged while the robot stands, or drives where it has to draw power.
 pub(super) fn charging(recording: &Recording, seconds: &[Second]) -> Option<Doubt> {
-    let is_battery = matches!(
-        recording.power_form(),
-        Some(PowerForm::Battery | PowerForm::CurrentAndVoltage)
-    );
+    let is_battery =
+        matches!(recording.power_form(), Some(PowerForm::Battery | PowerForm::CurrentAndVoltage));
     // Ground that falls and wheels that brake give power back; nothing else does.
     let takes = |one: &&Second| {
-        one.predicted_w >= 0.0 && one.pitch_rad >= 0.0 && one.accel_mps2 > -SLOWING_MPS2 && one.recorded_w.is_finite()
+        one.predicted_w >= 0.0
+            && one.pitch_rad >= 0.0
+            && one.accel_mps2 > -SLOWING_MPS2
+            && one.recorded_w.is_finite()
     };
     let least_w = SIGMAS * scatter_w(seconds)?;
     let is_charged = |one: &&Second| one.recorded_w < (one.predicted_w - least_w).min(0.0);

@@ -34,7 +34,8 @@ pub(super) fn lifted(robot: &Robot, recording: &Recording, seconds: &[Second]) -
     // Of ground that falls little is drawn as well.
     let is_loaded = |one: &&Second| one.predicted_w - standing_w > LITTLE * usual_w && usual_w > 0.0;
     let draws = |one: &Second| (one.recorded_w - standing_w) / (one.predicted_w - standing_w);
-    let loaded: Vec<&Second> = turning.into_iter().filter(is_loaded).filter(|one| one.recorded_w.is_finite()).collect();
+    let loaded: Vec<&Second> =
+        turning.into_iter().filter(is_loaded).filter(|one| one.recorded_w.is_finite()).collect();
     let still: Vec<&Second> =
         loaded.iter().copied().filter(|one| is_still(robot, one) && draws(one) < LITTLE).collect();
     let idle: Vec<&Second> = longest(&loaded, |one| draws(one) < HARDLY && !is_moving(robot, one));

@@ -56,7 +56,15 @@ pub(super) fn seconds(robot: &Robot, recording: &Recording, watch: &Watch) -> Re
         let rim_mps = (row.rim_mps.left.abs() + row.rim_mps.right.abs()) / 2.0;
         let motion = [rim_mps, row.difference_mps(), row.rim_mps2.sum() / 2.0];
         let [rim_mps, difference_mps, accel_mps2] = motion;
-        [rim_mps, difference_mps, accel_mps2, row.pitch_rad, row.yaw_rate_radps, predicted_w[i], recorded_w(i)]
+        [
+            rim_mps,
+            difference_mps,
+            accel_mps2,
+            row.pitch_rad,
+            row.yaw_rate_radps,
+            predicted_w[i],
+            recorded_w(i),
+        ]
     });
     let second = |(average, mean): (&crate::average::Average, [f64; 7])| {
         let [rim_mps, difference_mps, accel_mps2, pitch_rad, yaw_rate_radps, predicted_w, recorded_w] = mean;

@@ -129,7 +129,8 @@ fn saturated(recording: &Recording) -> Vec<Doubt> {
                     one.name(),
                     limit.statement
                 ),
-                cure: "widen the range of its sensor, or leave out the runs in which it is at its limit".to_owned(),
+                cure: "widen the range of its sensor, or leave out the runs in which it is at its limit"
+                    .to_owned(),
             });
         }
     }
