@@ -6,7 +6,7 @@ use recording::{Map, Reading, read_path};
 
 #[path = "written/ros1.rs"]
 mod ros1;
-use ros1::{Chunk, header};
+use ros1::{Chunk, Topic, header};
 
 const DEFINITION: &str = "float64 left\nfloat64 right\nfloat64 power\n";
 
@@ -28,7 +28,8 @@ fn chunk(rows: std::ops::Range<u64>) -> Chunk {
         )
     };
     let messages: Vec<(u64, Vec<u8>)> = rows.map(message).collect();
-    Chunk::new("/drive", "test/Drive", DEFINITION, &messages)
+    let topic = Topic { connection: 0, name: "/drive", type_name: "test/Drive", definition: DEFINITION };
+    Chunk::new(&topic, &messages)
 }
 
 fn read(name: &str, bytes: &[u8]) -> Reading {

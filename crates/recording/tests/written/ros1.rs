@@ -24,32 +24,41 @@ pub(crate) fn header(index_pos: u64) -> Vec<u8> {
     [b"#ROSBAG V2.0\n".to_vec(), record(&fields, &[b' '; 64])].concat()
 }
 
+/// A topic of a bag.
+pub(crate) struct Topic<'a> {
+    /// Its number in the bag.
+    pub(crate) connection: u32,
+    pub(crate) name: &'a str,
+    pub(crate) type_name: &'a str,
+    pub(crate) definition: &'a str,
+}
+
 /// A chunk with the connection of a topic and messages, and the index behind it.
 pub(crate) struct Chunk {
-    pub(crate) plain: Vec<u8>,
+    plain: Vec<u8>,
     index: Vec<u8>,
 }
 
 impl Chunk {
-    pub(crate) fn new(topic: &str, type_name: &str, definition: &str, messages: &[(u64, Vec<u8>)]) -> Chunk {
+    pub(crate) fn new(topic: &Topic<'_>, messages: &[(u64, Vec<u8>)]) -> Chunk {
         let counted = |text: String| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
         let about = [
-            counted(format!("topic={topic}")),
-            counted(format!("type={type_name}")),
+            counted(format!("topic={}", topic.name)),
+            counted(format!("type={}", topic.type_name)),
             counted(format!("md5sum={}", "0".repeat(32))),
-            counted(format!("message_definition={definition}")),
+            counted(format!("message_definition={}", topic.definition)),
         ]
         .concat();
-        let connection: [(&str, &[u8]); 3] = [("op", &[7]), ("conn", &[0; 4]), ("topic", topic.as_bytes())];
-        let mut plain = record(&connection, &about);
+        let conn = topic.connection.to_le_bytes();
+        let mut plain = record(&[("op", &[7]), ("conn", &conn), ("topic", topic.name.as_bytes())], &about);
         let mut entries = Vec::new();
         for (at_ns, message) in messages {
             entries.extend([&stamp(*at_ns)[..], &(plain.len() as u32).to_le_bytes()].concat());
-            plain.extend(record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &stamp(*at_ns))], message));
+            plain.extend(record(&[("op", &[2]), ("conn", &conn), ("time", &stamp(*at_ns))], message));
         }
         let count = (messages.len() as u32).to_le_bytes();
         let index: [(&str, &[u8]); 4] =
-            [("op", &[4]), ("ver", &[1, 0, 0, 0]), ("conn", &[0; 4]), ("count", &count)];
+            [("op", &[4]), ("ver", &[1, 0, 0, 0]), ("conn", &conn), ("count", &count)];
         Chunk { plain, index: record(&index, &entries) }
     }
 
