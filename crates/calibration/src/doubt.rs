@@ -64,17 +64,21 @@ pub fn charged(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Op
 /// As [`crate::predict_watched()`].
 pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
     let recording = recording.thinned_watched(watch)?;
-    let odd = circumstances(robot, &recording, watch)?;
-    if !odd.is_empty() {
+    let stuck = stuck_sensor::stuck_sensors(robot, &recording);
+    if !stuck.is_empty() {
         // Signs, sides and units are told by drives as a robot makes them.
-        return Ok(odd);
+        return Ok(stuck);
+    }
+    let seconds = second::seconds(robot, &recording, watch)?;
+    if let Some(lifted) = lifted::lifted(robot, &recording, &seconds) {
+        return Ok(vec![lifted]);
     }
     let mut all = scale::speeds(robot, &recording);
     let followed = follow::of(robot, &recording, watch)?;
     all.extend(scale::power(&followed));
     all.extend(change::mends(robot, &recording, &followed, watch)?);
     if all.is_empty() {
-        all.extend(charged(robot, &recording, watch)?);
+        all.extend(charging::charging(&recording, &seconds));
     }
     Ok(all)
 }

@@ -18,7 +18,7 @@ pub(crate) struct Recorded {
     /// drive on time
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
-    /// Map file that names columns or topics and their units, or the built-in husky or borealtc
+    /// Map file that names columns or topics and their units, or a built-in one: husky, clearpath-a200, clearpath-j100, jackal, scout, borealtc
     #[arg(long, visible_alias = "columns")]
     map: Option<String>,
     /// The surface of ground that the recordings do not label, instead of the robot's default one
@@ -117,9 +117,9 @@ fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
     if let Some(map) = Map::built_in_for(name, robot.wheel_radius_m, robot.slip_track_m) {
         return Ok(map);
     }
-    let known = Map::BUILT_IN.join(" or ");
+    let known = Map::BUILT_IN.join(", ");
     let text = text(name)
-        .map_err(|error| BadInput(format!("--map {error}; give a map file, or the built-in {known}")))?;
+        .map_err(|error| BadInput(format!("--map {error}; give a map file, or one of the built-in {known}")))?;
     Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }
 

@@ -55,7 +55,7 @@ fn shortened(names: &[String]) -> Vec<String> {
 pub(super) fn hints(nearest: &[(String, String)]) -> String {
     let hint = |(found, wanted): &(String, String)| format!("`{}` for {wanted}", excerpt(found));
     match nearest {
-        [] => "; rename the columns or name them in a map".into(),
+        [] => "; rename the columns or name them in a map (`joulepath inspect LOG --write-map my-map.json` proposes one)".into(),
         _ => {
             let hints: Vec<String> = nearest.iter().map(hint).collect();
             format!("; did you mean {}? Rename it, or name it with its unit in a map", hints.join(", "))
