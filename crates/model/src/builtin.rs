@@ -37,6 +37,7 @@ pub fn husky_a200() -> Robot {
         track_m: 0.54,
         slip_track_m: 0.54,
         wheel_radius_m: 0.165,
+        ground_clearance_m: None,
         center_of_mass: CenterOfMass::default(),
         yaw_inertia_kgm2: 5.0,
         max_wheel_speed_mps: HUSKY_TOP_MPS,

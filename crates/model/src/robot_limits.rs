@@ -56,6 +56,9 @@ fn check_body(robot: &Robot) -> Result<(), Error> {
         "give metres; the kinematic track is the track or somewhat wider",
     )?;
     within("wheel_radius_m", robot.wheel_radius_m, 0.005, 2.0, metres)?;
+    if let Some(clearance_m) = robot.ground_clearance_m {
+        within("ground_clearance_m", clearance_m, 0.0, 5.0, "give metres from the ground to the body")?;
+    }
     let c = &robot.center_of_mass;
     let inside = "give metres from the geometric centre, inside the wheels";
     within(

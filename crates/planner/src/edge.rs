@@ -6,8 +6,10 @@ use model::Manoeuvre;
 use terrain::Cell;
 
 use crate::{
+    heading::Heading,
     lattice::Lattice,
     spans::{Span, first_blocked, shifted},
+    stance::Offset,
     step::{Limits, PreparedStep, Step},
 };
 
@@ -45,6 +47,8 @@ impl Edge {
 pub(crate) struct Chain {
     /// Its steps, each with one manoeuvre per surface.
     steps: Vec<(PreparedStep, Vec<Manoeuvre>)>,
+    /// The pose in which it ends: the offset of its cell, and its heading.
+    end: (Offset, Heading),
     sweep: Arc<[Span]>,
     /// Largest king's distance of a swept cell: with more clearance nothing can be touched.
     reach: u8,
@@ -65,12 +69,18 @@ impl Chain {
         let read_from = corners().fold((0, 0), |low, corner| (low.0.min(corner.0), low.1.min(corner.1)));
         let read_to = corners().fold((0, 0), |high, corner| (high.0.max(corner.0), high.1.max(corner.1)));
         let reach = u8::try_from(reach).unwrap_or(u8::MAX);
-        Chain { steps, sweep, reach, read_from, read_to, reverse }
+        let end = steps.last().map_or(((0, 0), Heading::new(0)), |(step, _)| step.end_pose());
+        Chain { steps, end, sweep, reach, read_from, read_to, reverse }
     }
 
     /// The cells it sweeps, as offsets from where it starts.
     pub(crate) fn sweep(&self) -> &Arc<[Span]> {
         &self.sweep
+    }
+
+    /// The pose in which it ends, as an offset of cells and a heading.
+    pub(crate) fn end(&self) -> (Offset, Heading) {
+        self.end
     }
 
     /// Its steps, each with the manoeuvres of all surfaces and whether it is driven backwards.
@@ -122,13 +132,14 @@ impl Chain {
         if lattice.clearance.at(index) <= self.reach && self.touches(lattice, cell) {
             return None;
         }
-        let mut height_m = terrain.relative_m()[index];
+        let mut height_m = lattice.ground.height_m(terrain, index);
         for (step, manoeuvres) in &self.steps {
             let manoeuvre_on = |surface: usize| &manoeuvres[surface];
             let (done, end_m) = step.drive_on(lattice, index, height_m, self.reverse, manoeuvre_on)?;
             visit(&done);
             height_m = end_m;
         }
-        Some(())
+        let (end, heading) = self.end;
+        (!lattice.ground.touches(terrain, shifted(terrain, cell, end)?, heading)).then_some(())
     }
 }

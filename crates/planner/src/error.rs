@@ -54,6 +54,13 @@ pub enum Blocked {
         /// The robot's limit [rad].
         limit_rad: f64,
     },
+    /// The ground between or about the wheels rises further above the plane of the wheels than the body is off it.
+    Body {
+        /// How far it rises there [m].
+        rises_m: f64,
+        /// The robot's clearance [m].
+        clearance_m: f64,
+    },
     /// The ground tilts the robot further than its limit.
     Roll {
         /// Roll there [rad].
@@ -79,6 +86,10 @@ impl fmt::Display for Blocked {
                 "the ground pitches the robot by {:.1}°, its limit is {:.1}°",
                 degrees(*pitch_rad),
                 degrees(*limit_rad)
+            ),
+            Blocked::Body { rises_m, clearance_m } => write!(
+                f,
+                "the ground under the robot rises {rises_m:.3} m above the plane of its wheels, and the robot's ground_clearance_m is {clearance_m:.3} m (a third of the wheel radius where the file gives none)"
             ),
             Blocked::Roll { roll_rad, limit_rad } => write!(
                 f,

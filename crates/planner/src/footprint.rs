@@ -19,7 +19,12 @@ impl Footprint {
     pub fn of(robot: &Robot) -> Self {
         Footprint {
             length_m: robot.wheelbase_m + 2.0 * robot.wheel_radius_m,
-            width_m: robot.track_m + robot.wheel_radius_m,
+            width_m: robot.track_m + Self::tyre_width_m(robot),
         }
+    }
+
+    /// Width of a tyre [m]: its radius.
+    pub(crate) fn tyre_width_m(robot: &Robot) -> f64 {
+        robot.wheel_radius_m
     }
 }

@@ -129,6 +129,7 @@ impl<'l> FreeGround<'l> {
         let corner = self.index(sample.corner)?;
         self.index(sample.far_corner())?;
         let terrain = &self.lattice.terrain;
-        Some(sample.height_m(terrain.relative_m(), corner, terrain.grid.columns))
+        let ground = &self.lattice.ground;
+        Some(sample.height_m(|index| ground.height_m(terrain, index), corner, terrain.grid.columns))
     }
 }

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
-use terrain::{Cell, Surfaces, Terrain, slope};
+use terrain::{Cell, Surfaces, Terrain};
 
 use crate::{
     clearance::Clearance,
     edge::{Chain, Edge},
     error::{Blocked, Error},
     footprint::Footprint,
+    ground::Ground,
     heading::{HEADINGS, Heading},
     layout::Layout,
     objective::{Objective, Weights},
@@ -17,6 +18,7 @@ use crate::{
     preparation::Preparation,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
     spans::{Span, first_blocked, shifted},
+    stance::Stance,
     step::{Limits, Step},
     swept::Rectangle,
 };
@@ -71,6 +73,7 @@ pub struct Lattice {
     pub motions: [Vec<Motion>; HEADINGS],
     pub(crate) layout: Layout,
     pub(crate) limits: Limits,
+    pub(crate) ground: Ground,
     pub(crate) chains: Arc<[Vec<Vec<Chain>>; HEADINGS]>,
     /// Friction of every surface class, the robot's default last.
     pub(crate) surfaces: Vec<model::robot::Surface>,
@@ -117,6 +120,7 @@ impl Lattice {
             motions,
             layout,
             limits: Limits::of(robot),
+            ground: Ground::new(terrain, Arc::new(Stance::new(robot, cell_size_m)), robot.clearance_m()),
             chains,
             surfaces: surfaces.into_iter().cloned().collect(),
             stand: std::array::from_fn(|h| standing(h).spans(cell_size_m).collect()),
@@ -140,6 +144,7 @@ impl Lattice {
             motions: self.motions.clone(),
             layout: self.layout,
             limits: self.limits,
+            ground: Ground::new(terrain, Arc::clone(self.ground.stance()), self.robot.clearance_m()),
             chains: Arc::clone(&self.chains),
             surfaces: self.surfaces.clone(),
             stand: self.stand.clone(),
@@ -175,13 +180,19 @@ impl Lattice {
         k2.left.min(k2.right)
     }
 
-    /// Height potential φ = κ m g z of a cell, above the map's lowest ground [J].
+    /// Height potential φ = κ m g z of a cell, z being [`Lattice::height_m`] [J].
     ///
     /// `E − Δφ` is never negative: of each side's electrical power P ≥ κ F u holds, driving because κ ≤ k2, back-driven
     /// because 1/k2 ≤ k2; and of all wheel work only friction is left once gravity is taken out. Adding Δφ along any path
     /// from one place to another gives the same sum, so the search may use `E − Δφ` and stay exact (Johnson 1977).
     pub fn potential_j(&self, cell: Cell) -> f64 {
-        f64::from(self.terrain.relative_m()[self.terrain.grid.index(cell)]) * self.lift_j_per_m()
+        f64::from(self.height_m(cell)) * self.lift_j_per_m()
+    }
+
+    /// Height of the robot in a cell above the map's lowest ground: the mean over the disc that its wheels go round in a turn
+    /// on the spot, NaN where the ground is unknown [m].
+    pub fn height_m(&self, cell: Cell) -> f32 {
+        self.ground.height_m(&self.terrain, self.terrain.grid.index(cell))
     }
 
     /// κ m g: the potential per metre of height [J/m].
@@ -197,7 +208,7 @@ impl Lattice {
     /// Whether the robot can stand in a pose, and if not, why.
     ///
     /// # Errors
-    /// The first reason found: obstacle, unknown ground, map edge, pitch, roll.
+    /// The first reason found: obstacle, unknown ground, map edge, pitch, roll, ground that the body would touch.
     pub fn stand(&self, state: State) -> Result<(), Blocked> {
         if let Some(touched) = first_blocked(&self.clearance, state.cell, &self.stand[state.heading.index()])
         {
@@ -215,12 +226,17 @@ impl Lattice {
         if roll_rad.abs() > limits.max_roll_rad {
             return Err(Blocked::Roll { roll_rad, limit_rad: limits.max_roll_rad });
         }
+        if self.ground.touches(&self.terrain, state.cell, state.heading) {
+            let rises_m = self.ground.rises_m(&self.terrain, state.cell, state.heading).unwrap_or(f64::NAN);
+            return Err(Blocked::Body { rises_m, clearance_m: self.robot.clearance_m() });
+        }
         Ok(())
     }
 
-    /// Pitch and roll of the robot standing in a pose, from the slope map [rad].
+    /// Pitch and roll of the robot standing in a pose, on the plane through the ground at its wheels [rad].
     pub fn tilt_rad(&self, state: State) -> (f64, f64) {
-        let (east, north) = slope::gradient_at(&self.terrain, state.cell);
+        let [east, north] =
+            self.ground.plane(&self.terrain, state.cell, state.heading).gradient.map(f64::from);
         let (sin, cos) = state.heading.angle_rad().sin_cos();
         ((east * cos + north * sin).atan(), (north * cos - east * sin).atan())
     }

@@ -150,7 +150,7 @@ fn first_pose(lattice: &Lattice, start: State) -> Pose {
     Pose {
         x_m,
         y_m,
-        z_m: lattice.terrain.elevation_m(start.cell).unwrap_or(f64::NAN),
+        z_m: lattice.terrain.base_m() + f64::from(lattice.height_m(start.cell)),
         heading_rad: start.heading.angle_rad(),
         t_s: 0.0,
         distance_m: 0.0,

@@ -2,7 +2,7 @@
 
 use model::{Grade, PowerKernel};
 
-use crate::{edge::Chain, layout::TILE, window::Window};
+use crate::{edge::Chain, layout::TILE, stance::orientation, window::Window};
 
 /// What steps are measured by.
 #[derive(Clone, Copy)]
@@ -45,6 +45,7 @@ pub(crate) struct RowStep {
     /// Cells that interpolation reads, relative to the start cell, and their weights.
     taps: Vec<((i32, i32), f32)>,
     middle: (i32, i32),
+    orientation: usize,
     horizontal_m: f32,
     per_horizontal_m: f32,
     travel: (f32, f32),
@@ -83,8 +84,9 @@ impl RowStep {
             }
             *height_m = end_m;
         }
-        let east = window.lanes(&window.east, row, self.middle);
-        let north = window.lanes(&window.north, row, self.middle);
+        let [east, north] = &window.gradients[self.orientation];
+        let east = window.lanes(east, row, self.middle);
+        let north = window.lanes(north, row, self.middle);
         let ground = self.ground(&rise_m, east, north);
         if let [only] = window.present[..] {
             let step = self.costs(pricing, &self.kernels[usize::from(only)], &ground, &rise_m);
@@ -108,17 +110,17 @@ impl RowStep {
         let (cos, sin) = self.travel;
         let mut ground = Ground {
             grade: Lanes::ZERO,
+            stance_grade: Lanes::ZERO,
             side_grade: Lanes::ZERO,
             cos_pitch: Lanes::ZERO,
             cos_roll: Lanes::ZERO,
         };
         for x in 0..TILE {
             ground.side_grade[x] = north[x].mul_add(cos, -(east[x] * sin));
+            ground.stance_grade[x] = east[x].mul_add(cos, north[x] * sin);
         }
         if self.horizontal_m == 0.0 {
-            for x in 0..TILE {
-                ground.grade[x] = east[x].mul_add(cos, north[x] * sin);
-            }
+            ground.grade = ground.stance_grade;
         } else {
             for (grade, rise_m) in ground.grade.iter_mut().zip(rise_m.iter()) {
                 *grade = rise_m * self.per_horizontal_m;
@@ -171,6 +173,7 @@ impl RowStep {
             let cost = per_j.mul_add(friction_j, per_m.mul_add(length_m, per_s * duration_s));
             // Written so that a NaN of unknown ground fails too.
             let allowed = (grade.abs() <= limits.pitch_grade)
+                & (ground.stance_grade[x].abs() <= limits.pitch_grade)
                 & (ground.side_grade[x].abs() <= limits.roll_grade)
                 & (largest_n[x] <= limits.side_force_n);
             costs[x] = if allowed { cost } else { f32::INFINITY };
@@ -182,6 +185,7 @@ impl RowStep {
 /// The ground under a step for one row of start cells.
 struct Ground {
     grade: Lanes,
+    stance_grade: Lanes,
     side_grade: Lanes,
     cos_pitch: Lanes,
     cos_roll: Lanes,
@@ -212,6 +216,7 @@ impl Chain {
             RowStep {
                 taps: if turning { Vec::new() } else { step.end.taps().collect() },
                 middle: step.middle,
+                orientation: orientation(step.heading),
                 horizontal_m: step.horizontal_m as f32,
                 per_horizontal_m: if turning { 0.0 } else { (1.0 / step.horizontal_m) as f32 },
                 travel: (step.travel.0 as f32, step.travel.1 as f32),

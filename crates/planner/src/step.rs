@@ -1,9 +1,8 @@
 //! One step at constant grade, surface and curvature: the evaluation that lattice motions and free courses share.
 
 use model::{Acceleration, Grade, Manoeuvre, Motion as BodyMotion, Robot};
-use terrain::slope;
 
-use crate::{lattice::Lattice, primitive::Piece};
+use crate::{heading::Heading, lattice::Lattice, primitive::Piece, stance::Offset};
 
 /// A stretch of a motion at constant grade, surface and curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +21,8 @@ pub struct Step {
     pub motion: BodyMotion,
     /// How the ground carries the weight.
     pub grade: Grade<f64>,
+    /// Pitch of the robot on its wheels half way; on ground smaller than the robot it is not the slope of the way [rad].
+    pub stance_pitch_rad: f64,
     /// Index of the surface among the map's, the robot's default last.
     pub surface: usize,
     /// Power drawn from the battery [W].
@@ -46,6 +47,8 @@ pub(crate) struct PreparedStep {
     facing_rad: f64,
     /// Cell under the middle.
     pub(crate) middle: (i32, i32),
+    /// The heading nearest to the robot's half way.
+    pub(crate) heading: Heading,
     pub(crate) end: Sample,
 }
 
@@ -60,6 +63,9 @@ pub(crate) const STEP_CELLS: f64 = 1.25;
 /// Largest turn within a step [rad]: the widest between neighbouring headings, 0.464. Half way the pitch is that of the
 /// chord, and the error of second order in the turn.
 const STEP_TURN_RAD: f64 = 0.47;
+/// Half way between two headings the one that is turned to counts, so that mirrored motions read mirrored ground.
+const TIE: f64 = 1e-6;
+
 /// The robot's limits in the form that a step compares with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
@@ -87,6 +93,11 @@ impl PreparedStep {
     pub(crate) fn heading_rad(&self) -> f64 {
         let (cos, sin) = self.travel;
         sin.atan2(cos) + self.facing_rad
+    }
+
+    /// The lattice's pose at its end, if it ends in one: the offset of its cell and its heading.
+    pub(crate) fn end_pose(&self) -> (Offset, Heading) {
+        (self.end.corner, Heading::nearest(self.end_heading_rad))
     }
 
     /// Drives the step on a lattice's ground, from a height; `None` where the limits or unknown ground forbid it.
@@ -119,16 +130,18 @@ impl PreparedStep {
         let columns = terrain.grid.columns;
         let offset =
             |(c, r): (i32, i32)| (from as isize + r as isize * columns as isize + c as isize) as usize;
-        let end_m = self.end.height_m(terrain.relative_m(), offset(self.end.corner), columns);
+        let ground = &lattice.ground;
+        let end_m =
+            self.end.height_m(|index| ground.height_m(terrain, index), offset(self.end.corner), columns);
         let middle = terrain.grid.cell(offset(self.middle));
-        let slope = slope::gradient_at(terrain, middle);
+        let slope = ground.gradient(terrain, middle, self.heading);
         let surface = lattice.surface_index(middle);
         let rise_m = f64::from(end_m - height_m);
         let step = self.drive(manoeuvre_on(surface), rise_m, slope, reverse, limits, surface)?;
         Some((step, end_m))
     }
 
-    /// The step on ground that rises by `rise_m` and slopes by `slope` (east, north) half way.
+    /// The step on ground that rises by `rise_m` and slopes by `slope` (east, north) under the wheels half way.
     #[inline]
     pub(crate) fn drive(
         &self,
@@ -141,10 +154,14 @@ impl PreparedStep {
     ) -> Option<Step> {
         let (cos, sin) = self.travel;
         let turning = self.horizontal_m == 0.0;
-        let grade = if turning { slope.0 * cos + slope.1 * sin } else { rise_m / self.horizontal_m };
+        let stance_grade = slope.0 * cos + slope.1 * sin;
+        let grade = if turning { stance_grade } else { rise_m / self.horizontal_m };
         let side_grade = slope.1 * cos - slope.0 * sin;
         // Written so that a NaN of unknown ground fails too.
-        if !(grade.abs() <= limits.pitch_grade && side_grade.abs() <= limits.roll_grade) {
+        let allowed = grade.abs() <= limits.pitch_grade
+            && stance_grade.abs() <= limits.pitch_grade
+            && side_grade.abs() <= limits.roll_grade;
+        if !allowed {
             return None;
         }
         let cos_pitch = 1.0 / (1.0 + grade * grade).sqrt();
@@ -171,6 +188,7 @@ impl PreparedStep {
             duration_s,
             motion,
             grade,
+            stance_pitch_rad: facing * stance_grade.atan(),
             surface,
             bus_w: power.bus_w,
         })
@@ -207,13 +225,13 @@ impl Sample {
     }
 
     #[inline]
-    pub(crate) fn height_m(&self, z: &[f32], corner: usize, columns: usize) -> f32 {
+    pub(crate) fn height_m(&self, at_m: impl Fn(usize) -> f32, corner: usize, columns: usize) -> f32 {
         let mut height_m = 0.0;
         for (weight, index) in
             self.weights.into_iter().zip([corner, corner + 1, corner + columns, corner + columns + 1])
         {
             if weight != 0.0 {
-                height_m += weight * z[index];
+                height_m += weight * at_m(index);
             }
         }
         height_m
@@ -254,6 +272,9 @@ pub(crate) fn prepare_steps(
             end_heading_rad: heading + facing_rad,
             travel,
             facing_rad,
+            heading: Heading::nearest(
+                travel.1.atan2(travel.0) + facing_rad + TIE * piece.turn_rad / count as f64,
+            ),
             middle: ((mx / cell_size_m).round() as i32, (my / cell_size_m).round() as i32),
             end: Sample::at(end_m, cell_size_m),
         }

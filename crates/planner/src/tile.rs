@@ -17,6 +17,7 @@ use crate::{
     patience::{Patience, work},
     row_step::{Lanes, Pricing, RowStep},
     spans::Span,
+    stance::{Offset, orientation},
     tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
     window::Window,
 };
@@ -29,6 +30,8 @@ pub(crate) struct TileKernel {
     halo: usize,
     /// How far from a cell lie those that its motions sweep.
     swept: usize,
+    /// How far from where the robot stands lies the ground that its stance depends on.
+    beside: usize,
     /// Cells of the longest span that a motion sweeps.
     longest_span: u32,
     /// Chains in groups that are evaluated between two looks at the clock.
@@ -50,6 +53,8 @@ struct RowChain {
     motion: usize,
     sweep: Arc<[Span]>,
     steps: Vec<RowStep>,
+    /// The pose in which it ends, where the robot's body might touch the ground.
+    end: Option<(Offset, usize)>,
 }
 
 impl TileKernel {
@@ -58,11 +63,15 @@ impl TileKernel {
         for (heading, motions) in lattice.chains.iter().enumerate() {
             for (motion, variants) in motions.iter().enumerate() {
                 for chain in variants {
-                    chains.push(RowChain::new(heading, motion, chain));
+                    let (offset, end) = chain.end();
+                    let end = lattice.ground.has_body().then(|| (offset, orientation(end)));
+                    chains.push(RowChain::new((heading, motion), chain, end));
                 }
             }
         }
+        let beside = lattice.ground.reach();
         let reads = chains.iter().flat_map(|c| &c.steps).flat_map(RowStep::reads);
+        let reads = reads.chain(chains.iter().filter_map(|c| c.end).map(|(offset, _)| offset));
         let halo = reads.map(|(c, r)| c.abs().max(r.abs())).max().unwrap_or(0) as usize;
         let spans = || chains.iter().flat_map(|c| c.sweep.iter());
         let swept = spans().map(Span::reach).max().unwrap_or(0) as usize;
@@ -75,6 +84,7 @@ impl TileKernel {
             stride: lattice.motions_per_state(),
             halo,
             swept,
+            beside,
             pricing: Pricing {
                 pitch_grade: limits.pitch_grade as f32,
                 roll_grade: limits.roll_grade as f32,
@@ -88,9 +98,9 @@ impl TileKernel {
         }
     }
 
-    /// How far from a cell, in cells, lies the ground that its motions depend on; slopes look one further.
+    /// How far from a cell, in cells, lies the ground that its motions depend on.
     pub(crate) fn reach(&self) -> usize {
-        self.swept.max(self.halo) + 1
+        self.swept.max(self.halo + self.beside)
     }
 
     /// Costs of all motions from all states of a tile; `None` when patience ends first.
@@ -184,8 +194,9 @@ fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCode
 }
 
 impl RowChain {
-    fn new(heading: usize, motion: usize, chain: &Chain) -> Self {
-        RowChain { heading, motion, sweep: Arc::clone(chain.sweep()), steps: chain.row_steps().collect() }
+    fn new((heading, motion): (usize, usize), chain: &Chain, end: Option<(Offset, usize)>) -> Self {
+        let (sweep, steps) = (Arc::clone(chain.sweep()), chain.row_steps().collect());
+        RowChain { heading, motion, sweep, steps, end }
     }
 
     #[inline(always)]
@@ -194,6 +205,12 @@ impl RowChain {
         *costs = Lanes::ZERO;
         for step in &self.steps {
             step.evaluate(&kernel.pricing, window, row, &mut height_m, costs);
+        }
+        if let Some((offset, orientation)) = self.end {
+            let [east, _] = &window.gradients[orientation];
+            for (cost, east) in costs.iter_mut().zip(window.lanes(east, row, offset)) {
+                *cost = if east.is_nan() { f32::INFINITY } else { *cost };
+            }
         }
     }
 }

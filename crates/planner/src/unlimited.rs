@@ -52,7 +52,7 @@ pub(crate) fn drive_unlimited(
         return None;
     }
     let index = terrain.grid.index(cell);
-    let mut height_m = terrain.relative_m()[index];
+    let mut height_m = lattice.ground.height_m(terrain, index);
     for (step, manoeuvres, reverse) in chain.steps_with_manoeuvres() {
         for read in [step.end.corner, step.end.far_corner(), step.middle] {
             shifted(terrain, cell, read)?;

@@ -1,16 +1,16 @@
 //! The ground that a tile's motions depend on, laid out for reading rows of cells side by side.
 
-use terrain::{Cell, Terrain, slope};
+use terrain::{Cell, Terrain};
 
-use crate::{lattice::Lattice, layout::TILE};
+use crate::{heights::Heights, lattice::Lattice, layout::TILE, stance::ORIENTATIONS};
 
 /// The ground of a tile and around it; unknown and outside are NaN.
 pub(crate) struct Window {
     width: usize,
     halo: usize,
     pub(crate) height_m: Vec<f32>,
-    pub(crate) east: Vec<f32>,
-    pub(crate) north: Vec<f32>,
+    /// Gradients under the wheels east and north, by orientation.
+    pub(crate) gradients: [[Vec<f32>; 2]; ORIENTATIONS],
     pub(crate) surface: Vec<u8>,
     /// Surfaces that occur.
     pub(crate) present: Vec<u8>,
@@ -26,11 +26,12 @@ impl Window {
             width,
             halo,
             height_m: vec![f32::NAN; cells],
-            east: vec![f32::NAN; cells],
-            north: vec![f32::NAN; cells],
+            gradients: std::array::from_fn(|_| [vec![f32::NAN; cells], vec![f32::NAN; cells]]),
             surface: vec![0; cells],
             present: Vec::new(),
         };
+        let first = (origin.row as isize - halo as isize, origin.column as isize - halo as isize);
+        let heights = Heights::new(terrain, first, (width, width), lattice.ground.reach());
         for y in 0..width {
             let Some(row) = (origin.row + y).checked_sub(halo).filter(|r| *r < terrain.grid.rows) else {
                 continue;
@@ -38,11 +39,12 @@ impl Window {
             let west = origin.column.saturating_sub(halo);
             let east = (origin.column + TILE + halo).min(terrain.grid.columns);
             let at = y * width + west + halo - origin.column;
-            let from = terrain.grid.index(Cell { row, column: west });
-            let count = east - west;
-            window.height_m[at..at + count].copy_from_slice(&terrain.relative_m()[from..from + count]);
-            let (east_out, north_out) = (&mut window.east[at..at + count], &mut window.north[at..at + count]);
-            slope::row(terrain, row, west, east_out, north_out);
+            let count = east.saturating_sub(west);
+            lattice.ground.copy_heights(terrain, row, west, &mut window.height_m[at..at + count]);
+            for (k, gradients) in window.gradients.iter_mut().enumerate() {
+                let out = gradients.each_mut().map(|values| &mut values[at..at + count]);
+                lattice.ground.gradient_row(terrain, &heights, (row, west), k, out);
+            }
             for (i, surface) in window.surface[at..at + count].iter_mut().enumerate() {
                 *surface = surface_of(lattice, terrain, Cell { row, column: west + i });
             }

