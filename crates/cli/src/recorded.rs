@@ -118,8 +118,9 @@ fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
         return Ok(map);
     }
     let known = Map::BUILT_IN.join(", ");
-    let text = text(name)
-        .map_err(|error| BadInput(format!("--map {error}; give a map file, or one of the built-in {known}")))?;
+    let text = text(name).map_err(|error| {
+        BadInput(format!("--map {error}; give a map file, or one of the built-in {known}"))
+    })?;
     Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }
 

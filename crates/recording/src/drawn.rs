@@ -45,11 +45,11 @@ mod tests {
             let channels = BTreeMap::from([
                 (Channel::LeftSpeed, vec![0.0, 0.5, 0.5, 0.5]),
                 (Channel::RightSpeed, vec![0.0, 0.5, 0.4, 0.5]),
-                (Channel::Current, vec![-9.0 * sign, 3.0 * sign, -1.0 * sign, 4.0 * sign]),
+                (Channel::Current, vec![-9.0 * sign, 3.0 * sign, -2.0 * sign, 4.0 * sign]),
             ]);
             let mut recording = Recording { channels, ..Recording::default() };
             let said = settle(&mut recording, "topic /bms").unwrap();
-            assert_eq!(recording.channel(Channel::Current).unwrap(), [-9.0, 3.0, -1.0, 4.0]);
+            assert_eq!(recording.channel(Channel::Current).unwrap(), [-9.0, 3.0, -2.0, 4.0]);
             assert!(
                 said.what.contains(if sign > 0.0 { "positive there" } else { "negative there" }),
                 "{said:?}"

@@ -249,7 +249,8 @@ fn topics(path: &Path) -> Result<Inspection, Error> {
             reason: stream.type_name.clone(),
         });
     }
-    let wheels = "wheel_radius_m and wheel_separation_m in the map are those of its robot: put those of yours";
+    let wheels =
+        "wheel_radius_m and wheel_separation_m in the map are those of its robot: put those of yours";
     let mut notes = vec![taken, wheels.to_owned()];
     notes.extend(ignored.iter().map(|ignored| format!("not read: {} ({})", ignored.name, ignored.reason)));
     notes.extend(repairs.iter().map(|repair| format!("{}: {}", repair.place, repair.what)));
