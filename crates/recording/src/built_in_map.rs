@@ -3,6 +3,7 @@
 //! Names and meanings of fields are those of the public packages: `husky_msgs` and `jackal_msgs` (ROS 1), `clearpath_platform_msgs` (currents and
 //! voltages of `Power.msg` stand in an order of each platform), `clearpath_robot` (its battery node publishes a drawn current as positive in all
 //! releases, against the convention of `sensor_msgs/BatteryState`), and `scout_msgs` (motors: front right, front left, rear right, rear left).
+//! Those of PX4 are the messages of `PX4-Autopilot` (`WheelEncoders`: left, right; axes forward-right-down).
 
 use serde_json::Value;
 
@@ -19,7 +20,7 @@ struct BuiltIn {
     namespace: Option<&'static str>,
 }
 
-const ALL: [BuiltIn; 6] = [
+const ALL: [BuiltIn; 7] = [
     BuiltIn { name: "husky", text: include_str!("../maps/husky.json"), after: None, namespace: None },
     BuiltIn {
         name: "clearpath-a200",
@@ -45,17 +46,18 @@ const ALL: [BuiltIn; 6] = [
         after: Some("husky"),
         namespace: None,
     },
+    BuiltIn { name: "px4", text: include_str!("../maps/px4.json"), after: None, namespace: None },
     BuiltIn { name: "borealtc", text: include_str!("../maps/borealtc.json"), after: None, namespace: None },
 ];
 
 impl Map {
     /// Names of the built-in maps.
     pub const BUILT_IN: [&'static str; ALL.len()] =
-        ["husky", "clearpath-a200", "clearpath-j100", "jackal", "scout", "borealtc"];
+        ["husky", "clearpath-a200", "clearpath-j100", "jackal", "scout", "px4", "borealtc"];
 
     /// A built-in map: `husky` for the usual topics of a Clearpath Husky under ROS 1 and ROS 2; `clearpath-a200` and `clearpath-j100` for a
     /// Husky and a Jackal under ROS 2 whose microcontroller tells currents; `jackal` for one under ROS 1; `scout` for an AgileX Scout;
-    /// `borealtc` for the columns of the recordings made from the BorealTC data set.
+    /// `px4` for the logs of a PX4 rover with wheel encoders; `borealtc` for the columns of the recordings made from the BorealTC data set.
     pub fn built_in(name: &str) -> Option<Map> {
         Map::from_value(&Map::built_in_document(name)?).ok()
     }

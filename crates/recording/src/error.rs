@@ -24,7 +24,7 @@ pub enum Error {
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
     #[error(
-        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap, .db3 or .bag, or be that of a folder of \
+        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap, .db3, .bag or .ulg, or be that of a folder of \
          `ros2 bag record`"
     )]
     UnknownFormat {

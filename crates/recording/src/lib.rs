@@ -63,6 +63,7 @@ mod suspicion;
 mod table;
 mod thinned;
 mod topic;
+mod ulog;
 mod units;
 mod units_row;
 mod unused_runs;
