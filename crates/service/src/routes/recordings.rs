@@ -212,7 +212,6 @@ fn format_of(kind: &str) -> Result<Format, Problem> {
         "application/mcap" | "application/x-mcap" => Format::Mcap,
         "application/x-rosbag" | "application/rosbag" => Format::Bag,
         "application/vnd.sqlite3" | "application/x-sqlite3" => Format::Db3,
-        "application/x-ulog" => Format::Ulog,
         _ => {
             let found = if kind.is_empty() { "no content type".to_owned() } else { format!("`{kind}`") };
             let detail = format!(
