@@ -5,17 +5,23 @@
 
 mod earth;
 mod epsg;
+mod geographic;
 mod ground;
 mod mercator;
 mod unit;
+mod warp;
 mod wkt;
 
-pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
+pub(crate) use self::{
+    ground::{Size, UNTOLD_CELLS, to_ground},
+    warp::{DegreeFrame, Unwarped, Warp},
+};
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},
+    warp::WarpRefusal,
 };
 
 use crate::Error;

@@ -1,12 +1,17 @@
 //! Well-known text: of the tree that it writes, kind, unit, code and projection. Also the older `.prj` of Esri, a word a line.
 
-use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, mercator};
+use super::{
+    Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, geographic, mercator,
+};
 
 /// Deepest nesting that is read; texts of the EPSG registry have 8.
 const DEEPEST: usize = 32;
 
 /// Systems made of others: of a horizontal one and a vertical one, or of one and its transformation.
 const COMPOUND: [&str; 4] = ["COMPD_CS", "COMPOUNDCRS", "BOUNDCRS", "SOURCECRS"];
+
+/// Keywords of systems of longitude and latitude, in WKT 1 and 2.
+const GEOGRAPHIC: [&str; 5] = ["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"];
 
 /// A keyword with what stands in its brackets.
 #[derive(Debug, Default)]
@@ -26,6 +31,8 @@ pub(super) fn parse(text: &str) -> Option<Crs> {
         // The registry knows its projection by more than a name.
         crs.mercator = crs.mercator.or(of_code.mercator);
         crs.text = of_code.text;
+    } else if let Some(code) = node.horizontal().geographic_code() {
+        crs.text = Some(format!("EPSG:{code}"));
     }
     Some(crs)
 }
@@ -87,7 +94,7 @@ impl<'a> Node<'a> {
             crs.vertical = crs.vertical.or_else(|| parts.find_map(Node::vertical));
             return Some(crs);
         }
-        if self.is(&["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"]) {
+        if self.is(&GEOGRAPHIC) {
             return Some(Crs { is_geographic: true, ..Crs::default() });
         }
         if self.is(&["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"]) {
@@ -126,6 +133,24 @@ impl<'a> Node<'a> {
         let authority = self.nodes.iter().rev().find(|node| node.is(&["AUTHORITY", "ID"]))?;
         let [name, code, ..] = authority.words.as_slice() else { return None };
         if name.eq_ignore_ascii_case("EPSG") { code.parse().ok() } else { None }
+    }
+
+    /// The code of a geographic system without one, by the name of its datum, if it counts degrees from Greenwich.
+    fn geographic_code(&self) -> Option<u32> {
+        /// Relative difference that a degree written with ten digits has.
+        const WRITTEN_DIGITS: f64 = 1e-9;
+        if !self.is(&GEOGRAPHIC) {
+            return None;
+        }
+        let named = self.child(&["DATUM", "ENSEMBLE", "TRF", "GEODETICDATUM"]).unwrap_or(self);
+        let number = |node: &Node<'_>| node.words.get(1)?.parse::<f64>().ok();
+        let units = ["UNIT", "ANGLEUNIT"];
+        let axis = || self.child(&["AXIS"]).and_then(|axis| axis.child(&units));
+        let radians = number(self.child(&units).or_else(axis)?)?;
+        let is_degree = (radians / 1f64.to_radians() - 1.0).abs() < WRITTEN_DIGITS;
+        let is_greenwich =
+            self.child(&["PRIMEM", "PRIMEMERIDIAN"]).is_none_or(|meridian| number(meridian) == Some(0.0));
+        (is_degree && is_greenwich).then(|| geographic::code_by_name(named.words.first()?)).flatten()
     }
 
     fn mercator(&self) -> Option<Mercator> {
@@ -181,7 +206,10 @@ fn older_prj(text: &str) -> Option<Crs> {
     let projection = value("Projection")?;
     let unit = value("Units").and_then(|name| by_name(&name));
     if projection == "GEOGRAPHIC" {
-        return Some(Crs { is_geographic: true, ..Crs::default() });
+        let counts_degrees = value("Units").is_some_and(|unit| matches!(unit.as_str(), "DD" | "DEGREES"));
+        let code = value("Datum").filter(|_| counts_degrees).and_then(|name| geographic::code_by_name(&name));
+        let text = code.map(|code| format!("EPSG:{code}"));
+        return Some(Crs { text, is_geographic: true, ..Crs::default() });
     }
     let mut crs = Crs { unit, ..Crs::default() };
     if projection == "MERCATOR" {
