@@ -12,16 +12,16 @@ mod unit;
 mod warp;
 mod wkt;
 
-pub(crate) use self::{
-    ground::{Size, UNTOLD_CELLS, to_ground},
-    warp::{DegreeFrame, Unwarped, Warp},
-};
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},
     warp::WarpRefusal,
+};
+pub(crate) use self::{
+    ground::{Size, UNTOLD_CELLS, to_ground},
+    warp::{DegreeFrame, Unwarped, Warp},
 };
 
 use crate::Error;

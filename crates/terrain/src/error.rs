@@ -276,7 +276,9 @@ pub enum Error {
         limit: f64,
     },
     /// A file name that says nothing about its format.
-    #[error("`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .hgt, .hgt.gz, .yaml or .yml")]
+    #[error(
+        "`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .hgt, .hgt.gz, .yaml or .yml"
+    )]
     UnknownFormat {
         /// The path.
         path: String,

@@ -71,10 +71,14 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
     let terrain = match () {
         () if has(&[".json"]) => read_bytes(Format::Json, &bytes()?, options)?,
         () if has(&[".asc"]) => read_ascii_beside(&bytes()?, path, options)?,
-        () if has(&[".asc.gz"]) => read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?,
+        () if has(&[".asc.gz"]) => {
+            read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?
+        }
         () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
         () if has(&[".hgt"]) => hgt::read(&bytes()?, &name, options)?.as_asked(options)?,
-        () if has(&[".hgt.gz"]) => hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?.as_asked(options)?,
+        () if has(&[".hgt.gz"]) => {
+            hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?.as_asked(options)?
+        }
         () if has(&[".yaml", ".yml"]) => {
             let folder = path.parent().unwrap_or(Path::new("."));
             read_ros_map(&bytes()?, options, |image| fs::read(folder.join(image)))?

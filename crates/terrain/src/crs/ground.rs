@@ -44,12 +44,7 @@ impl Affine {
 }
 
 /// Refuses coordinates in degrees; `ending` is that of the file's name. Readers that may warp them do not ask.
-fn refuse_degrees(
-    affine: &Affine,
-    size: Size,
-    crs: &Crs,
-    ending: &'static str,
-) -> Result<(), Error> {
+fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs, ending: &'static str) -> Result<(), Error> {
     if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
 }
 

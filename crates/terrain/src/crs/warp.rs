@@ -66,7 +66,8 @@ impl Warp {
             let cell_deg = source.step_deg[1];
             return Err(WarpRefusal::CellSize { cell_deg, value_m: cell_size_m, min_m, max_m }.into());
         }
-        let [west_m, south_m, east_m, north_m] = bounds_m(&source, &earth, Lattice::BOUND_CELLS * cell_size_m)?;
+        let [west_m, south_m, east_m, north_m] =
+            bounds_m(&source, &earth, Lattice::BOUND_CELLS * cell_size_m)?;
         let origin = [west_m, south_m].map(|edge_m| (edge_m / cell_size_m).floor());
         let count = |far_m: f64, first: f64| ((far_m / cell_size_m).ceil() - first) as u64;
         let (columns, rows) = (count(east_m, origin[0]), count(north_m, origin[1]));
@@ -157,7 +158,14 @@ fn refuse_beyond_zone(source: &DegreeFrame, ending: &'static str) -> Result<(), 
     }
     let width_deg = east_deg - west_deg;
     if width_deg > WIDEST_DEG + margin_east_deg {
-        return Err(WarpRefusal::Wide { width_deg, west_deg, north_deg, south_deg, widest_deg: WIDEST_DEG, ending });
+        return Err(WarpRefusal::Wide {
+            width_deg,
+            west_deg,
+            north_deg,
+            south_deg,
+            widest_deg: WIDEST_DEG,
+            ending,
+        });
     }
     Ok(())
 }

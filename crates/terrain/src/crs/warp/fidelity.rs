@@ -31,9 +31,8 @@ impl Fidelity {
         earth: &Earth,
     ) -> Result<Self, WarpRefusal> {
         let place = |[column, row]: [f64; 2]| {
-            let place_m = earth
-                .place_m(frame.place_deg([column + 0.5, row + 0.5]))
-                .map_err(WarpRefusal::Projection)?;
+            let place_m =
+                earth.place_m(frame.place_deg([column + 0.5, row + 0.5])).map_err(WarpRefusal::Projection)?;
             Ok([0, 1].map(|axis| (place_m[axis] - warped.grid.origin_m[axis]) / warped.grid.cell_size_m))
         };
         let places = Lattice::of(frame.size, &place)?;

@@ -16,8 +16,7 @@ impl DegreeFrame {
     /// The frame of a raster whose columns run along parallels and rows along meridians; `None` for a turned one.
     pub(crate) fn of(affine: &Affine, size: Size) -> Option<Self> {
         let [west_deg, south_deg, ..] = affine.bounds(size.columns, size.rows);
-        let frame =
-            DegreeFrame { south_west_deg: [west_deg, south_deg], step_deg: affine.edges(), size };
+        let frame = DegreeFrame { south_west_deg: [west_deg, south_deg], step_deg: affine.edges(), size };
         affine.is_upright().then_some(frame)
     }
 

@@ -93,7 +93,8 @@ mod tests {
         let exact = |[column, row]: [f64; 2]| Ok([column + bend * row * row, row - bend * column * column]);
         let lattice = Lattice::of(size, &exact).unwrap();
         let mut largest = 0.0f64;
-        for (column, row) in (0..size.columns).flat_map(|c| (0..size.rows).map(move |r| (c as f64, r as f64))) {
+        for (column, row) in (0..size.columns).flat_map(|c| (0..size.rows).map(move |r| (c as f64, r as f64)))
+        {
             let ([x, y], [u, v]) = (lattice.at(column, row), exact([column, row]).unwrap());
             largest = largest.max((x - u).abs()).max((y - v).abs());
         }

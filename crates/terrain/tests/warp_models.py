@@ -1,7 +1,7 @@
 """Writes elevation models in degrees, and what GDAL makes of them on the grids that the program warps them to.
 
-    warp.py write FOLDER        files NAME.tif (and a .asc with its .prj), listed in index.json
-    warp.py warp FOLDER         reads grids.json: for each NAME a frame; writes NAME.f64, rows from the north, NaN where unknown
+    warp_models.py write FOLDER        files NAME.tif (and a .asc with its .prj), listed in index.json
+    warp_models.py warp FOLDER         reads grids.json: for each NAME a frame; writes NAME.f64, rows from the north, NaN where unknown
 """
 
 import json
@@ -11,8 +11,13 @@ from pathlib import Path
 import numpy
 import pyproj
 import rasterio
+from rasterio.io import MemoryFile
 from rasterio.transform import Affine, from_origin
-from rasterio.warp import Resampling, reproject
+from rasterio.vrt import WarpedVRT
+from rasterio.warp import Resampling
+
+# GDAL interpolates positions along a row to within this; an eighth of a cell if it is told nothing.
+POSITION_TOLERANCE_CELLS = 0.001
 
 # Name, system, west, south, columns, rows, width and height of a cell [deg].
 MODELS = [
@@ -53,18 +58,30 @@ def warp(folder):
         _, west, south, columns, rows, width, height = models[grid["name"]]
         # GDAL of the test sees longitudes from -180, as PROJ has them.
         west -= 360 if west > 180 else 0
+        crs = pyproj.CRS(grid["crs"])
+        if west < 180 < west + columns * width:
+            # GDAL does not warp across 180 degrees: the same ground half way round the globe, 30 zones on.
+            west -= 180
+            zone = int(grid["crs"][-2:])
+            crs = pyproj.CRS.from_epsg(int(grid["crs"][5:]) + (30 if zone <= 30 else -30))
         z = heights(columns, rows)
         cell = grid["cell_size_m"]
-        out = numpy.full((grid["rows"], grid["columns"]), numpy.nan)
         north = grid["origin_m"][1] + grid["rows"] * cell
-        # WGS 84 on both sides: GDAL may shift other datums by a metre or two, which the program sets equal. The tolerance makes GDAL
-        # project each cell, where it would else interpolate positions to an eighth of a cell.
-        reproject(z, out, src_transform=frame(west, south, rows, width, height), src_crs="EPSG:4326",
-                  dst_transform=Affine(cell, 0, grid["origin_m"][0], 0, -cell, north), dst_crs=grid["crs"],
-                  resampling=Resampling.bilinear, dst_nodata=numpy.nan, tolerance=0, XSCALE=1, YSCALE=1)
+        # WGS 84 on both sides: GDAL may shift other datums by a metre or two, which the program sets equal.
+        profile = {"driver": "GTiff", "width": columns, "height": rows, "count": 1, "dtype": "float64"}
+        profile |= {"crs": "EPSG:4326", "transform": frame(west, south, rows, width, height)}
+        with MemoryFile() as memory:
+            with memory.open(**profile) as file:
+                file.write(z, 1)
+            target = {"crs": crs.to_wkt(), "width": grid["columns"], "height": grid["rows"], "nodata": numpy.nan}
+            target["transform"] = Affine(cell, 0, grid["origin_m"][0], 0, -cell, north)
+            with memory.open() as file, WarpedVRT(
+                file, resampling=Resampling.bilinear, tolerance=POSITION_TOLERANCE_CELLS, **target
+            ) as warped:
+                out = warped.read(1)
         out.tofile(folder / f"{grid['name']}.f64")
         # Places by PROJ: centres of the source's cells in the grid's system.
-        project = pyproj.Transformer.from_crs(4326, grid["crs"], always_xy=True)
+        project = pyproj.Transformer.from_crs(4326, crs, always_xy=True)
         row, column = numpy.mgrid[0:rows:7, 0:columns:7]
         x, y = project.transform(west + (column + 0.5) * width, south + (rows - row - 0.5) * height)
         numpy.stack([x, y, z[::7, ::7]], axis=-1).tofile(folder / f"{grid['name']}.places")
