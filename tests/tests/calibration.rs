@@ -68,6 +68,12 @@ fn a_fitted_robot_can_be_planned_with() {
         assert!(job["result"]["parameters"][0].get(field).is_some(), "parameters have no {field}");
     }
     assert!(job["result"]["held_out"]["rmse_w"].is_f64() && job["result"]["held_out"]["r2"].is_f64());
+    let coverage = &job["result"]["coverage"];
+    assert_eq!(coverage["runs"].as_array().unwrap().len(), RUNS, "{coverage}");
+    let driven_s = RUNS as f64 * (ROWS - 1) as f64 / 10.0;
+    for field in ["recorded_s", "used_s"] {
+        assert!((coverage["total"][field].as_f64().unwrap() - driven_s).abs() < 1e-6, "{coverage}");
+    }
     let flat: Vec<Vec<f64>> = vec![vec![0.0; 12]; 8];
     let plan = server.post_json(
         "/v1/plan",

@@ -115,11 +115,11 @@ fn wrong_input_ends_with_2_and_one_line_that_says_what_where_and_how_to_mend_it(
             ["lava.csv: run `drive-0`, row 1 of it: surface `lava`", "knows marble"],
         ),
         ("predict --recording drive.csv none.csv", ["none.csv: ", "No such file"]),
-        ("predict --recording drive.dat", ["drive.dat: `.dat`", ".parquet, .mcap, .db3 or .bag"]),
+        ("predict --recording drive.dat", ["drive.dat: `.dat`", ".parquet, .mcap, .db3, .bag or .ulg"]),
         ("predict --recording drive.csv --robot jackal", ["jackal", "husky-a200"]),
         ("predict --recording drive.csv --robot robot.json", ["robot.json: ", "mass_kg"]),
         ("predict --recording drive.csv --map map.json", ["map.json: map, sources[0].unit: `A`", "W, kW"]),
-        ("predict --recording drive.csv --map rover", ["--map rover", "husky or borealtc"]),
+        ("predict --recording drive.csv --map rover", ["--map rover", "husky, clearpath-a200"]),
         (
             "calibrate --method dogru-marques --recording one.csv --out o.json",
             ["one.csv: ", "constant wheel speeds"],

@@ -69,7 +69,7 @@ fn a_map_in_the_query_names_columns_and_units() {
     let problem = server.post(&map("A"), CSV, text.as_bytes()).problem(400, "invalid-request");
     assert_eq!(problem["errors"][0]["pointer"], "/map/sources/3/unit", "{problem}");
     for (query, said) in
-        [("map=rover", "husky, borealtc"), ("colour=red", "colour"), ("map=%7B", "no valid JSON")]
+        [("map=rover", "husky, clearpath-a200"), ("colour=red", "colour"), ("map=%7B", "no valid JSON")]
     {
         let answer = server.post(&format!("/v1/recordings?{query}"), CSV, text.as_bytes());
         let problem = answer.problem(400, "invalid-request");

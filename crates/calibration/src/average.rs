@@ -19,6 +19,8 @@ pub struct Average {
     pub surface: usize,
     /// Its rows, of which the used ones count.
     pub rows: Range<usize>,
+    /// The rows that it stands for: its own, or those of the whole period of a slow meter.
+    pub span: Range<usize>,
     /// How many are used; at least one.
     pub used: usize,
     /// Time that they stand for \[s\].
@@ -36,27 +38,63 @@ impl Drives {
     /// The averages of one stretch.
     fn seconds(&self, stretch: &Stretch) -> Vec<Average> {
         let rhythm_s = rhythm_s(&self.rows[stretch.rows.clone()]);
-        let second_of = |row: &Row| ((row.t_s + 1e-6) / AVERAGE_S).floor();
         let rows = &self.rows[stretch.rows.clone()];
+        let readings_a_second = readings_a_second(rows, rhythm_s);
+        let piece_of = |row: &Row| match row.window.reading {
+            0 => (true, ((row.t_s + 1e-6) / AVERAGE_S).floor()),
+            reading => (false, f64::from((reading - 1) / readings_a_second)),
+        };
         let mut seconds = Vec::new();
         let mut end = stretch.rows.start;
         // Every piece has a row, so that this ends whatever the times are.
-        for piece in rows.chunk_by(|a, b| second_of(a) == second_of(b)) {
-            let (start, second) = (end, second_of(&piece[0]));
-            end += piece.len();
-            let used = self.rows[start..end].iter().filter(|row| row.used && !row.stuck).count();
-            if used > 0 {
-                seconds.push(Average {
-                    run: stretch.run,
-                    surface: stretch.surface,
-                    rows: start..end,
-                    used,
-                    duration_s: used as f64 * rhythm_s,
-                    t_s: second * AVERAGE_S,
-                });
-            }
+        for piece in rows.chunk_by(|a, b| piece_of(a) == piece_of(b)) {
+            let span = end..end + piece.len();
+            end = span.end;
+            let average = match piece_of(&piece[0]) {
+                (true, second) => self.second(stretch, span, (second * AVERAGE_S, rhythm_s)),
+                (false, _) => self.reading(stretch, span, rhythm_s),
+            };
+            seconds.extend(average);
         }
         seconds
+    }
+
+    fn is_counted(&self, row: usize) -> bool {
+        self.rows[row].used && !self.rows[row].stuck
+    }
+
+    /// The rows of one second.
+    fn second(&self, stretch: &Stretch, span: Range<usize>, (t_s, rhythm_s): (f64, f64)) -> Option<Average> {
+        let used = span.clone().filter(|row| self.is_counted(*row)).count();
+        let Stretch { run, surface, .. } = *stretch;
+        let duration_s = used as f64 * rhythm_s;
+        (used > 0).then(|| Average { run, surface, rows: span.clone(), span, used, duration_s, t_s })
+    }
+
+    /// The rows of whole periods of a slow meter; nothing of periods that are not there as a whole.
+    fn reading(&self, stretch: &Stretch, span: Range<usize>, rhythm_s: f64) -> Option<Average> {
+        let pieces = self.rows[span.clone()].chunk_by(|a, b| a.window.reading == b.window.reading);
+        let whole: usize = pieces.map(|piece| piece[0].window.rows as usize).sum();
+        if span.len() < whole || !span.clone().all(|row| self.is_counted(row)) {
+            return None;
+        }
+        let is_compared = |row: &usize| self.rows[*row].window.is_compared;
+        let first = span.clone().find(is_compared)?;
+        let last = span.clone().rfind(is_compared)?;
+        let used = (first..=last).filter(is_compared).count();
+        // Rows of one moment each would have others between them.
+        let rows = if used == last + 1 - first { first..last + 1 } else { first..first + 1 };
+        let Stretch { run, surface, .. } = *stretch;
+        let (t_s, duration_s) = (self.rows[span.start].t_s, span.len() as f64 * rhythm_s);
+        Some(Average { run, surface, used: rows.len(), rows, span, duration_s, t_s })
+    }
+
+    /// Length of the averages \[s\]: a second, or the period of a meter that is slower.
+    pub fn average_s(&self) -> f64 {
+        match self.placement {
+            Some(_) => self.averages.iter().map(|average| average.duration_s).fold(AVERAGE_S, f64::max),
+            None => AVERAGE_S,
+        }
     }
 
     /// Averages of a quantity by row.
@@ -100,6 +138,13 @@ impl Drives {
     pub fn recorded_averages(&self) -> Vec<f64> {
         self.recorded.iter().flat_map(|column| self.averaged(column)).collect()
     }
+}
+
+/// Readings of a slow meter that are compared together, so that an average is as long as others are.
+fn readings_a_second(rows: &[Row], rhythm_s: f64) -> u32 {
+    let longest = rows.iter().map(|row| row.window.rows).max().unwrap_or(0);
+    let period_s = f64::from(longest) * rhythm_s;
+    if period_s > 0.0 { (AVERAGE_S / period_s).round().clamp(1.0, 1000.0) as u32 } else { 1 }
 }
 
 /// The mean step of a stretch \[s\]; a second for a lone row.

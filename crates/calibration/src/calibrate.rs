@@ -1,11 +1,11 @@
 //! A robot fitted to its recordings.
 
 use model::Robot;
-use recording::{PowerForm, Recording, Watch};
+use recording::{PowerForm, Recording, Watch, unwatched};
 use serde::Serialize;
 
 use crate::{
-    Drives, Error, SlipTrack,
+    Drives, DrivesCoverage, Error, SlipTrack,
     contradiction::contradictions,
     current_calibration,
     current_judge::SurfaceVerdict,
@@ -75,11 +75,21 @@ pub struct Calibration {
     pub held_out: Option<HeldOut>,
     /// What a person should know.
     pub notes: Vec<String>,
+    /// How many seconds of every run were fitted, and why the rest was not.
+    pub coverage: DrivesCoverage,
     /// The robot with the values found and their `uncertainty`.
     pub robot: Robot,
 }
 
 impl Calibration {
+    /// The same with what of its drives was fitted.
+    pub(crate) fn covering(mut self, recording: &Recording, drives: &Drives) -> Self {
+        self.coverage = DrivesCoverage::of(recording, drives);
+        self.notes.extend(self.coverage.total.words());
+        self.notes.extend(drives.meter_note());
+        self
+    }
+
     fn with_note(mut self, note: Option<&str>) -> Self {
         self.notes.extend(note.map(str::to_owned));
         self
@@ -91,8 +101,7 @@ impl Calibration {
 /// # Errors
 /// [`Error::NothingToFit`], or [`Error::Robot`] where the result is no robot.
 pub fn calibrate(robot: &Robot, recording: &Recording, options: &Options) -> Result<Calibration, Error> {
-    let drives = Drives::new(robot, &recording.thinned())?;
-    Ok(calibrate_drives(robot, &drives, options)?.with_note(slopes_note(recording)))
+    calibrate_watched(robot, recording, options, &unwatched())
 }
 
 /// Fits a robot as [`calibrate()`] does, followed by a watch.
@@ -105,8 +114,10 @@ pub fn calibrate_watched(
     options: &Options,
     watch: &Watch,
 ) -> Result<Calibration, Error> {
-    let drives = Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?;
-    Ok(calibrate_drives(robot, &drives, options)?.with_note(slopes_note(recording)))
+    let recording = &*recording.thinned_watched(watch)?;
+    let drives = Drives::watched(robot, recording, watch)?;
+    let found = calibrate_drives(robot, &drives, options)?;
+    Ok(found.covering(recording, &drives).with_note(slopes_note(recording)))
 }
 
 fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result<Calibration, Error> {
@@ -124,7 +135,7 @@ fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result
         notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
     }
     let robot = with_uncertainty(&found);
-    Ok(Calibration { parameters, held_out, notes, robot })
+    Ok(Calibration { parameters, held_out, notes, robot, coverage: DrivesCoverage::default() })
 }
 
 /// Names what the recording does not determine, for a person to read.

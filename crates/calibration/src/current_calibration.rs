@@ -4,7 +4,7 @@ use model::{Robot, robot::Surface};
 use rayon::prelude::*;
 
 use crate::{
-    Drives, Error,
+    Drives, DrivesCoverage, Error,
     calibrate::{Calibration, FittedParameter, HeldOut, Options, held_note, with_slip_track},
     current::YawSource,
     current_fit::{CurrentFit, LIFTING, SCALE, fit_force_alone, fit_reference, fit_surface},
@@ -136,7 +136,13 @@ pub(crate) fn calibrate(robot: &Robot, drives: &Drives, options: &Options) -> Re
     if robot.motors.left.force_n_per_a.is_none() && !parameters[1].determined {
         notes.push(FORCE_UNKNOWN.into());
     }
-    Ok(Calibration { held_out: held_out(&found), notes, parameters, robot: fitted })
+    Ok(Calibration {
+        held_out: held_out(&found),
+        notes,
+        parameters,
+        robot: fitted,
+        coverage: DrivesCoverage::default(),
+    })
 }
 
 const FORCE_UNKNOWN: &str = "force per ampere is assumed, not found, and all friction with it: drive slopes of known pitch, or give \

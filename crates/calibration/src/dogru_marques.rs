@@ -12,7 +12,7 @@ use model::{
 use recording::{PowerForm, Recording, Watch};
 
 use crate::{
-    Calibration, Drives, Error, FittedParameter, HeldOut, folds,
+    Calibration, Drives, DrivesCoverage, Error, FittedParameter, HeldOut, folds,
     score::{Score, median},
 };
 
@@ -44,7 +44,8 @@ struct Steady {
 /// [`Error::Stopped`] soon after the watch breaks.
 pub fn calibrate(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Calibration, Error> {
     const METHOD: &str = "the method dogru-marques";
-    let drives = Drives::watched(robot, &*recording.thinned_watched(watch)?, watch)?;
+    let recording = &*recording.thinned_watched(watch)?;
+    let drives = Drives::watched(robot, recording, watch)?;
     if drives.form != Some(PowerForm::Sides) {
         return Err(Error::Needs { method: METHOD, needs: "power_left_w and power_right_w" });
     }
@@ -64,7 +65,8 @@ pub fn calibrate(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<
         "{} steady seconds; errors are those of the paper's printed form on them",
         steady.len()
     )];
-    Ok(Calibration { parameters, held_out, notes, robot: fitted })
+    let coverage = DrivesCoverage::default();
+    Ok(Calibration { parameters, held_out, notes, robot: fitted, coverage }.covering(recording, &drives))
 }
 
 /// Seconds whose neighbours have the same rim speeds.

@@ -3,8 +3,12 @@
 //! `predict`, `calibrate` and `diagnose` ask the same, before anything is believed. Nothing here changes a recording.
 
 mod change;
+mod charging;
 mod follow;
+mod lifted;
 mod scale;
+mod second;
+mod stuck_sensor;
 
 use model::Robot;
 use recording::{Recording, Watch};
@@ -33,15 +37,48 @@ impl std::fmt::Display for Doubt {
     }
 }
 
+/// Doubts about how drives were recorded: sensors of one side that stand still, wheels in the air.
+///
+/// # Errors
+/// As [`crate::predict_watched()`].
+pub fn circumstances(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
+    let stuck = stuck_sensor::stuck_sensors(robot, recording);
+    if !stuck.is_empty() {
+        return Ok(stuck);
+    }
+    let seconds = second::seconds(robot, recording, watch)?;
+    Ok(lifted::lifted(robot, recording, &seconds).into_iter().collect())
+}
+
+/// A doubt about a battery that is charged in the drives, where nothing else is doubtful.
+///
+/// # Errors
+/// As [`crate::predict_watched()`].
+pub fn charged(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Option<Doubt>, Error> {
+    Ok(charging::charging(recording, &second::seconds(robot, recording, watch)?))
+}
+
 /// All doubts about a recording of a robot.
 ///
 /// # Errors
 /// As [`crate::predict_watched()`].
 pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
     let recording = recording.thinned_watched(watch)?;
+    let stuck = stuck_sensor::stuck_sensors(robot, &recording);
+    if !stuck.is_empty() {
+        // Signs, sides and units are told by drives as a robot makes them.
+        return Ok(stuck);
+    }
+    let seconds = second::seconds(robot, &recording, watch)?;
+    if let Some(lifted) = lifted::lifted(robot, &recording, &seconds) {
+        return Ok(vec![lifted]);
+    }
     let mut all = scale::speeds(robot, &recording);
     let followed = follow::of(robot, &recording, watch)?;
     all.extend(scale::power(&followed));
     all.extend(change::mends(robot, &recording, &followed, watch)?);
+    if all.is_empty() {
+        all.extend(charging::charging(&recording, &seconds));
+    }
     Ok(all)
 }

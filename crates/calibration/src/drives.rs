@@ -7,7 +7,15 @@ use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
 
 use crate::{
-    Error, average::Average, copies::copies, losses, row, row::Row, slopes, standstill, stuck, watch::Watched,
+    Error,
+    average::Average,
+    copies::copies,
+    losses,
+    meter::{Laid, Placement, best_placement, laid},
+    row,
+    row::Row,
+    slopes, standstill, stuck,
+    watch::Watched,
 };
 
 /// Rows of one run on one surface without a gap.
@@ -38,6 +46,8 @@ pub struct Drives {
     pub stretches: Vec<Stretch>,
     /// Averages in order of rows.
     pub averages: Vec<Average>,
+    /// What the readings of a power meter tell that is slower than the wheels; `None` where power has the rhythm of the rows.
+    pub placement: Option<Placement>,
     /// Asked before every pass over the rows.
     pub(crate) watch: Watched,
 }
@@ -65,6 +75,27 @@ impl Drives {
         watch.go_on()?;
         let form = recording.power_form().ok_or(Error::NothingToFit { reason: "it tells no power" })?;
         let recorded = recorded(recording, form);
+        if recording.reading_ends.is_empty() {
+            return Drives::laid(robot, recording, (form, Laid { recorded, windows: Vec::new() }), watch);
+        }
+        let usual = laid(recording, recorded.clone(), Placement::default());
+        let mut drives = Drives::laid(robot, recording, (form, usual), watch)?;
+        let best = best_placement(robot, recording, &recorded, &drives)?;
+        if best != Placement::default() {
+            let watch = drives.watch;
+            drives = Drives::laid(robot, recording, (form, laid(recording, recorded, best)), watch)?;
+        }
+        drives.placement = Some(best);
+        Ok(drives)
+    }
+
+    fn laid(
+        robot: &Robot,
+        recording: &Recording,
+        (form, laid): (PowerForm, Laid),
+        watch: Watched,
+    ) -> Result<Self, Error> {
+        let Laid { recorded, windows } = laid;
         let mut drives = Drives {
             runs: recording.runs.iter().map(|run| run.name.clone()).collect(),
             form: Some(form),
@@ -73,6 +104,7 @@ impl Drives {
             watch,
             ..Drives::default()
         };
+        drives.rows.iter_mut().zip(windows).for_each(|(row, window)| row.window = window);
         let copies = copies(recording, &drives.watch)?;
         for (run, rows) in recording.runs.iter().enumerate().map(|(i, run)| (i, run.rows.clone())) {
             drives.watch.go_on()?;
@@ -201,6 +233,7 @@ impl Drives {
             runs: self.runs.clone(),
             surfaces: self.surfaces.clone(),
             form: self.form,
+            placement: self.placement,
             recorded: vec![Vec::new(); self.recorded.len()],
             watch: self.watch.clone(),
             ..Drives::default()

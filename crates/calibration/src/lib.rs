@@ -23,6 +23,7 @@ pub mod folds;
 pub mod lag;
 pub mod lift;
 pub mod losses;
+pub mod meter;
 mod method;
 mod noise;
 pub mod power;
@@ -37,7 +38,7 @@ mod stuck;
 mod watch;
 
 pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
-pub use coverage::{Coverage, LeftOut};
+pub use coverage::{Coverage, DrivesCoverage, LeftOut, RunCoverage};
 pub use doubt::{Doubt, doubts};
 pub use drives::Drives;
 pub use error::Error;

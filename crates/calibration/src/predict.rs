@@ -21,7 +21,7 @@ use crate::{
 pub struct RunPrediction {
     /// Name of the run; `total` for all.
     pub run: String,
-    /// Rows compared.
+    /// Rows compared; readings of a power meter that is slower than the wheels.
     pub rows: usize,
     /// Rows in which the wheels turned against each other and the robot did not; they are compared all the same.
     pub stuck_rows: usize,
@@ -57,6 +57,8 @@ pub struct Prediction {
     pub total: RunPrediction,
     /// What is doubtful about the recording.
     pub doubts: Vec<Doubt>,
+    /// What a person should know of how it was compared.
+    pub notes: Vec<String>,
 }
 
 /// A prediction with what it was made of, row by row.
@@ -140,7 +142,12 @@ fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Resul
         .collect();
     let total = judged.iter().fold(Judged::default(), Judged::join).named("total".into(), of_all);
     Ok(PredictedDrives {
-        prediction: Prediction { runs, total, doubts: Vec::new() },
+        prediction: Prediction {
+            runs,
+            total,
+            doubts: Vec::new(),
+            notes: drives.meter_note().into_iter().collect(),
+        },
         drives,
         predicted_w,
         recorded_w,
@@ -335,6 +342,10 @@ fn judge(
             Tally::of(seconds.clone().map(|i| (predicted[i], recorded[i])))
         };
         judged.by_second = pairs([&averages.predicted_w, &averages.recorded_w]);
+        if drives.placement.is_some() {
+            // Between its readings a slow meter tells nothing of single rows.
+            judged.by_row = judged.by_second;
+        }
         let currents = averages.currents_a.iter().map(|[predicted, recorded]| pairs([predicted, recorded]));
         judged.currents = currents.reduce(|all, side| all.join(&side));
         judged

@@ -5,6 +5,7 @@ use recording::{Channel, Recording};
 
 use crate::{
     Error,
+    meter::Window,
     watch::{ROWS_A_LOOK, Watched},
 };
 
@@ -40,6 +41,8 @@ pub struct Row {
     pub level: bool,
     /// The wheels turn against each other and the robot does not (`stuck`).
     pub stuck: bool,
+    /// The reading of a slow power meter that it belongs to.
+    pub window: Window,
 }
 
 impl Row {

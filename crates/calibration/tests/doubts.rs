@@ -98,3 +98,86 @@ fn seconds_that_are_not_counted_are_said_with_their_reason() {
     let nothing = changed(healthy(), &[Channel::RightPower], |_| f64::NAN);
     assert!(predict(&robot(), &nothing).is_err());
 }
+
+#[test]
+fn a_calibration_says_of_every_run_what_was_fitted_and_which_channel_left_the_rest_out() {
+    let mut recording = healthy();
+    let rows = recording.runs[0].rows.clone();
+    let right_w = recording.channels.get_mut(&Channel::RightPower).unwrap();
+    right_w[rows.start + 100..rows.start + 200].fill(f64::NAN);
+    let pitch = recording.channels.get_mut(&Channel::Pitch).unwrap();
+    pitch[rows.start + 300..rows.end].fill(f64::NAN);
+    let found = Method::Fit.calibrate(&robot(), &recording, &Options::default()).unwrap();
+    let first = &found.coverage.runs[0];
+    let left_out: Vec<_> = first.coverage.left_out.iter().map(|left| left.channel).collect();
+    assert_eq!(left_out, [Some(Channel::RightPower), Some(Channel::Pitch)], "{first:?}");
+    assert!((first.coverage.used_s - 19.8).abs() < 1e-6 && first.coverage.level_s == 0.0, "{first:?}");
+    assert_eq!(found.coverage.runs.len(), 3);
+    assert!(found.coverage.runs[1].coverage.left_out.is_empty());
+    assert!((found.coverage.total.recorded_s - 3.0 * 39.9).abs() < 1e-6);
+    let said = found.notes.iter().find(|note| note.contains("are counted")).unwrap();
+    assert!(said.contains("10.1 s `power_right_w` has no value"), "{said}");
+    assert_eq!(found.coverage.words_by_run().len(), 1);
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(document["coverage"]["runs"][0]["left_out"][1]["channel"], "pitch_rad");
+}
+
+/// The rows of the first run between two of its seconds.
+fn seconds(recording: &Recording, from_s: usize, until_s: usize) -> std::ops::Range<usize> {
+    let start = recording.runs[0].rows.start;
+    start + 10 * from_s..start + 10 * until_s
+}
+
+#[test]
+fn a_sensor_of_one_side_that_stands_still_is_named_with_its_side_and_value() {
+    for (channel, value, name) in [
+        (Channel::LeftSpeed, 0.0, "left_sensor_stuck"),
+        (Channel::RightSpeed, 0.31, "right_sensor_stuck"),
+        (Channel::RightPower, 0.0, "right_sensor_stuck"),
+        (Channel::LeftPower, 55.5, "left_sensor_stuck"),
+    ] {
+        let mut stuck = healthy();
+        let rows = seconds(&stuck, 5, 35);
+        stuck.channels.get_mut(&channel).unwrap()[rows].fill(value);
+        let found = doubts(&robot(), &stuck, &unwatched()).unwrap();
+        assert_eq!(found[0].name, name, "{found:?}");
+        let said = &found[0].statement;
+        assert!(said.contains(channel.name()) && said.contains(&format!("stands at {value} for")), "{said}");
+    }
+}
+
+#[test]
+fn wheels_that_turn_in_the_air_are_told_by_the_gyroscope_and_by_power_alone() {
+    for with_gyroscope in [true, false] {
+        let mut lifted = healthy();
+        let rows = seconds(&lifted, 4, 38);
+        // Free wheels take a few watts whatever they do.
+        for channel in [Channel::LeftPower, Channel::RightPower] {
+            lifted.channels.get_mut(&channel).unwrap()[rows.clone()]
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, w)| *w = 1.0 + 0.5 * (0.7 * i as f64).sin());
+        }
+        lifted.channels.get_mut(&Channel::YawRate).unwrap()[rows].fill(0.001);
+        if !with_gyroscope {
+            lifted.channels.remove(&Channel::YawRate);
+        }
+        let found = doubts(&robot(), &lifted, &unwatched()).unwrap();
+        assert!(found.len() == 1 && found[0].name == "wheels_in_air", "{with_gyroscope}: {found:?}");
+        assert!(found[0].statement.contains("W where driving takes"), "{found:?}");
+    }
+}
+
+#[test]
+fn a_battery_that_is_charged_on_the_way_is_doubted_and_one_that_recovers_power_downhill_is_not() {
+    let mut random = seeded(6);
+    let plain = drives(&mut random, 3, 400);
+    let healthy = with_battery_power(&robot(), plain, &mut random);
+    assert!(healthy.channel(Channel::Power).unwrap().iter().any(|w| *w < 0.0), "some ground falls");
+    assert_eq!(names(&healthy), [""; 0]);
+    let mut charged = healthy;
+    charged.channels.get_mut(&Channel::Power).unwrap().iter_mut().for_each(|w| *w -= 150.0);
+    let found = doubts(&robot(), &charged, &unwatched()).unwrap();
+    assert!(found.len() == 1 && found[0].name == "charging", "{found:?}");
+    assert!(found[0].statement.contains("the battery takes up"), "{found:?}");
+}

@@ -14,11 +14,11 @@ pub(crate) struct Recorded {
     /// Name of a built-in robot, or a robot file
     #[arg(long, default_value = "husky-a200")]
     robot: String,
-    /// Recordings: .csv (.gz, .zst), .parquet, .mcap, .db3 or .bag, or folders of `ros2 bag record`; wheels.csv+power.csv joins tables of one
+    /// Recordings: .csv (.gz, .zst), .parquet, .mcap, .db3, .bag or .ulg, or folders of `ros2 bag record`; wheels.csv+power.csv joins tables of one
     /// drive on time
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
-    /// Map file that names columns or topics and their units, or the built-in husky or borealtc
+    /// Map file that names columns or topics and their units, or a built-in one: husky, clearpath-a200, clearpath-j100, jackal, scout, px4, borealtc
     #[arg(long, visible_alias = "columns")]
     map: Option<String>,
     /// The surface of ground that the recordings do not label, instead of the robot's default one
@@ -45,7 +45,11 @@ impl Recorded {
         // Topics are a Husky's where nothing else is said, on the wheels of the robot at hand.
         let map = match self.map.as_deref() {
             Some(name) => Some(map(name, robot)?),
-            None => Map::built_in_for("husky", robot.wheel_radius_m, robot.slip_track_m),
+            None => {
+                let is_px4 = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "ulg");
+                let name = if files.iter().all(is_px4) { "px4" } else { "husky" };
+                Map::built_in_for(name, robot.wheel_radius_m, robot.slip_track_m)
+            }
         };
         let bar = progress::reading(files);
         let told = bar.clone();
@@ -117,9 +121,10 @@ fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
     if let Some(map) = Map::built_in_for(name, robot.wheel_radius_m, robot.slip_track_m) {
         return Ok(map);
     }
-    let known = Map::BUILT_IN.join(" or ");
-    let text = text(name)
-        .map_err(|error| BadInput(format!("--map {error}; give a map file, or the built-in {known}")))?;
+    let known = Map::BUILT_IN.join(", ");
+    let text = text(name).map_err(|error| {
+        BadInput(format!("--map {error}; give a map file, or one of the built-in {known}"))
+    })?;
     Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }
 

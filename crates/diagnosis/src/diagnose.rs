@@ -73,7 +73,8 @@ pub fn diagnose_watched(
     let Prepared { suspect, healthy, contradictions, offset_w } = Prepared::new(question, watch)?;
     let suspect = &suspect;
     let series = Series::watched(robot, suspect, healthy.as_ref(), watch)?.with_turns(robot)?;
-    let seconds = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+    let averages = series.averages.iter().filter(|a| a.suspect && a.channel == 0).count();
+    let seconds = (averages as f64 * series.average_s()) as usize;
     if seconds < NEEDED_S {
         return Err(Error::TooShort { seconds, needed: NEEDED_S });
     }
@@ -83,6 +84,8 @@ pub fn diagnose_watched(
     let mistakes = mistakes(robot, (suspect, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
     doubts.extend(series.sampled());
+    doubts.extend(covered(&series));
+    doubts.extend(series.meter_note());
     doubts.extend(series.watts_per_a().map(by_current));
     doubts.extend(slopes_note(suspect).map(str::to_owned));
     let excluded: Vec<&str> = ruled_out.iter().chain(&impossible(suspect)).map(|one| one.name()).collect();
@@ -126,6 +129,14 @@ pub fn diagnose_watched(
 pub(crate) fn impossible(suspect: &Recording) -> Vec<&'static dyn Mechanism> {
     let is_read = suspect.channel(Channel::Pitch).is_some();
     mechanism::by_name("pitch_bias").filter(|_| !is_read).into_iter().collect()
+}
+
+/// What a report says of drives of which less than all is compared.
+fn covered(series: &Series) -> Vec<String> {
+    let (suspect, healthy) = series.coverage();
+    let of_healthy = healthy.and_then(|healthy| healthy.total.words());
+    let of_healthy = of_healthy.map(|words| format!("of the healthy drives, {words}"));
+    suspect.total.words().into_iter().chain(of_healthy).collect()
 }
 
 /// What a diagnosis of motor currents has to say of itself.

@@ -7,6 +7,7 @@ use std::io::Read;
 
 use crate::{
     Error, Map,
+    bag_loss::LastChunk,
     compression::{LONGEST_BYTES, decompress},
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Encoding, Short},
@@ -20,6 +21,8 @@ const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
 /// Operations of the records that matter here.
 const MESSAGE: u8 = 0x02;
+const BAG: u8 = 0x03;
+const INDEX: u8 = 0x04;
 const CHUNK: u8 = 0x05;
 const CONNECTION: u8 = 0x07;
 
@@ -48,6 +51,10 @@ impl<'b> Header<'b> {
     }
 }
 
+/// What is said of a bag whose recorder did not close it.
+const NOT_CLOSED: &str = "the bag was never closed, as one that is named `.bag.active`: it was read up to where it was written, and what the recorder had \
+     not written is lost; `rosbag reindex` makes a whole bag of it";
+
 /// The format's name in reports.
 pub(crate) const FORMAT: &str = "ROS 1 bag";
 
@@ -70,6 +77,7 @@ pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<()
     let mut header = Vec::new();
     let (mut body, mut plain) = (Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
+    let mut last = LastChunk::default();
     loop {
         let header_bytes = match part(&mut source, &mut header)? {
             // A bag has no end mark: it ends where no record begins.
@@ -87,13 +95,30 @@ pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<()
             topics.tell(at, BREAKS_OFF);
             break;
         };
-        match Header(&header).operation() {
-            Some(CHUNK) => chunk(&Header(&header), &body, at, true, &mut plain, topics)?,
-            Some(_) => record(&Header(&header), &body, at, topics)?,
+        let (fields, operation) = (Header(&header), Header(&header).operation());
+        if operation != Some(INDEX) {
+            std::mem::take(&mut last).settle(topics);
+        }
+        match operation {
+            Some(BAG) if fields.number("index_pos") == Some([0; 8]) => topics.tell(at, NOT_CLOSED),
+            Some(INDEX) => last.index(&body),
+            // Until it is closed a chunk says that it is empty, and all that follows is in it.
+            Some(CHUNK) if body.is_empty() => {
+                if !matches!(fields.get("compression"), Some(b"none")) {
+                    read_up_to(&mut source, LONGEST_BYTES, &mut body)?;
+                    open_chunk(&fields, &body, at, &mut plain, topics)?;
+                    break;
+                }
+            }
+            Some(CHUNK) => last = chunk(&fields, &body, at, true, &mut plain, topics)?,
+            Some(_) => {
+                record(&fields, &body, at, topics)?;
+            }
             None => topics.tell(at, "a record does not say what it is; it was left out"),
         }
         at = at.saturating_add(8).saturating_add(header_bytes).saturating_add(body_bytes);
     }
+    last.settle(topics);
     Ok(())
 }
 
@@ -117,20 +142,21 @@ fn part(source: &mut impl Read, bytes: &mut Vec<u8>) -> Result<Ended, Error> {
     Ok(if whole && length <= LONGEST_BYTES { Ended::Not(length) } else { Ended::Within })
 }
 
-fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) -> Result<(), Error> {
+/// Reads a record; tells whether it was a message.
+fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) -> Result<bool, Error> {
     topics.looks().worked(1)?;
     let connection = header.number("conn").map(u32::from_le_bytes);
     match (header.operation(), connection) {
         (Some(MESSAGE), Some(connection)) => {
             let Some(time) = header.number::<8>("time") else {
                 topics.tell(at, "a message has no time; it was left out");
-                return Ok(());
+                return Ok(false);
             };
             let packed = u64::from_le_bytes(time);
             let (seconds, nanoseconds) = (packed & u64::from(u32::MAX), packed >> 32);
             let log_ns = i64::try_from(seconds * 1_000_000_000 + nanoseconds).unwrap_or(i64::MAX);
             topics.message(connection, log_ns, body)?;
-            Ok(())
+            Ok(true)
         }
         (Some(CONNECTION), Some(connection)) => {
             let about = Header(body);
@@ -138,12 +164,14 @@ fn record(header: &Header<'_>, body: &[u8], at: u64, topics: &mut Topics<'_>) ->
             let (topic, type_name) = (text(header.get("topic")), text(about.get("type")));
             let definition = text(about.get("message_definition"));
             let (definition, encoding) = (Ok(Text::Msg(definition.into())), Encoding::Ros1);
-            topics.connect(connection, &topic, &Schema { type_name: &type_name, definition, encoding })
+            topics.connect(connection, &topic, &Schema { type_name: &type_name, definition, encoding })?;
+            Ok(false)
         }
-        _ => Ok(()),
+        _ => Ok(false),
     }
 }
 
+/// Reads a chunk; what is wrong with it is told once its index says what that cost.
 fn chunk(
     header: &Header<'_>,
     body: &[u8],
@@ -151,21 +179,42 @@ fn chunk(
     whole: bool,
     plain: &mut Vec<u8>,
     topics: &mut Topics<'_>,
-) -> Result<(), Error> {
+) -> Result<LastChunk, Error> {
+    let failed = |fault: &str| LastChunk::new(at, 0, Some(fault.to_owned()));
     let (Some(compression), Some(size)) = (header.get("compression"), header.number("size")) else {
-        topics.tell(at, "a chunk does not say how it is compressed; it was left out");
-        return Ok(());
+        return Ok(failed("a chunk does not say how it is compressed; it was left out"));
     };
-    match decompress(compression, body, u64::from(u32::from_le_bytes(size)), plain, topics.looks())? {
+    Ok(match decompress(compression, body, u64::from(u32::from_le_bytes(size)), plain, topics.looks())? {
+        Err(reason) => failed(&format!("{reason}; the chunk was left out")),
+        Ok(false) if whole => failed(UNPACKABLE),
+        Ok(_) => LastChunk::new(at, records(plain, at, topics)?, None),
+    })
+}
+
+/// Reads what is whole of the last chunk of a bag that was not closed.
+fn open_chunk(
+    header: &Header<'_>,
+    body: &[u8],
+    at: u64,
+    plain: &mut Vec<u8>,
+    topics: &mut Topics<'_>,
+) -> Result<(), Error> {
+    let compression = header.get("compression").unwrap_or_default();
+    match decompress(compression, body, LONGEST_BYTES, plain, topics.looks())? {
         Err(reason) => topics.tell(at, &format!("{reason}; the chunk was left out")),
-        Ok(false) if whole => topics.tell(at, UNPACKABLE),
         Ok(_) => {
-            let mut cursor = Cursor::packed(plain);
-            let mut next = || Ok::<_, Short>((cursor.counted()?, cursor.counted()?));
-            while let Ok((header, body)) = next() {
-                record(&Header(header), body, at, topics)?;
-            }
+            records(plain, at, topics)?;
         }
     }
     Ok(())
+}
+
+/// Reads the records of a chunk; tells how many messages it had.
+fn records(plain: &[u8], at: u64, topics: &mut Topics<'_>) -> Result<u64, Error> {
+    let (mut cursor, mut messages) = (Cursor::packed(plain), 0);
+    let mut next = || Ok::<_, Short>((cursor.counted()?, cursor.counted()?));
+    while let Ok((header, body)) = next() {
+        messages += u64::from(record(&Header(header), body, at, topics)?);
+    }
+    Ok(messages)
 }

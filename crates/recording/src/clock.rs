@@ -6,7 +6,7 @@
 use std::fmt;
 
 use crate::{
-    Error, Recording, Run,
+    Error, Recording, Run, TimeError,
     error::Position,
     gap::{median, median_step_s},
     repeats::Repeats,
@@ -151,7 +151,9 @@ impl Recording {
 /// Checks the times of a recording that was read.
 pub(crate) fn check_time(recording: &Recording, source: &TimeSource<'_>) -> Result<(), Error> {
     if let Some(row) = recording.t_s.iter().position(|t| !t.is_finite()) {
-        return Err(Error::NoTime { position: (source.position)(row), column: source.column.to_owned() });
+        return Err(
+            TimeError::NoTime { position: (source.position)(row), column: source.column.to_owned() }.into()
+        );
     }
     // The unit of all rows comes before the order of some: times too great for their steps repeat by rounding.
     for run in &recording.runs {
@@ -188,7 +190,7 @@ fn check_order(recording: &Recording, run: &Run, source: &TimeSource<'_>) -> Res
     let t_s = times(recording, run);
     let Some(at) = t_s.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
     if let Some(Repeats { times, step_s }) = Repeats::of(t_s) {
-        return Err(Error::RoundedTimes {
+        return Err(TimeError::RoundedTimes {
             position: (source.position)(run.rows.start + at + 1),
             run: run.name.clone(),
             column: source.column.to_owned(),
@@ -196,14 +198,16 @@ fn check_order(recording: &Recording, run: &Run, source: &TimeSource<'_>) -> Res
             rows: t_s.len(),
             times,
             resolution_s: step_s.map(rounded),
-        });
+        }
+        .into());
     }
-    Err(Error::TimeOrder {
+    Err(TimeError::TimeOrder {
         position: (source.position)(run.rows.start + at + 1),
         run: run.name.clone(),
         t_s: t_s[at + 1],
         previous_s: t_s[at],
-    })
+    }
+    .into())
 }
 
 /// Evidence that the steps of a run are not those of a log in seconds; `None` for fewer than [`LEAST_STEPS`]. `weight` is the
@@ -228,13 +232,14 @@ pub(crate) fn implausible_steps(t_s: &[f64], weight: impl Fn(usize) -> u32) -> O
 }
 
 fn not_seconds(run: &Run, row: usize, evidence: TimeEvidence, source: &TimeSource<'_>) -> Error {
-    Error::NotSeconds {
+    TimeError::NotSeconds {
         position: (source.position)(row),
         run: run.name.clone(),
         column: source.column.to_owned(),
         evidence,
         map_unit: source.map_unit.map(str::to_owned),
     }
+    .into()
 }
 
 /// The remedy for times that are not seconds, for messages.

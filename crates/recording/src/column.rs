@@ -3,7 +3,7 @@
 use std::mem;
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, TimeError,
     bursts::spread_bursts,
     clock::{TimeSource, check_time},
     coarse::period,
@@ -272,7 +272,7 @@ impl Plan {
     /// names the same unit does not apply it again.
     ///
     /// # Errors
-    /// [`Error::TypedUnit`] where a map names another unit.
+    /// [`crate::TimeError::TypedUnit`] where a map names another unit.
     pub(crate) fn typed_time(&mut self, column: usize, own: &'static str) -> Result<(), Error> {
         let is_time = |entry: &&mut Entry| entry.target == Target::Time && entry.columns.contains(&column);
         let Some(entry) = self.entries.iter_mut().find(is_time) else { return Ok(()) };
@@ -281,7 +281,7 @@ impl Plan {
             entry.conversion.factor /= unit.factor;
         } else if entry.unit != units::si_unit(Quantity::Time) {
             let (column, unit) = (self.headers[column].clone(), entry.unit.clone());
-            return Err(Error::TypedUnit { column, unit, own });
+            return Err(TimeError::TypedUnit { column, unit, own }.into());
         }
         Ok(())
     }

@@ -1,9 +1,11 @@
 //! What can be wrong with a recording or a map of one.
 
-use crate::{
-    Channel,
-    clock::{TimeEvidence, remedy},
-};
+mod missing;
+mod time;
+
+use self::missing::{hints, reasons};
+pub use self::time::TimeError;
+use crate::Channel;
 
 /// An error of the recording crate; the message names file, place and channel, and says how to mend it.
 #[derive(Debug, thiserror::Error)]
@@ -22,7 +24,7 @@ pub enum Error {
     Io(#[from] std::io::Error),
     /// A file name that says nothing about its format.
     #[error(
-        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap, .db3 or .bag, or be that of a folder of \
+        "`{ending}` is no recording: the name must end in .csv (or .csv.gz, .csv.zst), .parquet, .mcap, .db3, .bag or .ulg, or be that of a folder of \
          `ros2 bag record`"
     )]
     UnknownFormat {
@@ -167,110 +169,9 @@ pub enum Error {
         /// Whether it is a unit of the quantity.
         is_known: bool,
     },
-    /// Time that does not increase within a run.
-    #[error(
-        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; {}, or number the drives in a column `run`",
-        if t_s == previous_s { "repeats" } else { "goes back" },
-        if t_s == previous_s { "remove one of the rows" } else { "sort the rows" }
-    )]
-    TimeOrder {
-        /// Line or row.
-        position: Position,
-        /// The run.
-        run: String,
-        /// The time there \[s\].
-        t_s: f64,
-        /// The time before it \[s\].
-        previous_s: f64,
-    },
-    /// Times of which many are equal.
-    #[error(
-        "{position}: time repeats {t_s} s in run `{run}`, whose {rows} rows have {}: its times are rounded; write `{column}` with more \
-         digits, or number the drives in a column `run` if there are several",
-        match resolution_s {
-            Some(resolution_s) => format!("{times} different times, {resolution_s} s apart"),
-            None => "one time in all".to_owned(),
-        }
-    )]
-    RoundedTimes {
-        /// Line or row of the first repeat.
-        position: Position,
-        /// The run.
-        run: String,
-        /// The time column.
-        column: String,
-        /// The time that repeats \[s\].
-        t_s: f64,
-        /// Rows of the run.
-        rows: usize,
-        /// Different times among them.
-        times: usize,
-        /// Median step from one to the next \[s\].
-        resolution_s: Option<f64>,
-    },
-    /// Times that cannot be in seconds.
-    #[error(
-        "{position}, run `{run}`: {evidence}: `{column}` must be in seconds; {}",
-        remedy(*evidence, column, map_unit.as_deref())
-    )]
-    NotSeconds {
-        /// Line or row of the first such time.
-        position: Position,
-        /// The run.
-        run: String,
-        /// The time column.
-        column: String,
-        /// The evidence.
-        evidence: TimeEvidence,
-        /// The unit that a map gave for the column, if one did.
-        map_unit: Option<String>,
-    },
-    /// Messages whose steps are not those of a drive log.
-    #[error(
-        "topic {topic}: {evidence}; name another topic as `base` in a map, or try the map with `\"stamp\": \"{other}\"`"
-    )]
-    TopicSteps {
-        /// The topic whose stamps become the rows.
-        topic: String,
-        /// The evidence.
-        evidence: TimeEvidence,
-        /// The other clock that the map may ask for.
-        other: &'static str,
-    },
-    /// A unit in a map that contradicts the type of the column.
-    #[error(
-        "map: the unit of column `{column}` is given as `{unit}`, but the file stores it in `{own}` by its type; leave the unit out"
-    )]
-    TypedUnit {
-        /// The column.
-        column: String,
-        /// The unit in the map.
-        unit: String,
-        /// The unit of its type.
-        own: &'static str,
-    },
-    /// A row without a time.
-    #[error("{position}: there is no time in column `{column}`; remove the row or fill it in")]
-    NoTime {
-        /// Line or row.
-        position: Position,
-        /// The time column.
-        column: String,
-    },
-    /// The clock of a topic was set while it was recorded.
-    #[error(
-        "topic {topic}, message {message}: its clock jumps by {by_s:.3} s; cut the file there, or try the map with `\"stamp\": \"{other}\"`"
-    )]
-    ClockJump {
-        /// The topic.
-        topic: String,
-        /// Which of its messages, from 1.
-        message: usize,
-        /// How far it jumps \[s\], forwards or back.
-        by_s: f64,
-        /// The other clock that the map may ask for.
-        other: &'static str,
-    },
+    /// Something is wrong with times.
+    #[error(transparent)]
+    Time(#[from] TimeError),
     /// The CSV text is malformed.
     #[error("line {line}: {message}")]
     Csv {
@@ -431,74 +332,9 @@ impl Error {
         }
         self
     }
-
-    /// The missing channels that a recording cannot do without, with the names in the file that come nearest.
-    pub(crate) fn missing(lacks: &[Channel], power: bool, found: &[String]) -> Error {
-        let mut missing: Vec<String> = lacks.iter().map(|channel| channel.name().to_owned()).collect();
-        let mut wanted: Vec<&str> = lacks.iter().map(|channel| channel.name()).collect();
-        if power {
-            missing.push(
-                "power (power_left_w and power_right_w, or power_w, or current_a and voltage_v, \
-                 or motor_current_left_a and motor_current_right_a)"
-                    .into(),
-            );
-            wanted.extend(Channel::all().filter(|channel| channel.tells_power()).map(Channel::name));
-        }
-        Error::missing_names(&missing, &wanted, found)
-    }
-
-    /// Missing names, whatever they stand for.
-    pub(crate) fn missing_names(missing: &[String], wanted: &[&str], found: &[String]) -> Error {
-        let near = |name: &&str| {
-            let is_free = |other: &&String| other != name && !wanted.contains(&other.as_str());
-            let best = found.iter().filter(is_free).map(|f| (strsim::normalized_levenshtein(f, name), f));
-            let (likeness, best) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
-            (likeness >= WORTH_NAMING).then(|| (best.clone(), (*name).to_owned()))
-        };
-        let nearest = wanted.iter().filter_map(near).collect();
-        let verb = if missing.len() == 1 { "is" } else { "are" };
-        Error::Missing {
-            missing: format!("{} {verb}", missing.join(", ")),
-            found: shortened(found),
-            nearest,
-            unread: Vec::new(),
-        }
-    }
-}
-
-/// Names that share at least so much of their letters are worth naming as a likely slip (`power_kw` for `power_w`: 0.88).
-const WORTH_NAMING: f64 = 0.6;
-
-/// Most names that a message lists.
-const MOST_NAMES: usize = 40;
-
-fn shortened(names: &[String]) -> Vec<String> {
-    let mut some: Vec<String> = names.iter().take(MOST_NAMES).map(|name| excerpt(name)).collect();
-    if names.len() > MOST_NAMES {
-        some.push(format!("and {} more", names.len() - MOST_NAMES));
-    }
-    some
 }
 
 /// The beginning of what stands in a file, short enough for a message.
 pub(crate) fn excerpt(text: &str) -> String {
     text.chars().take(60).collect()
-}
-
-fn hints(nearest: &[(String, String)]) -> String {
-    let hint = |(found, wanted): &(String, String)| format!("`{}` for {wanted}", excerpt(found));
-    match nearest {
-        [] => "; rename the columns or name them in a map".into(),
-        _ => {
-            let hints: Vec<String> = nearest.iter().map(hint).collect();
-            format!("; did you mean {}? Rename it, or name it with its unit in a map", hints.join(", "))
-        }
-    }
-}
-
-fn reasons(unread: &[String]) -> String {
-    match unread {
-        [] => String::new(),
-        some => format!("; not read: {}", some.join("; ")),
-    }
 }

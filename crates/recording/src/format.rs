@@ -8,7 +8,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Error, mcap, reading::read_up_to};
+use crate::{Error, mcap, reading::read_up_to, ulog};
 
 /// The first bytes of a SQLite file, by <https://www.sqlite.org/fileformat.html>, section 1.3.
 const SQLITE_MAGIC: &[u8] = b"SQLite format 3\0";
@@ -34,6 +34,8 @@ pub enum Format {
     Bag,
     /// The SQLite file that `ros2 bag record` writes by default up to Humble.
     Db3,
+    /// A log of PX4.
+    Ulog,
 }
 
 impl Format {
@@ -49,7 +51,10 @@ impl Format {
             "parquet" if !is_packed => Ok(Format::Parquet),
             "mcap" if !is_packed => Ok(Format::Mcap),
             "bag" if !is_packed => Ok(Format::Bag),
+            // What `rosbag record` writes to until it is stopped.
+            "active" if !is_packed && ending_of(&path.with_extension("")) == "bag" => Ok(Format::Bag),
             "db3" if !is_packed => Ok(Format::Db3),
+            "ulg" if !is_packed => Ok(Format::Ulog),
             _ if is_packed => Err(Error::UnknownFormat { ending: format!(".{ending}.{}", ending_of(path)) }),
             _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),
         }
@@ -62,6 +67,7 @@ impl Format {
             () if begins(mcap::MAGIC) => Some(Format::Mcap),
             () if begins(SQLITE_MAGIC) => Some(Format::Db3),
             () if begins(b"#ROSBAG V") => Some(Format::Bag),
+            () if begins(ulog::MAGIC) => Some(Format::Ulog),
             () if begins(b"PAR1") => Some(Format::Parquet),
             () => None,
         }

@@ -172,11 +172,65 @@ fn rate_hz(recording: &Recording, is_there: impl Fn(usize) -> bool) -> Option<f6
     (span_s > 0.0).then(|| (rows.len() - 1) as f64 / span_s)
 }
 
-/// Topics as the built-in map reads them.
+/// A built-in map that reads a log, and what it reads.
+struct Candidate {
+    name: &'static str,
+    report: ReadingReport,
+}
+
+impl Candidate {
+    /// Whether a topic is of a robot whose namespaces begin as those of the map.
+    fn is_named(&self) -> bool {
+        let namespace = Map::built_in_namespace(self.name);
+        let is_of = |topic: &str, begin: &str| topic.trim_start_matches('/').starts_with(begin);
+        namespace.is_some_and(|begin| self.report.streams.iter().any(|stream| is_of(&stream.topic, begin)))
+    }
+
+    /// Whether the map is made for robots of another name.
+    fn is_anothers(&self) -> bool {
+        Map::built_in_namespace(self.name).is_some() && !self.is_named()
+    }
+
+    /// Channels that it reads.
+    fn channels(&self) -> usize {
+        self.report.channels.len()
+    }
+}
+
+/// The built-in map that reads most of a log, and why it was taken; of several the one that is made for robots of this name, else the first.
+fn best_map(path: &Path) -> Result<(Candidate, String), Error> {
+    let mut first_error = None;
+    let mut read = Vec::new();
+    for name in Map::BUILT_IN {
+        let Some(map) = Map::built_in(name).filter(|map| !map.names_columns()) else { continue };
+        match read_path(path, Some(&map)) {
+            Ok(reading) => read.push(Candidate { name, report: reading.report }),
+            Err(error) => first_error = first_error.or(Some(error)),
+        }
+    }
+    let told: Vec<String> =
+        read.iter().map(|one| format!("`{}` reads {} channels", one.name, one.channels())).collect();
+    read.retain(|one| !one.is_anothers());
+    // The last of equals is taken by `max_by_key`.
+    let best = read.into_iter().rev().max_by_key(|one| (one.is_named(), one.channels()));
+    match best {
+        Some(best) => {
+            let why = if best.is_named() { "its robots have such namespaces" } else { "it reads most" };
+            let taken = format!(
+                "the built-in map `{}` was taken, since {why}; of all, {}",
+                best.name,
+                told.join(", ")
+            );
+            Ok((best, taken))
+        }
+        None => Err(first_error.unwrap_or(Error::Empty { found: "no map".into() })),
+    }
+}
+
+/// Topics as the best of the built-in maps reads them.
 fn topics(path: &Path) -> Result<Inspection, Error> {
-    let husky = Map::built_in("husky").ok_or(Error::Empty { found: "no map".into() })?;
-    let ReadingReport { source, streams, channels, ignored, repairs, .. } =
-        read_path(path, Some(&husky))?.report;
+    let (Candidate { name, report }, taken) = best_map(path)?;
+    let ReadingReport { source, streams, channels, ignored, repairs, .. } = report;
     let mut fields = Vec::new();
     for stream in &streams {
         let own: Vec<_> = channels
@@ -195,14 +249,16 @@ fn topics(path: &Path) -> Result<Inspection, Error> {
             reason: stream.type_name.clone(),
         });
     }
-    let mut notes: Vec<String> =
-        ignored.iter().map(|ignored| format!("not read: {} ({})", ignored.name, ignored.reason)).collect();
+    let wheels =
+        "wheel_radius_m and wheel_separation_m in the map are those of its robot: put those of yours";
+    let mut notes = vec![taken, wheels.to_owned()];
+    notes.extend(ignored.iter().map(|ignored| format!("not read: {} ({})", ignored.name, ignored.reason)));
     notes.extend(repairs.iter().map(|repair| format!("{}: {}", repair.place, repair.what)));
     let is_used = |source: &Value, topic: &str, channel: &str| {
         let pattern = source["topic"].as_str().unwrap_or_default();
         source["channel"] == json!(channel) && Map::topic_matches(pattern, topic)
     };
-    let mut map: Value = serde_json::from_str(include_str!("../maps/husky.json")).unwrap_or_default();
+    let mut map = Map::built_in_document(name).unwrap_or_default();
     let all = map["sources"].as_array().cloned().unwrap_or_default();
     let mut kept = Vec::new();
     for channel in &channels {

@@ -68,6 +68,19 @@ pub struct Source {
     pub unit: String,
     /// Whether the map names that unit.
     pub is_unit_given: bool,
+    /// How the sign of a current is known.
+    pub sign: Sign,
+}
+
+/// How the sign of a battery's current is known, of which drivers have both.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sign {
+    /// As it comes, times the source's `scale`.
+    #[default]
+    Given,
+    /// So that the battery is drawn from while the wheels turn, on the whole: a drive that is charged on balance has to be read with `given`.
+    Drawn,
 }
 
 /// What a column or field becomes.
@@ -150,35 +163,11 @@ struct SourceFile {
     #[serde(default)]
     derivative: bool,
     wraps_at: Option<f64>,
+    #[serde(default)]
+    sign: Sign,
 }
 
 impl Map {
-    /// Names of the built-in maps.
-    pub const BUILT_IN: [&'static str; 2] = ["husky", "borealtc"];
-
-    /// A built-in map: `husky` for the usual topics of a Clearpath Husky under ROS 1 and ROS 2, `borealtc` for the columns
-    /// of the recordings made from the BorealTC data set.
-    pub fn built_in(name: &str) -> Option<Map> {
-        let text = match name {
-            "husky" => include_str!("../maps/husky.json"),
-            "borealtc" => include_str!("../maps/borealtc.json"),
-            _ => return None,
-        };
-        Map::from_json(text).ok()
-    }
-
-    /// A built-in map with the wheels of another robot.
-    pub fn built_in_for(name: &str, wheel_radius_m: f64, wheel_separation_m: f64) -> Option<Map> {
-        let text = match name {
-            "husky" => include_str!("../maps/husky.json"),
-            _ => return Map::built_in(name),
-        };
-        let mut file: serde_json::Value = serde_json::from_str(text).ok()?;
-        file["wheel_radius_m"] = wheel_radius_m.into();
-        file["wheel_separation_m"] = wheel_separation_m.into();
-        Map::from_value(&file).ok()
-    }
-
     /// Reads and checks a map.
     ///
     /// # Errors
@@ -301,6 +290,9 @@ impl SourceFile {
         if self.derivative && !target.is_wheel_speed() {
             return Err(wrong(".derivative", "is for rim speeds only"));
         }
+        if self.sign == Sign::Drawn && target != Target::Channel(Channel::Current) {
+            return Err(wrong(".sign", "is for `current_a` only"));
+        }
         if self.wraps_at.is_some_and(|at| !(at.is_finite() && at > 0.0 && self.derivative)) {
             return Err(wrong(".wraps_at", "must be positive, beside `derivative`"));
         }
@@ -314,6 +306,7 @@ impl SourceFile {
             conversion,
             unit,
             is_unit_given,
+            sign: self.sign,
         })
     }
 }

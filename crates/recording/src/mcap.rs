@@ -132,6 +132,18 @@ pub(crate) fn first_ns(source: impl Read) -> Option<i64> {
     }
 }
 
+/// What a chunk that is left out costs, by the times of its first and last message.
+fn cost([first_ns, last_ns]: [u64; 2]) -> String {
+    let [first_s, last_s] = [first_ns, last_ns].map(|ns| ns as f64 / 1e9);
+    if last_s < first_s {
+        return String::new();
+    }
+    format!(
+        ", which cost all messages of {:.3} s, from {first_s:.3} s of the log's clock on",
+        last_s - first_s
+    )
+}
+
 fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
     let [opcode] = cursor.number::<1>()?;
     Ok((opcode, cursor.u64()?))
@@ -239,13 +251,13 @@ impl Reader<'_, '_> {
     fn chunk(&mut self, body: &[u8], at: u64, whole: bool) -> Result<(), Error> {
         let mut cursor = Cursor::packed(body);
         let mut header = || {
-            cursor.skip(16)?;
+            let times_ns = [cursor.u64()?, cursor.u64()?];
             let (claimed_bytes, checksum) = (cursor.u64()?, cursor.number::<4>().map(u32::from_le_bytes)?);
             let compression = cursor.text()?;
             let packed_bytes = cursor.u64()?;
-            Ok::<_, Short>((claimed_bytes, checksum, compression, packed_bytes))
+            Ok::<_, Short>((times_ns, claimed_bytes, checksum, compression, packed_bytes))
         };
-        let Ok((claimed_bytes, checksum, compression, packed_bytes)) = header() else {
+        let Ok((times_ns, claimed_bytes, checksum, compression, packed_bytes)) = header() else {
             self.tell(at, "a chunk is shorter than its header; it was left out");
             return Ok(());
         };
@@ -254,11 +266,11 @@ impl Reader<'_, '_> {
         let packed = packed.get(..packed_bytes).unwrap_or(packed);
         let mut plain = std::mem::take(&mut self.plain);
         match decompress(compression, packed, claimed_bytes, &mut plain, self.topics.looks())? {
-            Err(reason) => self.tell(at, &format!("{reason}; the chunk was left out")),
+            Err(reason) => self.tell(at, &format!("{reason}; the chunk was left out{}", cost(times_ns))),
             Ok(true) if checksum != 0 && crc32fast::hash(&plain) != checksum => {
-                self.tell(at, "a chunk fails its checksum; it was left out");
+                self.tell(at, &format!("a chunk fails its checksum; it was left out{}", cost(times_ns)));
             }
-            Ok(false) if whole => self.tell(at, UNPACKABLE),
+            Ok(false) if whole => self.tell(at, &format!("{UNPACKABLE}{}", cost(times_ns))),
             Ok(_) => self.records(&plain, at)?,
         }
         self.plain = plain;

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run,
+    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run, Sign, TimeError,
     align::{Between, interpolate},
     clock::implausible_steps,
-    gap,
+    clock_offset, drawn, gap,
     map::{Place, Target},
+    meter,
     namespace::{self, Others},
-    publishers,
+    own_clocks, publishers,
     rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
@@ -68,12 +69,16 @@ impl Topics<'_> {
             };
             return Err(Error::Empty { found });
         }
-        let base = self.base(&streams, &chosen)?;
+        let used: Vec<usize> = chosen.iter().map(|(_, stream, _)| *stream).collect();
+        clock_offset::reconcile(&mut streams, &used, &mut self.repairs);
+        let mut base = self.base(&streams, &chosen)?;
+        let slow = self.slow_meter(&streams, &chosen, base);
+        let meter = slow.map(|wheels| std::mem::replace(&mut base, wheels));
         if streams[base].stream.t_ns.len() < 2 {
             return Err(Error::OneMessage { topic: streams[base].topic.clone() });
         }
         check_steps(&streams[base])?;
-        let recording = self.align(&streams, &chosen, base, name, &mut report)?;
+        let recording = self.align(&streams, &chosen, (base, meter), name, &mut report)?;
         let looks = self.looks().clone();
         let unread = self.unread();
         report.ignored = self.ignored;
@@ -144,11 +149,24 @@ impl Topics<'_> {
         Ok(slowest.or(chosen.first().map(|(_, stream, _)| *stream)).unwrap_or(0))
     }
 
+    /// The stream of wheel speeds whose stamps become the rows, where the base is a power meter that is slower.
+    fn slow_meter(&self, streams: &[Named], chosen: &[(usize, usize, usize)], base: usize) -> Option<usize> {
+        if self.map.base.is_some() {
+            return None;
+        }
+        let is_wheel = |source: usize| self.map.sources[source].target.is_wheel_speed();
+        let wheels = chosen.iter().filter(|(source, ..)| is_wheel(*source)).map(|(_, stream, _)| *stream);
+        let slowest = wheels.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s))?;
+        let is_slow = meter::is_slow(streams[base].step_s, streams[slowest].step_s, self.map.max_gap_s);
+        (slowest != base && is_slow && streams[base].step_s.is_finite()).then_some(slowest)
+    }
+
+    /// Brings all streams onto the stamps of a base; power of a meter that is slower is held over its periods.
     fn align(
         &mut self,
         streams: &[Named],
         chosen: &[(usize, usize, usize)],
-        base: usize,
+        (base, meter): (usize, Option<usize>),
         name: &str,
         report: &mut ReadingReport,
     ) -> Result<Recording, Error> {
@@ -160,8 +178,23 @@ impl Topics<'_> {
             self.looks().go_on()?;
             let (source, named) = (&self.map.sources[source], &streams[at]);
             let values = &named.stream.columns[column];
+            let is_held = meter.is_some()
+                && matches!(&source.target, Target::Channel(c) if c.tells_power() && *c != Channel::Voltage)
+                && meter::is_slow(named.step_s, streams[base].step_s, self.map.max_gap_s);
             let values = if at == base {
                 values.clone()
+            } else if is_held {
+                let own_s = named.stream.t_s(origin_ns);
+                let known = own_s.iter().zip(values).filter(|(_, value)| !value.is_nan());
+                let readings: Vec<(f64, f64)> = known.map(|(t_s, value)| (*t_s, *value)).collect();
+                let held = meter::held(&readings, &t_s);
+                if Some(at) == meter && recording.reading_ends.is_empty() {
+                    let step_s = named.step_s;
+                    let what = own_clocks::meter_words(&named.topic, step_s);
+                    self.repairs.push(Repair { place: format!("topic {}", named.topic), what });
+                    recording.reading_ends = held.ends;
+                }
+                held.values
             } else {
                 let own_s = named.stream.t_s(origin_ns);
                 // Messages without a number of this source, as of an arm on the same topic, are no part of its rhythm.
@@ -199,6 +232,12 @@ impl Topics<'_> {
                 Target::Time | Target::Run | Target::Surface => {}
             }
         }
+        for &(source, at, _) in chosen {
+            if self.map.sources[source].sign == Sign::Drawn {
+                let place = format!("topic {}", streams[at].topic);
+                self.repairs.extend(drawn::settle(&mut recording, &place));
+            }
+        }
         let start_unix_s = (origin_ns > 0).then_some(origin_ns as f64 / 1e9);
         recording.runs = vec![Run::new(name.to_owned(), 0..t_s.len(), &t_s, start_unix_s)];
         recording.surface = self.map.surface.as_ref().map(|surface| Labels::constant(surface, t_s.len()));
@@ -215,7 +254,7 @@ fn check_steps(base: &Named) -> Result<(), Error> {
         None => Ok(()),
         Some(evidence) => {
             let other = if base.stream.clock == BY_HEADER { "log" } else { "header" };
-            Err(Error::TopicSteps { topic: base.topic.clone(), evidence, other })
+            Err(TimeError::TopicSteps { topic: base.topic.clone(), evidence, other }.into())
         }
     }
 }
@@ -232,6 +271,13 @@ pub(crate) struct Named {
     pub(crate) stream: Stream,
     /// Its median step \[s\]; infinite for a single message.
     step_s: f64,
+}
+
+#[cfg(test)]
+impl Named {
+    pub(crate) fn new(topic: String, stream: Stream) -> Named {
+        Named { topic, sources: Vec::new(), stream, step_s: 0.1 }
+    }
 }
 
 fn fields(place: &Place) -> String {

@@ -2,12 +2,13 @@
 //!
 //! Topics that are joined on the union of their stamps, as PlotJuggler and pandas do it, and loggers that write slow channels into every
 //! n-th row leave cells empty between a channel's samples. Such a hole is none in the drive: a channel's own step says which holes are. As
-//! for the topics of a bag, the rows are the stamps of the slowest channel that power is computed from.
+//! for the topics of a bag, the rows are the stamps of the slowest channel that power is computed from, or those of the wheels where
+//! that is a meter which is slower than robots move (`meter`).
 
 use crate::{
     Channel, Error, Labels, PowerForm, Recording, Repair, Run,
     align::{Between, interpolate},
-    gap,
+    gap, meter,
     watch::Looks,
 };
 
@@ -36,7 +37,7 @@ pub(crate) fn onto_one_clock(
     if recording.channels.values().all(|values| values.iter().all(|value| !value.is_nan())) {
         return Ok(());
     }
-    let clocks: Vec<Clock> = recording.runs.iter().map(|run| Clock::of(recording, run)).collect();
+    let clocks: Vec<Clock> = recording.runs.iter().map(|run| Clock::of(recording, run, max_gap_s)).collect();
     repairs.extend(clocks.iter().filter_map(|clock| clock.told(recording)));
     let is_thinner = clocks.iter().any(|clock| clock.base.is_some());
     let (mut all_filled, mut all_empty) = (Vec::new(), Vec::new());
@@ -45,7 +46,12 @@ pub(crate) fn onto_one_clock(
         let between = if *channel == Channel::Heading { Between::ShorterArc } else { Between::Line };
         let (mut moved, mut filled) = (Vec::with_capacity(values.len()), 0);
         for clock in &clocks {
-            filled += clock.read(&recording.t_s, values, max_gap_s, between, &mut moved);
+            filled += match &clock.meter {
+                Some(_) if *channel != Channel::Voltage && channel.tells_power() => {
+                    clock.hold(&recording.t_s, values, max_gap_s, &mut moved)
+                }
+                _ => clock.read(&recording.t_s, values, max_gap_s, between, &mut moved),
+            };
         }
         *values = moved;
         all_empty.extend(told_empty(*channel, values));
@@ -66,6 +72,7 @@ pub(crate) fn onto_one_clock(
         }
         keep_rows(recording, &clocks);
     }
+    mark_readings(recording, &clocks);
     Ok(())
 }
 
@@ -94,6 +101,21 @@ fn told_empty(channel: Channel, values: &[f64]) -> Option<Repair> {
         .then(|| Repair { place: format!("column {channel}"), what })
 }
 
+/// Marks where readings of slow meters end.
+fn mark_readings(recording: &mut Recording, clocks: &[Clock]) {
+    if clocks.iter().all(|clock| clock.meter.is_none()) {
+        return;
+    }
+    let mut ends = vec![false; recording.rows()];
+    for (run, clock) in recording.runs.iter().zip(clocks) {
+        let Some((_, stamps_s)) = &clock.meter else { continue };
+        let readings: Vec<(f64, f64)> = stamps_s.iter().map(|t_s| (*t_s, 0.0)).collect();
+        let held = meter::held(&readings, &recording.t_s[run.rows.clone()]);
+        ends[run.rows.clone()].copy_from_slice(&held.ends);
+    }
+    recording.reading_ends = ends;
+}
+
 /// Takes the rows of the clocks for times, labels and runs.
 fn keep_rows(recording: &mut Recording, clocks: &[Clock]) {
     if let Some(surface) = &mut recording.surface {
@@ -116,20 +138,37 @@ struct Clock {
     rows: Vec<usize>,
     /// The channel whose samples they are; `None` where all rows stay.
     base: Option<Channel>,
+    /// The channel of power whose readings hold over their periods, and their times \[s\].
+    meter: Option<(Channel, Vec<f64>)>,
 }
 
 impl Clock {
-    fn of(recording: &Recording, run: &Run) -> Clock {
-        let all = || Clock { run: run.clone(), rows: run.rows.clone().collect(), base: None };
+    fn of(recording: &Recording, run: &Run, max_gap_s: Option<f64>) -> Clock {
+        let all = || Clock { run: run.clone(), rows: run.rows.clone().collect(), base: None, meter: None };
         let Some((base, samples)) = slowest_of_power(recording, run) else { return all() };
         let is_dense = samples.len() as f64 >= ROWS_OWN_SHARE * run.rows.len() as f64;
         if is_dense || !has_rhythm(&recording.t_s, &samples) {
             return all();
         }
-        Clock { run: run.clone(), rows: samples, base: Some(base) }
+        let own_s: Vec<f64> = samples.iter().map(|row| recording.t_s[*row]).collect();
+        let (wheel, wheels) = slowest_wheel(recording, run);
+        let wheels_s: Vec<f64> = wheels.iter().map(|row| recording.t_s[*row]).collect();
+        let steps = gap::median_step_s(&own_s).zip(gap::median_step_s(&wheels_s));
+        if wheels.len() >= LEAST_SAMPLES
+            && steps.is_some_and(|(own_s, wheel_s)| meter::is_slow(own_s, wheel_s, max_gap_s))
+        {
+            let is_all = wheels.len() == run.rows.len();
+            let meter = Some((base, own_s));
+            return Clock { run: run.clone(), rows: wheels, base: (!is_all).then_some(wheel), meter };
+        }
+        Clock { run: run.clone(), rows: samples, base: Some(base), meter: None }
     }
 
     fn told(&self, recording: &Recording) -> Option<Repair> {
+        if let Some((meter, stamps_s)) = &self.meter {
+            let what = meter_words(meter.name(), gap::median_step_s(stamps_s)?);
+            return Some(Repair { place: format!("run `{}`", self.run.name), what });
+        }
         let base = self.base?;
         let t_s: Vec<f64> = self.rows.iter().map(|row| recording.t_s[*row]).collect();
         let step_s = gap::median_step_s(&t_s)?;
@@ -172,6 +211,21 @@ impl Clock {
         before - moved[start..].iter().copied().filter(|value| is_empty(*value)).count()
     }
 
+    /// Appends a column of power at the rows that stay: held over its periods where it is slow, else interpolated; tells how many empty cells
+    /// were filled by interpolation.
+    fn hold(&self, t_s: &[f64], values: &[f64], max_gap_s: Option<f64>, moved: &mut Vec<f64>) -> usize {
+        let known = self.run.rows.clone().filter(|row| !values[*row].is_nan());
+        let readings: Vec<(f64, f64)> = known.map(|row| (t_s[row], values[row])).collect();
+        let own_s: Vec<f64> = readings.iter().map(|reading| reading.0).collect();
+        let at_s: Vec<f64> = self.rows.iter().map(|row| t_s[*row]).collect();
+        let steps = gap::median_step_s(&own_s).zip(gap::median_step_s(&at_s));
+        if steps.is_some_and(|(own_s, row_s)| meter::is_slow(own_s, row_s, max_gap_s)) {
+            moved.extend(meter::held(&readings, &at_s).values);
+            return 0;
+        }
+        self.read(t_s, values, max_gap_s, Between::Line, moved)
+    }
+
     /// The label of each row that stays: its own, or else that of the row before with one.
     fn labels(&self, labels: &Labels) -> Vec<u32> {
         let (mut last, mut at) = (Labels::NONE, self.run.rows.start);
@@ -198,6 +252,25 @@ fn slowest_of_power(recording: &Recording, run: &Run) -> Option<(Channel, Vec<us
     let (_, channels) = PowerForm::ALL.iter().find(|(_, channels)| holds(channels))?;
     let telling = channels.iter().filter(|channel| **channel != Channel::Voltage);
     telling.map(|channel| (*channel, samples(*channel))).min_by_key(|(_, samples)| samples.len())
+}
+
+/// The side's speed that is sampled more slowly in a run, and the rows of its samples.
+fn slowest_wheel(recording: &Recording, run: &Run) -> (Channel, Vec<usize>) {
+    let samples = |channel: Channel| -> (Channel, Vec<usize>) {
+        let values = recording.channel(channel).unwrap_or_default();
+        let known = |row: &usize| values.get(*row).is_some_and(|value| !value.is_nan());
+        (channel, run.rows.clone().filter(known).collect())
+    };
+    let (left, right) = (samples(Channel::LeftSpeed), samples(Channel::RightSpeed));
+    if right.1.len() < left.1.len() { right } else { left }
+}
+
+/// What a reading says of a slow meter.
+pub(crate) fn meter_words(meter: &str, step_s: f64) -> String {
+    format!(
+        "{meter} has a reading every {step_s:.3} s, which is slower than the wheels: the rows are the wheels', and each reading holds over the \
+         time since the one before, to be compared with the mean of what is predicted over its period"
+    )
 }
 
 /// Whether most rows between samples lie within steps that are no gaps of the samples' own rhythm.
@@ -312,8 +385,13 @@ mod tests {
         recording.surface = Some(Labels { names: vec!["ice".into(), "mud".into()], index });
         let (recording, _) = aligned(recording);
         let surface = recording.surface.as_ref().unwrap();
-        assert_eq!((surface.get(29), surface.get(30), recording.rows()), (Some("ice"), Some("mud"), 60));
+        assert_eq!((surface.get(299), surface.get(300), recording.rows()), (Some("ice"), Some("mud"), 600));
+        // Nothing tells NaN from NaN: the rows without a reading are those after the last one.
         let (again, repairs) = aligned(recording.clone());
-        assert!(again == recording && repairs.is_empty(), "{repairs:?}");
+        assert_eq!(again.t_s, recording.t_s);
+        assert!(
+            repairs.len() == 1 && repairs[0].what.starts_with("9 of 600 rows have no value"),
+            "{repairs:?}"
+        );
     }
 }

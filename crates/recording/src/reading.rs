@@ -15,6 +15,7 @@ use crate::{
     mcap, parquet,
     rosbag2::{db3, folder, storage},
     suspicion::suspicions_watched,
+    ulog,
     unused_runs::tell_unused_runs,
     watch::{Budget, Looks, Watched},
 };
@@ -96,6 +97,7 @@ pub fn read_file(
         Format::Mcap => mcap::read(file, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
         Format::Db3 => db3::read_copy(file, name, map, &budget),
+        Format::Ulog => ulog::read(file, name, map, &budget),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { reading }
 }
@@ -116,7 +118,9 @@ fn read_table(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -> Resu
         let part = match format {
             Format::Csv => csv::read(file, name, of_columns(map), &budget),
             Format::Parquet => parquet::read(file, name, of_columns(map), &budget),
-            Format::Mcap | Format::Bag | Format::Db3 => Err(Error::NoTable { ending: ending_of(path) }),
+            Format::Mcap | Format::Bag | Format::Db3 | Format::Ulog => {
+                Err(Error::NoTable { ending: ending_of(path) })
+            }
         };
         if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { part }
     };
@@ -213,6 +217,7 @@ pub(crate) fn read_within(
         Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
         Format::Db3 => db3::read_copy(Cursor::new(bytes), name, map, &budget),
+        Format::Ulog => ulog::read(Cursor::new(bytes), name, map, &budget),
     }
 }
 

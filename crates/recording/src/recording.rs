@@ -23,6 +23,9 @@ pub struct Recording {
     pub surface: Option<Labels>,
     /// The drives, in order.
     pub runs: Vec<Run>,
+    /// By row, whether a reading of a power meter that is slower than the wheels ends with it: power then holds over the rows since the reading
+    /// before, of which it is the mean. Empty where power has the rhythm of the rows.
+    pub reading_ends: Vec<bool>,
 }
 
 /// One drive: consecutive rows.
@@ -104,6 +107,11 @@ impl Recording {
         PowerForm::ALL.iter().find(|(_, needs)| needs.iter().all(holds)).map(|(form, _)| *form)
     }
 
+    /// Whether readings of a slow power meter end in a run.
+    pub fn has_slow_meter(&self, run: &Run) -> bool {
+        self.reading_ends.get(run.rows.clone()).is_some_and(|ends| ends.contains(&true))
+    }
+
     /// The time from a row of a run to the next \[s\]; `None` for its last row and before a gap.
     pub fn step_s(&self, run: &Run, row: usize) -> Option<f64> {
         if row + 1 >= run.rows.end || row < run.rows.start {
@@ -145,6 +153,11 @@ impl Recording {
         if self.surface.is_some() || part.surface.is_some() {
             let surface = self.surface.get_or_insert_with(|| Labels::unnamed(before));
             surface.append(&part.surface.unwrap_or_else(|| Labels::unnamed(added)));
+        }
+        if !(self.reading_ends.is_empty() && part.reading_ends.is_empty()) {
+            self.reading_ends.resize(before, false);
+            self.reading_ends.extend(part.reading_ends);
+            self.reading_ends.resize(before + added, false);
         }
         for mut run in part.runs {
             run.name = names.free(run.name);

@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use crate::{Channel, Error, Repair, Source, Stamp, Target, bursts::Bursts, coarse::Coarse, gap};
+use crate::{
+    Channel, Error, Repair, Source, Stamp, Target, TimeError, bursts::Bursts, clock_offset::offset_ns,
+    coarse::Coarse, gap,
+};
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
 /// messages are delayed by fractions of a second on a robot's own network.
-const CLOCK_JUMP_S: f64 = 2.0;
+pub(crate) const CLOCK_JUMP_S: f64 = 2.0;
 
-const NS_PER_S: f64 = 1e9;
+pub(crate) const NS_PER_S: f64 = 1e9;
 
 /// Name of the clock of header stamps.
 pub(crate) const BY_HEADER: &str = "header stamp";
@@ -41,6 +44,8 @@ pub(crate) struct Stream {
     pub(crate) clock: &'static str,
     /// Messages of the file that each stands for; empty where each stands for itself.
     weight: Vec<u32>,
+    /// What lies between log times and header stamps; 0 of a stream by log times.
+    pub(crate) offset_ns: i64,
 }
 
 impl Samples {
@@ -116,7 +121,8 @@ impl Samples {
         }
         let messages = if self.coarse.is_joined() { t_ns.len() } else { 0 };
         let weight = (0..messages).map(|at| self.coarse.weight(at)).collect();
-        let mut stream = Stream { t_ns, columns: self.columns, clock, weight };
+        let offset_ns = if by_header { offset_ns(&t_ns, &self.log_ns).unwrap_or(0) } else { 0 };
+        let mut stream = Stream { t_ns, columns: self.columns, clock, weight, offset_ns };
         let mut repair = |count: usize, what: &str| {
             if count > 0 {
                 repairs.push(Repair { place: format!("topic {topic}"), what: format!("{count} {what}") });
@@ -183,7 +189,7 @@ fn refuse_jumps(
             match jump(at, moved).or_else(|| jump(at, back)) {
                 Some((message, by_s)) if is_recorders(at) => stalls.push(Stall { message, by_s }),
                 Some((message, by_s)) => {
-                    return Err(Error::ClockJump { topic: topic.to_owned(), message, by_s, other });
+                    return Err(TimeError::ClockJump { topic: topic.to_owned(), message, by_s, other }.into());
                 }
                 None => {}
             }
@@ -194,6 +200,11 @@ fn refuse_jumps(
 }
 
 impl Stream {
+    #[cfg(test)]
+    pub(crate) fn of(t_ns: Vec<i64>, columns: Vec<Vec<f64>>) -> Stream {
+        Stream { t_ns, columns, clock: BY_HEADER, weight: Vec::new(), offset_ns: 0 }
+    }
+
     fn sort(&mut self) -> usize {
         let mut latest = i64::MIN;
         let late = self.t_ns.iter().filter(|t| {

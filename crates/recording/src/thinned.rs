@@ -45,6 +45,10 @@ impl Recording {
                 index: all.iter().map(|rows| labels.index[rows.start]).collect(),
             }),
             runs: Vec::new(),
+            reading_ends: match self.reading_ends.is_empty() {
+                true => Vec::new(),
+                false => all.iter().map(|rows| self.ends_reading(rows.end - 1)).collect(),
+            },
         };
         if let Some(headings_rad) = self.channel(Channel::Heading) {
             let means_rad = all.iter().map(|rows| mean_angle(&headings_rad[rows.clone()])).collect();
@@ -57,6 +61,10 @@ impl Recording {
             thin.runs.push(Run::new(run.name.clone(), rows, &thin.t_s, run.start_unix_s));
         }
         Ok(Cow::Owned(thin))
+    }
+
+    fn ends_reading(&self, row: usize) -> bool {
+        self.reading_ends.get(row).copied().unwrap_or(false)
     }
 
     /// Rows of a run that become one each.
@@ -76,6 +84,7 @@ impl Recording {
                 Some(group)
                     if group.len() < most
                         && self.step_s(run, row - 1).is_some()
+                        && !self.ends_reading(row - 1)
                         && label(row) == label(group.start) =>
                 {
                     group.end = row + 1;

@@ -9,7 +9,7 @@ use recording::read_path;
 #[test]
 fn every_seed_of_the_readers_is_read() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
-    for folder in ["csv", "parquet", "mcap", "db3", "bag"] {
+    for folder in ["csv", "parquet", "mcap", "db3", "bag", "ulog"] {
         let files: Vec<_> =
             std::fs::read_dir(seeds.join(folder)).unwrap().map(|file| file.unwrap().path()).collect();
         assert!(!files.is_empty(), "{folder}");

@@ -30,6 +30,7 @@ mod maps;
 mod memory;
 mod metrics;
 mod numbers;
+mod place;
 mod planners;
 mod problem;
 mod problem_type;

@@ -3,6 +3,7 @@
 //! A [`crate::Terrain`] keeps the name or text. Its x and y are the easting and northing of that system **in metres**, whatever unit
 //! the system itself has.
 
+mod earth;
 mod epsg;
 mod ground;
 mod mercator;
@@ -11,6 +12,7 @@ mod wkt;
 
 pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
 pub use self::{
+    earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},

@@ -2,7 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::{Cell, Error, Grid, Warning, fill_value, samples::Survey};
+use crate::{
+    Cell, Error, Grid, Warning,
+    crs::{Earth, EarthError},
+    fill_value,
+    samples::Survey,
+};
 
 /// Ground on a grid. Unknown cells and obstacles are impassable. Clones share their cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,6 +151,14 @@ impl Terrain {
     pub fn elevation_m(&self, cell: Cell) -> Option<f64> {
         let relative_m = self.relative_m[self.grid.index(cell)];
         (!relative_m.is_nan()).then(|| self.base_m + f64::from(relative_m))
+    }
+
+    /// Where on earth the map's metres are.
+    ///
+    /// # Errors
+    /// A map without a system, or with one that is not known to the millimetre.
+    pub fn earth(&self) -> Result<Earth, EarthError> {
+        Earth::of(self.crs.as_deref().ok_or(EarthError::NoCrs)?)
     }
 
     /// Lowest known elevation [m].

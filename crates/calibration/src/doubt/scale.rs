@@ -141,6 +141,11 @@ fn over_ground(recording: &Recording) -> Option<f64> {
     (shares.len() >= LEAST_ROWS / 2).then(|| *shares.select_nth_unstable_by(median, f64::total_cmp).1)
 }
 
+/// Whether wheels turn no faster than the robot can drive, as far as its file knows.
+pub(super) fn is_possible(robot: &Robot, recording: &Recording) -> bool {
+    fastest_mps(recording).is_none_or(|found_mps| found_mps <= FASTEST * robot.max_wheel_speed_mps)
+}
+
 /// 99th percentile of the sizes of wheel speeds.
 fn fastest_mps(recording: &Recording) -> Option<f64> {
     let sides = [Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c));

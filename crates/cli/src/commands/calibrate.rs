@@ -67,6 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let out = &arguments.out;
     std::fs::write(out, file + "\n")
         .with_context(|| format!("cannot write the robot to {}", out.display()))?;
+    found.coverage.words_by_run().iter().for_each(output::note);
     if arguments.recorded.json {
         output::json(&found)?;
     } else {

@@ -67,6 +67,7 @@ fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
     write("report.json", serde_json::to_string_pretty(&found)? + "\n")?;
     write("report.html", report::diagnosis_page(&found, &robot.name))?;
     write("corrected-robot.json", serde_json::to_string_pretty(&found.corrected_robot)? + "\n")?;
+    found.coverage.words_by_run().iter().for_each(output::note);
     if recorded.json {
         output::json(&found)?;
     } else {

@@ -10,7 +10,7 @@ use crate::{failure::BadInput, output};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The log: .csv, .parquet, .mcap, .db3 or .bag, or a folder of `ros2 bag record`
+    /// The log: .csv, .parquet, .mcap, .db3, .bag or .ulg, or a folder of `ros2 bag record`
     log: PathBuf,
     /// Where to write the proposed map, to look at, change, and give as `--map`
     #[arg(long, value_name = "FILE")]

@@ -24,6 +24,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     sign.finish_and_clear();
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     found.prediction.doubts.iter().for_each(|doubt| output::note(format_args!("doubt: {doubt}")));
+    found.prediction.notes.iter().for_each(output::note);
     for run in &found.prediction.runs {
         if let Some(words) = run.coverage.words() {
             output::note(format_args!("run {}: {words}", run.run));

@@ -12,8 +12,8 @@ pub(crate) const YAW_RATE: usize = 4;
 /// Quantities that make up the regime: speed, difference of the sides' speeds, pitch, roll, acceleration.
 pub(crate) const REGIME: usize = 5;
 
-/// Longest step between neighbours of one series \[s\]: one and a half averages.
-const LONGEST_STEP_S: f64 = 1.5;
+/// Longest step between neighbours of one series, in averages.
+const LONGEST_STEP: f64 = 1.5;
 
 /// Rows of all drives; those of the test drives come first.
 pub(crate) struct Observations<'a> {
@@ -42,9 +42,10 @@ impl<'a> Observations<'a> {
             .iter()
             .map(|a| if a.suspect { begins_s[a.run] } else { healthy_begins_s[a.run] } + a.t_s)
             .collect();
+        let longest_step_s = LONGEST_STEP * series.average_s();
         let place = |i: usize| Place {
             channel: averages[i].channel,
-            follows: i > 0 && follows(&averages[i - 1], &averages[i]),
+            follows: i > 0 && follows(&averages[i - 1], &averages[i], longest_step_s),
         };
         Observations {
             series,
@@ -120,11 +121,11 @@ impl<'a> Observations<'a> {
     }
 }
 
-fn follows(before: &Average, after: &Average) -> bool {
+fn follows(before: &Average, after: &Average, longest_step_s: f64) -> bool {
     before.run == after.run
         && before.channel == after.channel
         && before.suspect == after.suspect
-        && after.t_s - before.t_s < LONGEST_STEP_S
+        && after.t_s - before.t_s < longest_step_s
 }
 
 fn begins_s(averages: &[Average]) -> Vec<f64> {

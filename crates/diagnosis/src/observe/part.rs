@@ -2,7 +2,7 @@
 
 mod predict;
 
-use calibration::{Drives, average};
+use calibration::{Drives, DrivesCoverage, average};
 use model::{Grade, Robot, Sides};
 use rayon::prelude::*;
 use recording::{Channel, PowerForm, Recording, Watch};
@@ -56,6 +56,8 @@ pub(crate) struct Part {
     with_nothing: Kept<(Robot, Vec<Meter>), Vec<f64>>,
     /// Which stretches are compared.
     pub(crate) sample: Sample,
+    /// What of the recording is compared, and why the rest is not.
+    pub(crate) coverage: DrivesCoverage,
 }
 
 /// What would be recorded of one row: power of both sides, or of the battery and nothing; what the battery gives beyond [W];
@@ -78,6 +80,7 @@ impl Part {
         let mut drives = Drives::watched(robot, recording, watch)?.including_stuck();
         drives.averages.retain(|average| average.duration_s >= LEAST_S);
         let sample = Sample::of(&mut drives);
+        let coverage = DrivesCoverage::of(recording, &drives);
         let mut began_s = vec![0.0; recording.rows()];
         for run in &recording.runs {
             let first = run.rows.clone().next().map_or(0.0, |row| recording.t_s[row]);
@@ -122,6 +125,7 @@ impl Part {
             shapes,
             with_nothing: Kept::default(),
             sample,
+            coverage,
             drives,
             suspect,
         })

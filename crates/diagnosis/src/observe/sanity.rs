@@ -2,7 +2,7 @@
 
 use calibration::{
     Drives,
-    doubt::{CHANGES, Change, speeds},
+    doubt::{CHANGES, Change, charged, circumstances, speeds},
 };
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
@@ -32,6 +32,8 @@ pub(crate) fn mistakes(
     of_healthy: &Robot,
 ) -> Result<Vec<String>, Error> {
     said.extend(speeds(robot, recording).iter().map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
+    let odd = circumstances(robot, recording, series.watch())?;
+    said.extend(odd.iter().map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { of_healthy } else { robot };
     let given = follows(known, series, true)?;
@@ -51,6 +53,10 @@ pub(crate) fn mistakes(
             100.0 * r2,
             100.0 * given.r2
         ));
+    }
+    if said.is_empty() {
+        let charged = charged(robot, recording, series.watch())?;
+        said.extend(charged.map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     }
     let kinds = [(true, "recorded power"), (false, "recorded power of the healthy drives")];
     for (suspect, which) in kinds.into_iter().filter(|(suspect, _)| *suspect || series.has_healthy()) {

@@ -5,6 +5,7 @@
 
 use std::ops::ControlFlow;
 
+use calibration::DrivesCoverage;
 use model::{Robot, Sides};
 use recording::{PowerForm, Recording, Watch, unwatched};
 
@@ -151,6 +152,23 @@ impl Series {
     pub(crate) fn sampled(&self) -> Vec<String> {
         let of = |part: &Part| part.sample.words(if part.suspect { "driving" } else { "healthy driving" });
         self.parts.iter().filter_map(of).collect()
+    }
+
+    /// Length of the averages [s].
+    pub(crate) fn average_s(&self) -> f64 {
+        self.parts.iter().map(|part| part.drives.average_s()).fold(0.0, f64::max)
+    }
+
+    /// What is to be said of power meters that are slower than the wheels.
+    pub(crate) fn meter_note(&self) -> Option<String> {
+        self.parts.iter().find_map(|part| part.drives.meter_note())
+    }
+
+    /// What of the drives is compared, of those under suspicion and, where there are any, of healthy ones.
+    pub(crate) fn coverage(&self) -> (DrivesCoverage, Option<DrivesCoverage>) {
+        let of = |suspect: bool| self.parts.iter().find(|part| part.suspect == suspect);
+        let coverage = |part: &Part| part.coverage.clone();
+        (of(true).map(coverage).unwrap_or_default(), of(false).map(coverage))
     }
 
     /// Driving under suspicion that is compared, where that is not all of it [s].

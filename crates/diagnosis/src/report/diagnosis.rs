@@ -1,5 +1,6 @@
 //! What a diagnosis says, as its report has it.
 
+use calibration::DrivesCoverage;
 use model::Robot;
 use serde::Serialize;
 
@@ -63,6 +64,11 @@ pub struct Diagnosis {
     pub not_judged: Vec<&'static str>,
     /// Doubts, and what the corrected robot's file cannot hold.
     pub notes: Vec<String>,
+    /// How many seconds of every drive were compared, and why the rest was not.
+    pub coverage: DrivesCoverage,
+    /// The same of the healthy drives, where there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_coverage: Option<DrivesCoverage>,
     /// The robot fitted to the drives, with those findings that a robot's file has fields for.
     #[serde(skip)]
     pub corrected_robot: Robot,

@@ -80,6 +80,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let corrected = Corrected::of(observed, found, first);
     let trace = trace(subject, &filed, &corrected);
     let is_off = said != Verdict::Consistent && subject.mistakes.is_empty();
+    let (coverage, reference_coverage) = observed.series.coverage();
     let next_drive = if is_off { next_drive(file, observed, found)? } else { None };
     Ok(Diagnosis {
         verdict: said,
@@ -98,6 +99,8 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         detectable,
         not_judged,
         notes,
+        coverage,
+        reference_coverage,
         corrected_robot,
         trace,
     })

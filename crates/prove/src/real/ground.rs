@@ -76,6 +76,10 @@ pub(crate) fn part(recording: &Recording, runs: &[usize]) -> Recording {
         runs: moved.collect(),
         t_s: pick(&recording.t_s),
         channels: recording.channels.iter().map(|(channel, values)| (*channel, pick(values))).collect(),
+        reading_ends: chosen
+            .iter()
+            .flat_map(|run| recording.reading_ends.get(run.rows.clone()).unwrap_or_default().iter().copied())
+            .collect(),
         ..Recording::default()
     }
 }

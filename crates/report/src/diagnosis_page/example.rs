@@ -35,6 +35,8 @@ pub(super) fn explained() -> Diagnosis {
         detectable: vec![Detectable { mechanism: "wind", parameter: "east_mps", value: 2.0, unit: "m/s" }],
         not_judged: vec!["motor_heating"],
         notes: vec!["`payload` stands in the corrected robot's file".into()],
+        coverage: calibration::DrivesCoverage::default(),
+        reference_coverage: None,
         corrected_robot: model::builtin::by_name("husky-a200").unwrap(),
         trace: trace(),
     }

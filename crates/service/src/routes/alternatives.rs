@@ -169,6 +169,7 @@ pub fn answer(
     plan: &PlanRequest,
     patience: &Patience,
 ) -> Result<AlternativesAnswer, Problem> {
+    let plan = &plan.settled(&planner.lattice().terrain)?;
     let query: Query = plan.query(planner, patience);
     let against = match request.against {
         AgainstName::Time => Objective::Time,

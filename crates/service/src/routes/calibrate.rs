@@ -61,7 +61,8 @@ pub struct CalibrateRequest {
 }
 
 /// Start fitting a robot to recordings. The job's result has `parameters` (name, value, unit, interval_95, determined),
-/// `held_out` (how well runs are predicted that were not fitted), `notes`, and the fitted `robot`.
+/// `held_out` (how well runs are predicted that were not fitted), `notes`, `coverage` (of each run and of all: seconds recorded,
+/// used, taken for level, and left out with the reason and the channel at fault), and the fitted `robot`.
 #[utoipa::path(
     post, path = "/v1/calibrate", tag = "jobs",
     request_body = CalibrateRequest,

@@ -57,6 +57,7 @@ pub fn answer(
     request: &PlanRequest,
     patience: &Patience,
 ) -> Result<CompareAnswer, Problem> {
+    let request = &request.settled(&planner.lattice().terrain)?;
     let query = request.query(planner, patience);
     let found = planner.compare(&query).map_err(|error| request.no_plan(planner, &error))?;
     let path = |plan: &planner::Plan| PlanAnswer::from(plan).warned(planner, request);

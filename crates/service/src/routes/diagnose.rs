@@ -60,7 +60,9 @@ pub struct DiagnoseRequest {
 
 /// Start diagnosing recordings. The job's result has `verdict` (`consistent`, `explained`, `ambiguous` or `unexplained`) with its
 /// `sentence`, `where` they differ, `findings` (mechanism, parameters with intervals, evidence, what cannot be told apart, fit
-/// before and after), `next_drive`, the corrected `robot`, and the `trace` of power over time, for drawing.
+/// before and after), `next_drive`, `coverage` (of each drive and of all: seconds recorded, used, taken for level, and left out with the
+/// reason and the channel at fault; `reference_coverage` of healthy drives), the corrected `robot`, and the `trace` of power over time,
+/// for drawing.
 #[utoipa::path(
     post, path = "/v1/diagnose", tag = "jobs",
     request_body = DiagnoseRequest,

@@ -12,7 +12,8 @@ use model::PowerModel;
 use planner::{Patience, Planner};
 use routing::{Kind, Polygon, Reach, Waypoint, available_j, reach};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Warning, io::geotiff};
+use serde_json::json;
+use terrain::{MapFile, Warning, crs::Earth, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
@@ -24,6 +25,7 @@ use crate::{
     accept::preferred,
     answer::Pieces,
     body::JsonBody,
+    place::Place,
     problem::{Problem, ProblemType},
 };
 
@@ -82,6 +84,11 @@ pub struct ReachableAnswer {
     /// Always `FeatureCollection`.
     #[serde(rename = "type")]
     pub kind: String,
+    /// The system of the coordinates, as GeoJSON had it before RFC 7946, null where nothing is known of it; absent where they are
+    /// longitude and latitude of WGS 84.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Object>)]
+    pub crs: Option<serde_json::Value>,
     /// A contour for each energy, in the order of the request.
     pub features: Vec<ContourFeature>,
     /// Doubts about the map.
@@ -228,6 +235,9 @@ pub struct Found {
     kind: KindName,
     energies_j: Vec<(f64, Option<f64>)>,
     warnings: Vec<Warning>,
+    /// Where on earth the map lies, if it says so.
+    earth: Option<Earth>,
+    crs: Option<String>,
 }
 
 impl Found {
@@ -243,8 +253,11 @@ impl Found {
             KindName::Homeward => Kind::Homeward,
             KindName::OutAndBack => Kind::OutAndBack,
         };
-        let place = Waypoint::from(&request.start);
-        let place_m = [request.start.x_m, request.start.y_m];
+        let terrain = &planner.lattice().terrain;
+        let mut start = request.start;
+        start.settle(terrain, "/start")?;
+        let place = Waypoint::from(&start);
+        let place_m = [start.x_m, start.y_m];
         let reach =
             reach(planner, &place, kind, most_j, request.snap_radius_m, patience).map_err(|error| {
                 match &error {
@@ -252,13 +265,17 @@ impl Found {
                     other => Problem::no_routing(other),
                 }
             })?;
-        let warnings = planner.lattice().terrain.warnings().to_vec();
-        Ok(Found { reach, kind: request.kind, energies_j, warnings })
+        let (warnings, crs) = (terrain.warnings().to_vec(), terrain.crs.clone());
+        Ok(Found { reach, kind: request.kind, energies_j, warnings, earth: terrain.earth().ok(), crs })
     }
 
     /// Writes the contours as GeoJSON, of which one at a time is in memory.
     fn write_contours(&self, out: &mut dyn Write, patience: &Patience) -> Result<(), Problem> {
-        out.write_all(br#"{"type":"FeatureCollection","features":["#)?;
+        out.write_all(br#"{"type":"FeatureCollection","#)?;
+        if let Some(crs) = self.member_crs() {
+            write!(out, "\"crs\":{crs},")?;
+        }
+        out.write_all(br#""features":["#)?;
         for (index, energy) in self.energies_j.iter().enumerate() {
             out.write_all(if index > 0 { b"," } else { b"" })?;
             let contour = self.contour(energy, patience)?;
@@ -278,6 +295,7 @@ impl Found {
         let features = features.collect::<Result<_, Problem>>()?;
         Ok(ReachableAnswer {
             kind: "FeatureCollection".to_owned(),
+            crs: self.member_crs(),
             features,
             warnings: self.warnings.clone(),
         })
@@ -296,10 +314,30 @@ impl Found {
             kind: "Feature".to_owned(),
             geometry: ContourGeometry {
                 kind: "MultiPolygon".to_owned(),
-                coordinates: polygons.into_iter().map(rings).collect(),
+                coordinates: polygons.into_iter().map(|polygon| self.rings(polygon)).collect(),
             },
             properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
         })
+    }
+
+    /// The rings of a polygon, in longitude and latitude where the map says where on earth it lies, else in its metres.
+    fn rings(&self, polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
+        let mut rings: Vec<_> = std::iter::once(polygon.exterior).chain(polygon.holes).collect();
+        if let Some(earth) = &self.earth {
+            let all_deg: Option<Vec<Vec<[f64; 2]>>> = rings
+                .iter()
+                .map(|ring| ring.iter().map(|place_m| earth.place_deg(*place_m).ok()).collect())
+                .collect();
+            rings = all_deg.unwrap_or(rings);
+        }
+        rings
+    }
+
+    /// The system that the coordinates of contours are in, as GeoJSON had it before RFC 7946: absent where they are longitude and
+    /// latitude, null where nothing is known of it.
+    fn member_crs(&self) -> Option<serde_json::Value> {
+        let named = |name: &String| json!({ "type": "name", "properties": { "name": name } });
+        self.earth.is_none().then(|| json!(self.crs.as_ref().map(named)))
     }
 
     /// The least energy of every cell as a GeoTIFF [J].
@@ -311,8 +349,4 @@ impl Found {
         geotiff::write(&self.reach.grid, &energy_j)
             .map_err(|error| Problem::new(ProblemType::Internal, format!("the raster: {error}")))
     }
-}
-
-fn rings(polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
-    std::iter::once(polygon.exterior).chain(polygon.holes).collect()
 }

@@ -31,7 +31,7 @@ fn parted(terrain: &Terrain, ends_m: [[f64; 2]; 2]) -> Option<String> {
     let [start, goal] = ends_m.map(|[x_m, y_m]| terrain.grid.cell_at(x_m, y_m));
     let (start, goal) = (start?, goal?);
     let gap = gap_between(terrain, start, goal)?;
-    let width_m = gap.widest_cells as f64 * terrain.grid.cell_size_m;
+    let width_m = whole_millimetres(gap.widest_cells as f64 * terrain.grid.cell_size_m);
     let [x_m, y_m] = gap.at_m;
     let cells =
         if gap.widest_cells == 1 { "one cell".to_owned() } else { format!("{} cells", gap.widest_cells) };
@@ -52,10 +52,16 @@ fn parted(terrain: &Terrain, ends_m: [[f64; 2]; 2]) -> Option<String> {
 /// How many cells are unknown, and how to fill holes that are smaller than the robot; none where all is known.
 fn small_holes(terrain: &Terrain, wheelbase_m: f64) -> Option<String> {
     let unknown = terrain.relative_m().iter().filter(|z| z.is_nan()).count();
-    let width_m = wheelbase_m.max(terrain.grid.cell_size_m);
+    let width_m = whole_millimetres(wheelbase_m.max(terrain.grid.cell_size_m));
     (unknown > 0).then(|| {
         format!("{unknown} cells of the map are unknown ground, which no wheel may touch; {}", mend(width_m))
     })
+}
+
+/// A width rounded up to millimetres, but for rounding itself [m].
+fn whole_millimetres(width_m: f64) -> f64 {
+    const ROUNDING_MM: f64 = 1e-6;
+    (1000.0 * width_m - ROUNDING_MM).ceil() / 1000.0
 }
 
 fn mend(width_m: f64) -> String {

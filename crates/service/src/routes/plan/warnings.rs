@@ -10,17 +10,18 @@ use super::{PlanAnswer, PlanRequest, PoseAnswer};
 const COARSE_WHEELBASES: f64 = 10.0;
 
 impl PlanAnswer {
-    /// The answer with doubts about the map and about this path over it.
-    pub(crate) fn warned(mut self, planner: &Planner, request: &PlanRequest) -> Self {
+    /// The answer with its place on earth and doubts about the map and about this path over it.
+    pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest) -> Self {
         let lattice = planner.lattice();
-        self.warnings = lattice.terrain.warnings().to_vec();
+        let mut answer = self.placed(&lattice.terrain);
+        answer.warnings = lattice.terrain.warnings().to_vec();
         let own = [
             coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m),
-            moved_ends(&self, request, lattice.terrain.grid.cell_size_m),
-            filled_ground(&lattice.terrain, &self.poses),
+            moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
+            filled_ground(&lattice.terrain, &answer.poses),
         ];
-        self.warnings.extend(own.into_iter().flatten());
-        self
+        answer.warnings.extend(own.into_iter().flatten());
+        answer
     }
 }
 

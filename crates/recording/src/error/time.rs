@@ -1,0 +1,114 @@
+//! What can be wrong with times.
+
+use super::Position;
+use crate::clock::{TimeEvidence, remedy};
+
+/// An error about times; the message names place and column, and says how to mend it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TimeError {
+    /// Time that does not increase within a run.
+    #[error(
+        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; {}, or number the drives in a column `run`",
+        if t_s == previous_s { "repeats" } else { "goes back" },
+        if t_s == previous_s { "remove one of the rows" } else { "sort the rows" }
+    )]
+    TimeOrder {
+        /// Line or row.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time there \[s\].
+        t_s: f64,
+        /// The time before it \[s\].
+        previous_s: f64,
+    },
+    /// Times of which many are equal.
+    #[error(
+        "{position}: time repeats {t_s} s in run `{run}`, whose {rows} rows have {}: its times are rounded; write `{column}` with more \
+         digits, or number the drives in a column `run` if there are several",
+        match resolution_s {
+            Some(resolution_s) => format!("{times} different times, {resolution_s} s apart"),
+            None => "one time in all".to_owned(),
+        }
+    )]
+    RoundedTimes {
+        /// Line or row of the first repeat.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time column.
+        column: String,
+        /// The time that repeats \[s\].
+        t_s: f64,
+        /// Rows of the run.
+        rows: usize,
+        /// Different times among them.
+        times: usize,
+        /// Median step from one to the next \[s\].
+        resolution_s: Option<f64>,
+    },
+    /// Times that cannot be in seconds.
+    #[error(
+        "{position}, run `{run}`: {evidence}: `{column}` must be in seconds; {}",
+        remedy(*evidence, column, map_unit.as_deref())
+    )]
+    NotSeconds {
+        /// Line or row of the first such time.
+        position: Position,
+        /// The run.
+        run: String,
+        /// The time column.
+        column: String,
+        /// The evidence.
+        evidence: TimeEvidence,
+        /// The unit that a map gave for the column, if one did.
+        map_unit: Option<String>,
+    },
+    /// Messages whose steps are not those of a drive log.
+    #[error(
+        "topic {topic}: {evidence}; name another topic as `base` in a map, or try the map with `\"stamp\": \"{other}\"`"
+    )]
+    TopicSteps {
+        /// The topic whose stamps become the rows.
+        topic: String,
+        /// The evidence.
+        evidence: TimeEvidence,
+        /// The other clock that the map may ask for.
+        other: &'static str,
+    },
+    /// A unit in a map that contradicts the type of the column.
+    #[error(
+        "map: the unit of column `{column}` is given as `{unit}`, but the file stores it in `{own}` by its type; leave the unit out"
+    )]
+    TypedUnit {
+        /// The column.
+        column: String,
+        /// The unit in the map.
+        unit: String,
+        /// The unit of its type.
+        own: &'static str,
+    },
+    /// A row without a time.
+    #[error("{position}: there is no time in column `{column}`; remove the row or fill it in")]
+    NoTime {
+        /// Line or row.
+        position: Position,
+        /// The time column.
+        column: String,
+    },
+    /// The clock of a topic was set while it was recorded.
+    #[error(
+        "topic {topic}, message {message}: its clock jumps by {by_s:.3} s; cut the file there, or try the map with `\"stamp\": \"{other}\"`"
+    )]
+    ClockJump {
+        /// The topic.
+        topic: String,
+        /// Which of its messages, from 1.
+        message: usize,
+        /// How far it jumps \[s\], forwards or back.
+        by_s: f64,
+        /// The other clock that the map may ask for.
+        other: &'static str,
+    },
+}

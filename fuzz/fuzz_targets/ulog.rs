@@ -1,0 +1,9 @@
+#![no_main]
+//! Any bytes are read as a log of PX4 or refused.
+
+use libfuzzer_sys::fuzz_target;
+use recording::{Format, read};
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = read(bytes.to_vec(), Format::Ulog, "fuzz", None);
+});
