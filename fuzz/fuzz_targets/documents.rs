@@ -6,9 +6,17 @@ use model::Robot;
 use recording::Map;
 use terrain::io;
 
+/// Most cells of an image.
+const MOST_CELLS: u64 = 1 << 16;
+
 fuzz_target!(|text: &str| {
     let _ = Robot::from_json(text);
     let _ = Map::from_json(text);
     let _ = io::json::read(text);
-    let _ = io::ascii::read(text);
+    let bytes = text.as_bytes();
+    let options = io::Options { nodata_m: Some(0.0), fill_voids_m: Some(10.0), most_cells: MOST_CELLS };
+    for format in [io::Format::Ascii, io::Format::Json] {
+        let _ = io::read_bytes(format, bytes, &options);
+    }
+    let _ = io::read_ros_map(bytes, &options, |_| Ok(bytes.to_vec()));
 });

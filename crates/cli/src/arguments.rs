@@ -1,11 +1,6 @@
 //! Arguments that several commands take, and what they mean.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    str::FromStr,
-    time::Instant,
-};
+use std::{fs, path::PathBuf, str::FromStr, time::Instant};
 
 use clap::Args;
 use model::{PowerModel, robot::RobotFile};
@@ -16,17 +11,26 @@ use service::{
         robots::RobotChoice,
     },
 };
-use terrain::{Grid, Terrain, io};
+use terrain::{Terrain, Warning, io};
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, output};
 
-/// A place on the map: metres, or fractions of its extent, with a heading if one is wanted.
+/// A place on the map with a heading if one is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
-    x: f64,
-    y: f64,
-    fraction: bool,
+    coordinates: Coordinates,
     heading_deg: Option<f64>,
+}
+
+/// How a place is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Coordinates {
+    /// The map's x and y [m].
+    Metres([f64; 2]),
+    /// Of the map's extent, east and north [-].
+    Fraction([f64; 2]),
+    /// Longitude and latitude on WGS 84 [°].
+    Degrees([f64; 2]),
 }
 
 impl FromStr for Place {
@@ -34,11 +38,16 @@ impl FromStr for Place {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
-            format!("`{text}` is not X,Y or X,Y,HEADING_DEG in metres, nor @FX,FY in fractions of the map")
+            format!(
+                "`{text}` is not X,Y or X,Y,HEADING_DEG in metres, nor @FX,FY in fractions of the map, nor latitude and longitude as 46.5046N,93.9217W"
+            )
         };
-        let (fraction, numbers) = match text.strip_prefix('@') {
-            Some(rest) => (true, rest),
-            None => (false, text),
+        if let Some(place) = degrees(text) {
+            return place;
+        }
+        let (given, numbers): (fn([f64; 2]) -> Coordinates, _) = match text.strip_prefix('@') {
+            Some(rest) => (Coordinates::Fraction, rest),
+            None => (Coordinates::Metres, text),
         };
         let parsed: Result<Vec<f64>, _> = numbers.split(',').map(|part| part.trim().parse::<f64>()).collect();
         let values = parsed.map_err(|_| wrong())?;
@@ -46,21 +55,59 @@ impl FromStr for Place {
             return Err(wrong());
         }
         match values[..] {
-            [x, y] => Ok(Place { x, y, fraction, heading_deg: None }),
-            [_, _, heading] if heading.abs() > 360.0 => {
-                Err(format!("the heading of `{text}` is {heading}, but must lie in -360 to 360 degrees"))
+            [x, y] => Ok(Place { coordinates: given([x, y]), heading_deg: None }),
+            [x, y, heading] => {
+                Ok(Place { coordinates: given([x, y]), heading_deg: Some(checked_heading(text, heading)?) })
             }
-            [x, y, heading] => Ok(Place { x, y, fraction, heading_deg: Some(heading) }),
             _ => Err(wrong()),
         }
     }
 }
 
+fn checked_heading(text: &str, heading_deg: f64) -> Result<f64, String> {
+    if heading_deg.abs() <= 360.0 {
+        return Ok(heading_deg);
+    }
+    Err(format!("the heading of `{text}` is {heading_deg}, but must lie in -360 to 360 degrees"))
+}
+
+/// Latitude and longitude, each with its letter, in either order, and a heading if one is given; `None` for any other form.
+fn degrees(text: &str) -> Option<Result<Place, String>> {
+    let mut parts = text.split(',').map(str::trim);
+    let mut lettered = || {
+        let part = parts.next()?;
+        let letter = part.chars().last()?.to_ascii_uppercase();
+        let value: f64 =
+            part.strip_suffix(|last: char| last.to_ascii_uppercase() == letter)?.trim().parse().ok()?;
+        let most = if matches!(letter, 'N' | 'S') { 90.0 } else { 180.0 };
+        ("NSEW".contains(letter) && (0.0..=most).contains(&value)).then_some((letter, value))
+    };
+    let (first, second) = (lettered()?, lettered()?);
+    let signed = |letters: [char; 2]| {
+        let (letter, value) = [first, second].into_iter().find(|(letter, _)| letters.contains(letter))?;
+        Some(if letter == letters[0] { value } else { -value })
+    };
+    let coordinates = Coordinates::Degrees([signed(['E', 'W'])?, signed(['N', 'S'])?]);
+    let heading = parts.next().map(str::parse::<f64>);
+    if parts.next().is_some() {
+        return None;
+    }
+    Some(match heading {
+        None => Ok(Place { coordinates, heading_deg: None }),
+        Some(Ok(heading)) => {
+            checked_heading(text, heading).map(|heading| Place { coordinates, heading_deg: Some(heading) })
+        }
+        Some(Err(_)) => Err(format!("the heading of `{text}` is no number of degrees")),
+    })
+}
+
 impl Place {
     /// The place as a pose of a map.
-    pub(crate) fn pose_on(&self, grid: &Grid) -> StartPose {
-        let [x_m, y_m] = self.on(grid);
-        StartPose { x_m, y_m, heading_rad: self.heading_deg.map(f64::to_radians) }
+    ///
+    /// # Errors
+    /// Degrees on a map that does not say where on earth it lies.
+    pub(crate) fn pose_on(&self, terrain: &Terrain) -> anyhow::Result<StartPose> {
+        Ok(StartPose::in_metres(self.on(terrain)?, self.heading_rad()))
     }
 
     /// The heading, counter-clockwise from east [rad].
@@ -69,17 +116,83 @@ impl Place {
     }
 
     /// The place in metres of a map.
-    pub(crate) fn on(&self, grid: &Grid) -> [f64; 2] {
-        if self.fraction { grid.at_fraction_m(self.x, self.y) } else { [self.x, self.y] }
+    ///
+    /// # Errors
+    /// Degrees on a map that does not say where on earth it lies.
+    pub(crate) fn on(&self, terrain: &Terrain) -> anyhow::Result<[f64; 2]> {
+        match self.coordinates {
+            Coordinates::Metres(place_m) => Ok(place_m),
+            Coordinates::Fraction([east, north]) => Ok(terrain.grid.at_fraction_m(east, north)),
+            Coordinates::Degrees(place_deg) => {
+                let place_m = terrain.earth().and_then(|earth| earth.place_m(place_deg));
+                place_m.map_err(|error| {
+                    let [lon, lat] = place_deg;
+                    BadInput(format!("{lat}N,{lon}E is given in degrees, and {error}: give X,Y in metres"))
+                        .into()
+                })
+            }
+        }
     }
+}
+
+/// A map and how it is to be read.
+#[derive(Args)]
+pub(crate) struct MapArguments {
+    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .yaml ROS map
+    #[arg(long)]
+    map: PathBuf,
+    #[command(flatten)]
+    reading: MapReading,
+}
+
+/// How a map is to be read.
+#[derive(Args)]
+struct MapReading {
+    /// Fill holes of unknown ground up to this wide from the ground around them [m] [default: none]
+    #[arg(long, visible_alias = "fill-voids", value_name = "M")]
+    fill_voids_m: Option<f64>,
+    /// Elevation of unknown cells, beside those that the map marks [m] [default: none]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    nodata: Option<f64>,
+}
+
+impl MapReading {
+    fn options(&self) -> io::Options {
+        io::Options { nodata_m: self.nodata, fill_voids_m: self.fill_voids_m, ..io::Options::default() }
+    }
+}
+
+impl MapArguments {
+    /// Reads the map; what is doubtful about it goes to standard error.
+    pub(crate) fn read(&self) -> anyhow::Result<Terrain> {
+        let path = &self.map;
+        let terrain = io::read_path_as(path, &self.reading.options()).map_err(|error| {
+            let message = error.to_string();
+            let named = message.contains(&path.display().to_string());
+            BadInput(if named { message } else { format!("{}: {message}", path.display()) })
+        })?;
+        warn(terrain.warnings());
+        Ok(terrain)
+    }
+}
+
+/// Prints warnings to standard error, a line each.
+pub(crate) fn warn<'a>(warnings: impl IntoIterator<Item = &'a Warning>) {
+    for warning in warnings {
+        output::note(format_args!("warning: {}", warning.detail));
+    }
+}
+
+/// Prints those warnings of an answer that are not of its map, which have been printed when it was read.
+pub(crate) fn warn_of_answer(warnings: &[Warning], terrain: &Terrain) {
+    warn(warnings.iter().filter(|warning| !terrain.warnings().contains(warning)));
 }
 
 /// Map, robot and how to drive: what all commands over a map share.
 #[derive(Args)]
 pub(crate) struct Driving {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file
     #[arg(long, default_value = "husky-a200")]
     robot: String,
@@ -106,7 +219,7 @@ pub(crate) struct Driving {
 impl Driving {
     /// Reads the map and the robot.
     pub(crate) fn read(&self) -> anyhow::Result<(Terrain, RobotChoice)> {
-        Ok((read_map(&self.map)?, read_robot(&self.robot)?))
+        Ok((self.map.read()?, read_robot(&self.robot)?))
     }
 }
 
@@ -145,10 +258,10 @@ impl PathLimits {
 pub(crate) struct Question {
     #[command(flatten)]
     pub(crate) driving: Driving,
-    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
-    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     goal: Place,
     /// Any pose this close to the goal will do [m]
@@ -175,18 +288,13 @@ impl Question {
     pub(crate) fn read(&self, objective: ObjectiveName) -> anyhow::Result<(Terrain, PlanRequest)> {
         let driving = &self.driving;
         let (terrain, robot) = driving.read()?;
-        let goal = self.goal.pose_on(&terrain.grid);
+        let goal = GoalPose::in_metres(self.goal.on(&terrain)?, self.goal.heading_rad());
         let request = PlanRequest {
             map: None,
             map_id: None,
             robot,
-            start: self.start.pose_on(&terrain.grid),
-            goal: GoalPose {
-                x_m: goal.x_m,
-                y_m: goal.y_m,
-                heading_rad: goal.heading_rad,
-                tolerance_m: self.tolerance_m,
-            },
+            start: self.start.pose_on(&terrain)?,
+            goal: GoalPose { tolerance_m: self.tolerance_m, ..goal },
             objective,
             speed_mps: driving.speed_mps,
             power_model: driving.power_model,
@@ -211,14 +319,6 @@ pub(crate) fn patience() -> Patience {
     Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
 }
 
-pub(crate) fn read_map(path: &Path) -> anyhow::Result<Terrain> {
-    io::read_path(path).map_err(|error| {
-        let message = error.to_string();
-        let named = message.contains(&path.display().to_string());
-        BadInput(if named { message } else { format!("{}: {message}", path.display()) }).into()
-    })
-}
-
 /// A built-in robot's name stays a name; anything else is a file.
 pub(crate) fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
     let is_file = name.ends_with(".json") || name.contains(std::path::MAIN_SEPARATOR);
@@ -232,17 +332,34 @@ pub(crate) fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
 
 #[cfg(test)]
 mod tests {
+    use terrain::Grid;
+
     use super::*;
 
     #[test]
     fn places_are_metres_or_fractions_with_an_optional_heading() {
         let grid = Grid { rows: 10, columns: 20, cell_size_m: 0.5, origin_m: [100.0, -5.0] };
-        let at = |text: &str| text.parse::<Place>().unwrap().on(&grid);
+        let mut terrain = Terrain::new(grid, &[1.0; 200]).unwrap();
+        let on = |terrain: &Terrain, text: &str| text.parse::<Place>().unwrap().on(terrain);
+        let at = |text: &str| on(&terrain, text).unwrap();
         assert_eq!(at("3,-4"), [3.0, -4.0]);
         assert_eq!(at("@0.5,1"), [105.0, 0.0]);
         assert_eq!("1,2,90".parse::<Place>().unwrap().heading_deg, Some(90.0));
         assert!("1,2,361".parse::<Place>().unwrap_err().contains("-360 to 360 degrees"));
-        for wrong in ["", "1", "1,2,3,4", "a,b", "@", "1,nan", "1;2"] {
+        let refused = on(&terrain, "45.0N,93.0W").unwrap_err().to_string();
+        assert!(refused.contains("no crs"), "{refused}");
+        terrain.crs = Some("EPSG:26915".into());
+        for text in ["45.0N,93.0W", "93W, 45n", "45.0N,93.0W,90"] {
+            let [x_m, y_m] = on(&terrain, text).unwrap();
+            assert!(
+                (x_m - 500_000.0).abs() < 1e-3 && (y_m - 4_982_950.400).abs() < 1e-2,
+                "{text}: {x_m} {y_m}"
+            );
+        }
+        assert!("45N,93W,361".parse::<Place>().unwrap_err().contains("-360 to 360 degrees"));
+        for wrong in
+            ["", "1", "1,2,3,4", "a,b", "@", "1,nan", "1;2", "91N,3E", "4N,5S", "4N,5E,6,7", "4°N,5°E"]
+        {
             assert!(wrong.parse::<Place>().unwrap_err().contains("X,Y"), "{wrong}");
         }
     }

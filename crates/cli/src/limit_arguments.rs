@@ -95,6 +95,13 @@ pub(crate) struct LimitArguments {
     /// Longest wait for requests under way after that [s]
     #[arg(long, env = "JOULEPATH_DRAIN_TIME_S", default_value = "10", value_parser = seconds)]
     drain_time_s: Duration,
+    /// Fill holes of unknown ground up to this wide, of maps whose request does not say, from the ground around them [m]
+    /// [default: none]
+    #[arg(long, visible_alias = "fill-voids", env = "JOULEPATH_FILL_VOIDS_M", value_name = "M")]
+    fill_voids_m: Option<f64>,
+    /// Elevation of unknown cells of maps whose request does not say, beside those that the map marks [m] [default: none]
+    #[arg(long, env = "JOULEPATH_NODATA", value_name = "V", allow_hyphen_values = true)]
+    nodata: Option<f64>,
 }
 
 /// Longest time that may be set [s]: a day.
@@ -161,6 +168,8 @@ impl LimitArguments {
             body_bytes_per_s: self.body_bytes_per_s,
             unready_time: self.unready_time_s,
             drain_time: self.drain_time_s,
+            fill_voids_m: self.fill_voids_m,
+            nodata_m: self.nodata,
         }
     }
 }

@@ -52,6 +52,11 @@ impl Fault {
         matches!(self.0.kind, Kind::Syntax(_))
     }
 
+    /// Line and column from 1; 0 where they are not known.
+    pub(crate) fn line_and_column(&self) -> (usize, usize) {
+        (self.0.line, self.0.column)
+    }
+
     /// The missing field, and the object that lacks it.
     pub(crate) fn missing(&self) -> Option<(usize, &'static str)> {
         match self.0.kind {

@@ -27,10 +27,11 @@ pub fn from_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
     }
     read(text.len(), |filled| {
         let mut parser = serde_json::Deserializer::from_slice(text);
-        let value = attempt(&mut parser, filled)?;
+        let value = attempt(&mut parser, filled).map_err(|failed| failed.worded(text))?;
         parser.end().map_err(|error| {
             let fault = Reading::default().carrier.take(&error);
-            Failed { fault: fault.to_string(), missing: None, path: String::new(), pointer: String::new() }
+            let (path, pointer) = (String::new(), String::new());
+            Failed { fault: fault.to_string(), missing: None, path, pointer, not_json: None }
         })?;
         Ok(value)
     })
@@ -50,6 +51,58 @@ struct Failed {
     missing: Option<(usize, &'static str)>,
     path: String,
     pointer: String,
+    /// Where the text is no JSON.
+    not_json: Option<NotJson>,
+}
+
+/// The place at which a text is no JSON.
+struct NotJson {
+    line: usize,
+    column: usize,
+    path: String,
+    pointer: String,
+}
+
+impl Failed {
+    /// The same, where other programs' words stand for a number, with that word, its place and what JSON has for it.
+    fn worded(self, text: &[u8]) -> Self {
+        let Some(not_json) = &self.not_json else { return self };
+        let word = word_at(text, not_json.line, not_json.column);
+        let Some(word) = WORDS_OF_OTHERS.iter().find(|other| other.as_bytes() == word) else { return self };
+        let (line, column) = (not_json.line, not_json.column);
+        let fault = format!(
+            "{word} is no JSON: write null where there is no number (line {line}, column {column}); json.dumps of Python writes NaN and Infinity unless it is given allow_nan=False"
+        );
+        Failed { fault, path: not_json.path.clone(), pointer: not_json.pointer.clone(), ..self }
+    }
+}
+
+/// Words by which programs write numbers that are none, or nothing, into what they take for JSON.
+const WORDS_OF_OTHERS: [&str; 12] = [
+    "NaN",
+    "-NaN",
+    "nan",
+    "-nan",
+    "Infinity",
+    "-Infinity",
+    "inf",
+    "-inf",
+    "Inf",
+    "-Inf",
+    "None",
+    "undefined",
+];
+
+/// The letters, with a sign, about a column of a line, both from 1.
+fn word_at(text: &[u8], line: usize, column: usize) -> &[u8] {
+    let Some(line) = text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)) else { return &[] };
+    let is_part = |byte: &u8| byte.is_ascii_alphabetic() || *byte == b'-';
+    // The parser has read one letter of the word, or none after a sign.
+    let at = column.saturating_sub(1).min(line.len());
+    let (before, after) = line.split_at(at);
+    let start = at - before.iter().rev().take_while(|byte| is_part(byte)).count();
+    let end = at + after.iter().take_while(|byte| is_part(byte)).count();
+    line.get(start..end).unwrap_or_default()
 }
 
 fn attempt<'de, T, D>(inner: D, filled: &[(usize, &'static str)]) -> Result<T, Failed>
@@ -61,11 +114,16 @@ where
     serde_path_to_error::deserialize(Strict { inner, reading: &reading }).map_err(|error| {
         let (fault, path): (&Fault, _) = (error.inner(), error.path());
         let place = |of: fn(&Path) -> String| if fault.is_syntax() { String::new() } else { of(path) };
+        let not_json = fault.is_syntax().then(|| {
+            let (line, column) = fault.line_and_column();
+            NotJson { line, column, path: shown(path), pointer: tracked_pointer(path) }
+        });
         Failed {
             fault: fault.to_string(),
             missing: fault.missing(),
             path: place(shown),
             pointer: place(tracked_pointer),
+            not_json,
         }
     })
 }

@@ -258,3 +258,21 @@ proptest! {
         prop_assert_eq!(read(&serde_json::to_string(&request).unwrap()).unwrap(), request);
     }
 }
+
+#[test]
+fn words_of_other_programs_for_no_number_are_named_with_their_place_and_the_mend() {
+    for word in ["NaN", "Infinity", "-Infinity", "nan", "-inf", "None"] {
+        for text in [
+            format!("{{\"start\": {{\"x_m\": 1.5,\n \"y_m\": {word}}}}}"),
+            format!("{{\"start\": {{\"x_m\": 1.5,\n \"y_m\":{word},\"heading_rad\": 0}}}}"),
+        ] {
+            let error = from_json::<Request>(text.as_bytes()).unwrap_err();
+            let said = error.to_string();
+            assert!(said.contains(&format!("{word} is no JSON: write null")), "{text}: {said}");
+            assert!(said.contains("line 2") && said.starts_with("start.y_m"), "{text}: {said}");
+            assert_eq!(error.mistakes()[0].pointer, "/start/y_m");
+        }
+    }
+    let other = from_json::<Request>(b"{\"start\": oops}").unwrap_err().to_string();
+    assert!(other.contains("no valid JSON"), "{other}");
+}

@@ -63,6 +63,21 @@ pub struct Limits {
     pub unready_time: Duration,
     /// Longest wait for requests under way after that [s]. Default 10 s.
     pub drain_time: Duration,
+    /// Holes of unknown ground up to this wide are filled in maps whose request says nothing of it [m]. Default: none.
+    pub fill_voids_m: Option<f64>,
+    /// Elevation of unknown cells of maps whose request says nothing of it, beside those that the map marks [m]. Default: none.
+    pub nodata_m: Option<f64>,
+}
+
+impl Limits {
+    /// How a map in a request is read.
+    pub(crate) fn map_options(&self) -> terrain::io::Options {
+        terrain::io::Options {
+            most_cells: self.map_cells(),
+            nodata_m: self.nodata_m,
+            fill_voids_m: self.fill_voids_m,
+        }
+    }
 }
 
 impl Default for Limits {
@@ -97,6 +112,8 @@ impl Default for Limits {
             body_bytes_per_s: 4096,
             unready_time: Duration::ZERO,
             drain_time: Duration::from_secs(10),
+            fill_voids_m: None,
+            nodata_m: None,
         }
     }
 }

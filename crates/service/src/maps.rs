@@ -21,8 +21,8 @@ use crate::{
 
 /// Maps that the cache has room for at first; it grows.
 const MAPS: usize = 64;
-/// Bytes of a cell in memory: its elevation, surface and obstacle.
-const CELL_BYTES: u64 = 6;
+/// Bytes of a cell in memory: its elevation, surface, obstacle and whether it was filled in.
+const CELL_BYTES: u64 = 7;
 /// A tenant among others may take one part of so many of the cells: no tenant alone keeps all others out.
 const TENANT_SHARE: usize = 2;
 /// Bytes that are collected before they are written, or read at a time.

@@ -89,6 +89,17 @@ impl Problem {
         self
     }
 
+    /// Adds a sentence to the detail.
+    #[must_use]
+    pub(crate) fn and(mut self, more: &str) -> Self {
+        let before = std::mem::take(&mut self.detail);
+        self.detail = with_exponents(shortened(format!("{before}; {more}"), MOST_DETAIL));
+        for error in self.errors.iter_mut().filter(|error| error.detail == before) {
+            error.detail.clone_from(&self.detail);
+        }
+        self
+    }
+
     /// Moves pointers into a field that the request did not have to the one that stood for it.
     #[must_use]
     pub(crate) fn moved(mut self, from: &str, to: &str) -> Self {

@@ -30,13 +30,19 @@ pub(crate) fn csv(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
 /// Metres of a degree along the equator of WGS 84, whose radius is 6 378 137 m.
 const M_PER_DEGREE: f64 = 111_319.490_793_273_57;
 
-/// Writes a path as a GPX 1.1 track. Maps do not say where on earth they lie, so that the start is put at 0° N 0° E, where a
-/// degree of both is as many metres, and x and y count from there.
+/// Writes a path as a GPX 1.1 track. Of a map that does not say where on earth it lies the start is put at 0° N 0° E, where a degree
+/// of both is as many metres, and x and y count from there.
 pub(crate) fn gpx(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
-    out.write_all(HEAD.as_bytes())?;
+    let is_placed = plan.poses.first().is_some_and(|pose| pose.lon_deg.is_some());
+    let about =
+        if is_placed { "" } else { "<desc>Metres east and north of the start, as degrees at 0 N 0 E</desc>" };
+    write!(out, "{HEAD}{about}<trkseg>\n")?;
     if let Some(start) = plan.poses.first() {
         for p in &plan.poses {
-            let (east, north) = ((p.x_m - start.x_m) / M_PER_DEGREE, (p.y_m - start.y_m) / M_PER_DEGREE);
+            let (east, north) = match (p.lon_deg, p.lat_deg) {
+                (Some(lon_deg), Some(lat_deg)) => (lon_deg, lat_deg),
+                _ => ((p.x_m - start.x_m) / M_PER_DEGREE, (p.y_m - start.y_m) / M_PER_DEGREE),
+            };
             writeln!(out, "<trkpt lat=\"{north:.9}\" lon=\"{east:.9}\"><ele>{:.3}</ele></trkpt>", p.z_m)?;
         }
     }
@@ -47,5 +53,5 @@ pub(crate) fn gpx(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
 const HEAD: &str = concat!(
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n",
     "<gpx version=\"1.1\" creator=\"joulepath\" xmlns=\"http://www.topografix.com/GPX/1/1\">\n",
-    "<trk><desc>Metres east and north of the start, as degrees at 0 N 0 E</desc><trkseg>\n"
+    "<trk>"
 );

@@ -49,7 +49,7 @@ pub enum Error {
     },
     /// An elevation that no ground has.
     #[error(
-        "elevation_m[{row}][{column}] is {value}, outside {min} to {max} m: use null for unknown ground, metres otherwise"
+        "elevation_m[{row}][{column}] is {value}, outside {min} to {max} m, between which all ground of Earth, Moon and Mars lies: give metres, and null for unknown ground"
     )]
     Elevation {
         /// Row from the south.
@@ -64,7 +64,7 @@ pub enum Error {
         max: f64,
     },
     /// Every cell is unknown.
-    #[error("elevation_m holds no known cell: every value is null or nodata")]
+    #[error("elevation_m holds no known cell: every cell is unknown ground")]
     AllUnknown,
     /// A cell size that no terrain grid has.
     #[error("cell_size_m is {value}, but must lie in {min} to {max}: give metres")]
@@ -86,12 +86,38 @@ pub enum Error {
         /// Largest magnitude accepted.
         limit: f64,
     },
+    /// A coordinate reference system that a map's metres cannot be in.
+    #[error(
+        "crs is `{found}`, but must be `EPSG:` and the code of a projected system, or its WKT: leave it out if there is none"
+    )]
+    Crs {
+        /// The text found, or its beginning.
+        found: String,
+    },
     /// More surface classes than a byte can index.
     #[error("surface names more than {limit} classes, the last of them `{name}`")]
     TooManySurfaces {
         /// The class that was one too many.
         name: String,
         /// Most classes accepted.
+        limit: usize,
+    },
+    /// More warnings than a map may carry.
+    #[error("warnings has {found} entries, but a map carries {limit} at most")]
+    TooManyWarnings {
+        /// Entries found.
+        found: usize,
+        /// Most accepted.
+        limit: usize,
+    },
+    /// A warning that is longer than a sentence.
+    #[error("warnings[{index}].detail has {found} bytes, but {limit} are the most")]
+    LongWarning {
+        /// Position in the list.
+        index: usize,
+        /// Bytes found.
+        found: usize,
+        /// Most accepted.
         limit: usize,
     },
     /// A patch that changes nothing.
@@ -111,39 +137,32 @@ pub enum Error {
         /// How many the map has.
         limit: usize,
     },
-    /// An ESRI ASCII header line that is missing or wrong.
-    #[error("line {line}: expected the header `{expected}`, found `{found}`")]
-    AsciiHeader {
-        /// Line number from 1.
-        line: usize,
-        /// What should stand there.
-        expected: &'static str,
-        /// What stands there.
-        found: String,
-    },
-    /// A value of an ESRI ASCII grid that is not a number.
-    #[error("line {line}, value {column}: `{found}` is not a number")]
-    AsciiNumber {
-        /// Line number from 1.
-        line: usize,
-        /// Position in the line from 1.
-        column: usize,
-        /// What stands there.
-        found: String,
-    },
-    /// An ESRI ASCII grid with more or fewer values than its header says.
-    #[error("the grid has {found} values, but nrows × ncols is {expected}: the file is truncated or ragged")]
-    AsciiCount {
-        /// Values found.
-        found: usize,
-        /// Values declared.
-        expected: usize,
+    /// An ESRI ASCII grid that cannot be read.
+    #[error(transparent)]
+    Ascii(#[from] crate::io::ascii::AsciiError),
+    /// Coordinates in degrees.
+    #[error(
+        "cells of {cell_size} from x {west}, y {south} are degrees of longitude and latitude, but metres are needed: project the file by `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif` (with `-s_srs EPSG:4326` if it names no coordinate system)"
+    )]
+    Degrees {
+        /// Edge of a cell [deg].
+        cell_size: f64,
+        /// Longitude of the west edge [deg].
+        west: f64,
+        /// Latitude of the south edge [deg].
+        south: f64,
+        /// Ending of the file's name.
+        ending: &'static str,
+        /// EPSG code of the UTM zone of the middle.
+        epsg: u32,
     },
     /// Text that is not UTF-8.
-    #[error("byte {position} is not UTF-8 text: is this really an ASCII grid or JSON?")]
+    #[error("byte {position} is not UTF-8 text{}", is_of(*found))]
     NotText {
         /// Offset of the first bad byte.
         position: usize,
+        /// What the first bytes say it is.
+        found: Option<&'static str>,
     },
     /// The TIFF decoder refused the file.
     #[error("not a readable GeoTIFF: {0}")]
@@ -164,15 +183,47 @@ pub enum Error {
         /// Name of the missing tag.
         tag: &'static str,
     },
-    /// A GeoTIFF in degrees, feet or a rotated frame.
-    #[error("the GeoTIFF's {what} is {value}, but must be {expected}: reproject it to north-up metres")]
-    TiffFrame {
-        /// The property at fault.
-        what: &'static str,
+    /// A property of a GeoTIFF that cannot be honoured.
+    #[error("the GeoTIFF's {tag} is `{value}`, but must be {expected}")]
+    TiffValue {
+        /// The property and where it stands.
+        tag: &'static str,
         /// The value found.
-        value: f64,
-        /// The value needed.
+        value: String,
+        /// What it must be, and the command that makes it so where there is one.
         expected: &'static str,
+    },
+    /// A compression that is not read.
+    #[error(
+        "the GeoTIFF is compressed with {name} (compression {code}), which is not read: recompress it with `gdal_translate -co COMPRESS=DEFLATE in.tif out.tif`"
+    )]
+    TiffCompression {
+        /// The code that stands in the file.
+        code: u64,
+        /// The compression's name.
+        name: &'static str,
+    },
+    /// A strip or tile that cannot be decoded.
+    #[error("a block of the GeoTIFF is damaged: {why}; copy or export the file again")]
+    TiffBlock {
+        /// What the decoder says.
+        why: String,
+    },
+    /// A Mercator projection whose scale changes over the map by more than its cells can tell.
+    #[error(
+        "the map is in a cylindrical projection ({crs}), of which a metre is {south:.4} m of ground in its south and {north:.4} m in its north: bring it to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif`"
+    )]
+    MercatorScale {
+        /// The coordinate reference system.
+        crs: String,
+        /// Ground by map at the southern edge.
+        south: f64,
+        /// Ground by map at the northern edge.
+        north: f64,
+        /// Ending of the file's name.
+        ending: &'static str,
+        /// EPSG code of the UTM zone of the middle.
+        epsg: u32,
     },
     /// A TIFF whose samples are not one elevation per pixel.
     #[error("the GeoTIFF holds {found}, but one band of integer or float elevation is needed")]
@@ -180,29 +231,46 @@ pub enum Error {
         /// What it holds.
         found: String,
     },
-    /// The image of a ROS map cannot be read.
-    #[error("the map image {path} cannot be read: {source}")]
-    Image {
-        /// The image's path as the YAML names it.
-        path: String,
-        /// Why.
-        source: image::ImageError,
-    },
-    /// The YAML of a ROS map cannot be read.
-    #[error("the map_server YAML cannot be read: {0}")]
-    Yaml(#[from] serde_yaml_ng::Error),
-    /// A field of a ROS map that this program cannot use.
-    #[error("{field} of the map_server YAML is {value}, but must be {expected}")]
-    RosMap {
-        /// The field.
-        field: &'static str,
-        /// Its value.
+    /// A ROS map that cannot be read.
+    #[error(transparent)]
+    RosMap(#[from] crate::io::ros_map::RosMapError),
+    /// A GeoTIFF with an elevation that no ground has.
+    #[error(
+        "the GeoTIFF holds {value:?} at row {row} from the south and column {column} from the west (from 0), outside {min} to {max} m, between which all ground of Earth, Moon and Mars lies: if it marks unknown ground, say so by `gdal_translate -a_nodata {value:?} in.tif out.tif`; if it is not in metres, convert it"
+    )]
+    TiffElevation {
+        /// Row from the south.
+        row: usize,
+        /// Column from the west.
+        column: usize,
+        /// The value found.
         value: f64,
-        /// What it must be.
-        expected: &'static str,
+        /// Lowest accepted [m].
+        min: f64,
+        /// Highest accepted [m].
+        max: f64,
+    },
+    /// A GeoTIFF without any known cell.
+    #[error("the GeoTIFF holds no known elevation: every sample is nodata or NaN")]
+    TiffAllUnknown,
+    /// Nodata that is no number.
+    #[error("nodata is {value}, but must be a number: cells that are no number are unknown anyway")]
+    Nodata {
+        /// The value found.
+        value: f64,
+    },
+    /// A width of holes to fill that cannot be.
+    #[error(
+        "fill_voids_m is {value}, but must be above 0 and at most {limit}: give the width of the widest hole to fill in metres"
+    )]
+    VoidWidth {
+        /// The value found [m].
+        value: f64,
+        /// Largest accepted [m].
+        limit: f64,
     },
     /// A file name that says nothing about its format.
-    #[error("`{path}` is no map file: the name must end in .json, .asc, .tif, .tiff, .yaml or .yml")]
+    #[error("`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .yaml or .yml")]
     UnknownFormat {
         /// The path.
         path: String,
@@ -218,6 +286,17 @@ pub enum Error {
 }
 
 impl Error {
+    /// The error in the words of a GeoTIFF.
+    pub(crate) fn in_geotiff(self) -> Self {
+        match self {
+            Error::Elevation { row, column, value, min, max } => {
+                Error::TiffElevation { row, column, value, min, max }
+            }
+            Error::AllUnknown => Error::TiffAllUnknown,
+            other => other,
+        }
+    }
+
     /// The field at fault, as `elevation_m[3][2]`, where the error lies in one.
     pub fn field(&self) -> Option<String> {
         Some(match self {
@@ -226,14 +305,27 @@ impl Error {
             Error::TooManyCells { .. } => "rows".into(),
             Error::RowCount { layer, .. } => (*layer).into(),
             Error::RowLength { layer, row, .. } => format!("{layer}[{row}]"),
-            Error::Elevation { row, column, .. } => format!("elevation_m[{row}][{column}]"),
+            Error::Elevation { row, column, .. } | Error::TiffElevation { row, column, .. } => {
+                format!("elevation_m[{row}][{column}]")
+            }
             Error::EmptyPatch => "elevation_m".into(),
             Error::PatchOutside { field, .. } => (*field).into(),
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
+            Error::Crs { .. } => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
+            Error::TooManyWarnings { .. } => "warnings".into(),
+            Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),
             _ => return None,
         })
+    }
+}
+
+/// What bytes are that should be text.
+fn is_of(found: Option<&str>) -> String {
+    match found {
+        Some(found) => format!(": this is {found}, not an ASCII grid or JSON; send or name it as that"),
+        None => ": is this really an ASCII grid or JSON?".to_owned(),
     }
 }

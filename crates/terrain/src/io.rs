@@ -2,30 +2,131 @@
 
 pub mod ascii;
 pub mod cells;
+pub mod degrees;
 pub mod geotiff;
 pub mod json;
 pub mod ros_map;
 
-use std::path::Path;
+use std::{
+    fs,
+    io::{Cursor, Read},
+    path::Path,
+};
 
-use crate::{Error, Terrain};
+use flate2::read::MultiGzDecoder;
+use tiff::{ColorType, decoder::Decoder};
+
+use crate::{Error, Terrain, crs::Crs};
+
+/// How a map is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Most cells. Default: [`Terrain::MAX_CELLS`].
+    pub most_cells: u64,
+    /// Elevation of unknown cells, beside those that the file marks [m].
+    pub nodata_m: Option<f64>,
+    /// Holes of unknown ground up to this wide are filled [m]: see [`Terrain::with_filled_voids`].
+    pub fill_voids_m: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { most_cells: Terrain::MAX_CELLS, nodata_m: None, fill_voids_m: None }
+    }
+}
+
+/// A format that one file has alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// JSON grid.
+    Json,
+    /// ESRI ASCII grid.
+    Ascii,
+    /// GeoTIFF.
+    GeoTiff,
+}
+
+/// Most bytes that a packed text is unpacked to: 24 for each cell of the largest map, as `%.15g` and a blank take.
+const MOST_UNPACKED_BYTES: u64 = 24 * Terrain::MAX_CELLS;
 
 /// Reads a map file; its ending says which format it is in.
 ///
-/// `.json` grid, `.asc` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.yaml`/`.yml` ROS `map_server`.
+/// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.yaml`/`.yml` ROS `map_server`.
 ///
 /// # Errors
 /// What is wrong with the file, with the place in it.
 pub fn read_path(path: &Path) -> Result<Terrain, Error> {
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let bytes =
-        || std::fs::read(path).map_err(|source| Error::Read { path: path.display().to_string(), source });
-    match ending.as_str() {
-        "json" => json::read(text(&bytes()?)?),
-        "asc" => ascii::read(text(&bytes()?)?),
-        "tif" | "tiff" => geotiff::read(&bytes()?, Terrain::MAX_CELLS),
-        "yaml" | "yml" => ros_map::read(text(&bytes()?)?, path.parent().unwrap_or(Path::new("."))),
-        _ => Err(Error::UnknownFormat { path: path.display().to_string() }),
+    read_path_as(path, &Options::default())
+}
+
+/// Reads a map file as [`read_path`] does, with options.
+///
+/// # Errors
+/// As [`read_path`], and options that cannot be.
+pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let bytes = || fs::read(path).map_err(|source| Error::Read { path: path.display().to_string(), source });
+    let has = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    let terrain = match () {
+        () if has(&[".json"]) => read_bytes(Format::Json, &bytes()?, options)?,
+        () if has(&[".asc"]) => read_ascii_beside(&bytes()?, path, options)?,
+        () if has(&[".asc.gz"]) => read_ascii_beside(&unpacked(&bytes()?, path)?, path, options)?,
+        () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
+        () if has(&[".yaml", ".yml"]) => {
+            let folder = path.parent().unwrap_or(Path::new("."));
+            read_ros_map(&bytes()?, options, |image| fs::read(folder.join(image)))?
+        }
+        () => return Err(Error::UnknownFormat { path: path.display().to_string() }),
+    };
+    Ok(terrain)
+}
+
+/// Reads a map from the bytes of its file.
+///
+/// # Errors
+/// What is wrong with it, with the place in it.
+pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Terrain, Error> {
+    let terrain = match format {
+        Format::Json => json::read(text(bytes)?),
+        Format::Ascii => ascii::read(text(bytes)?, options),
+        Format::GeoTiff => geotiff::read(bytes, options.most_cells).map_err(Error::in_geotiff),
+    }?;
+    let terrain = terrain.as_asked(options)?;
+    let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
+    Ok(if is_bytes { terrain.with_doubt_of_bytes() } else { terrain })
+}
+
+/// Whether a TIFF holds one number of 8 bits for each pixel.
+fn holds_bytes(tiff: &[u8]) -> bool {
+    let color = Decoder::new(Cursor::new(tiff)).and_then(|mut decoder| decoder.colortype());
+    matches!(color, Ok(ColorType::Gray(8)))
+}
+
+/// Reads a ROS `map_server` map, whose image `image` finds by the name that the YAML has for it.
+///
+/// # Errors
+/// What is wrong with the YAML or the image, by field.
+pub fn read_ros_map(
+    yaml: &[u8],
+    options: &Options,
+    image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
+) -> Result<Terrain, Error> {
+    ros_map::read(text(yaml)?, options.most_cells, image)?.as_asked(options)
+}
+
+/// An ESRI ASCII grid, placed in the system that a `.prj` file beside it names, if there is one that can be read.
+fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Terrain, Error> {
+    let stem = path.with_extension("");
+    let bare =
+        if stem.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("asc")) { &stem } else { path };
+    let beside = ["prj", "PRJ"].iter().find_map(|ending| {
+        let bytes = fs::read(bare.with_extension(ending)).ok()?;
+        Crs::parse(text(&bytes).ok()?)
+    });
+    let terrain = ascii::read(text(bytes)?, options)?;
+    match beside {
+        Some(crs) => terrain.placed_in(&crs, "asc")?.as_asked(options),
+        None => terrain.as_asked(options),
     }
 }
 
@@ -34,6 +135,75 @@ pub fn read_path(path: &Path) -> Result<Terrain, Error> {
 /// # Errors
 /// [`Error::NotText`] with the first byte that is not UTF-8.
 pub fn text(bytes: &[u8]) -> Result<&str, Error> {
-    let text = std::str::from_utf8(bytes).map_err(|e| Error::NotText { position: e.valid_up_to() })?;
+    let text = std::str::from_utf8(bytes)
+        .map_err(|error| Error::NotText { position: error.valid_up_to(), found: named_by_magic(bytes) })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// What a file is by its first bytes.
+fn named_by_magic(bytes: &[u8]) -> Option<&'static str> {
+    const MAGIC: [(&[u8], &str); 6] = [
+        (b"II*\0", "a TIFF"),
+        (b"MM\0*", "a TIFF"),
+        (b"II+\0", "a TIFF"),
+        (b"\x1f\x8b", "a gzip file"),
+        (b"\x89PNG", "a PNG image"),
+        (b"PK\x03\x04", "a ZIP file"),
+    ];
+    MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
+}
+
+fn unpacked(bytes: &[u8], path: &Path) -> Result<Vec<u8>, Error> {
+    let mut text = Vec::new();
+    let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED_BYTES).read_to_end(&mut text);
+    read.map(|_| text).map_err(|source| Error::Read { path: path.display().to_string(), source })
+}
+
+impl Terrain {
+    /// The ground as the options want it, with doubts about what its cells hold.
+    ///
+    /// # Errors
+    /// Options that cannot be, or nodata that leaves no known cell.
+    pub fn as_asked(self, options: &Options) -> Result<Self, Error> {
+        let mut terrain = self;
+        if let Some(nodata_m) = options.nodata_m {
+            terrain = terrain.with_nodata(nodata_m)?;
+        }
+        terrain = terrain.with_doubts();
+        match options.fill_voids_m {
+            Some(fill_voids_m) => terrain.with_filled_voids(fill_voids_m),
+            None => Ok(terrain),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    const GRID: &str = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n";
+
+    #[test]
+    fn a_packed_grid_is_the_grid() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("Ground.ASC.gz");
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packed.write_all(GRID.as_bytes()).unwrap();
+        fs::write(&path, packed.finish().unwrap()).unwrap();
+        let plain = read_bytes(Format::Ascii, GRID.as_bytes(), &Options::default()).unwrap();
+        assert_eq!(read_path(&path).unwrap(), plain);
+        fs::write(&path, b"\x1f\x8b broken").unwrap();
+        assert!(read_path(&path).unwrap_err().to_string().contains("Ground.ASC.gz"));
+    }
+
+    #[test]
+    fn bytes_in_the_place_of_text_are_named() {
+        let said = read_bytes(Format::Ascii, b"II*\0\xff\xff", &Options::default()).unwrap_err().to_string();
+        assert!(said.contains("byte 4") && said.contains("this is a TIFF"), "{said}");
+        let said =
+            read_bytes(Format::Json, b"{\"a\": \"\xff\"}", &Options::default()).unwrap_err().to_string();
+        assert!(said.contains("is this really"), "{said}");
+    }
 }

@@ -4,14 +4,23 @@
 //! southernmost, `origin_m` the south-west corner of cell (0, 0), so the centre of a cell lies half a cell further in.
 //! This crate knows nothing of robots.
 
+pub mod crs;
+mod doubt;
 mod error;
+pub mod fill_value;
+pub mod fill_voids;
+pub mod gaps;
 mod grid;
 pub mod hillshade;
 pub mod io;
+mod nodata;
 mod patch;
+mod resample;
+mod samples;
 pub mod slope;
 pub mod synthetic;
 mod terrain;
+mod warning;
 
 pub use error::Error;
 pub use grid::{Cell, Grid};
@@ -19,3 +28,4 @@ pub use io::json::MapFile;
 pub use patch::{CellRange, Patch};
 pub use slope::SlopeMap;
 pub use terrain::{Surfaces, Terrain};
+pub use warning::{Warning, WarningKind};

@@ -15,7 +15,7 @@ pub struct Patch {
     pub row: u64,
     /// Column of its westernmost cells.
     pub column: u64,
-    /// Elevation by row and column, −1000 to 9000 or null [m].
+    /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elevation_m: Option<Vec<Vec<Option<f64>>>>,
     /// Surface names by row and column; null means the robot's default surface.
@@ -52,6 +52,9 @@ impl Terrain {
         if let Some(rows) = &patch.elevation_m {
             let relative_m = Arc::make_mut(&mut terrain.relative_m);
             for (cell, value) in changed.cells().zip(rows.iter().flatten()) {
+                if let Some(filled) = &mut terrain.filled {
+                    Arc::make_mut(filled)[self.grid.index(cell)] = false;
+                }
                 let Some(value) = value else {
                     relative_m[self.grid.index(cell)] = f32::NAN;
                     continue;

@@ -2,7 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::{Cell, Error, Grid};
+use crate::{
+    Cell, Error, Grid, Warning,
+    crs::{Earth, EarthError},
+    fill_value,
+    samples::Survey,
+};
 
 /// Ground on a grid. Unknown cells and obstacles are impassable. Clones share their cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +21,11 @@ pub struct Terrain {
     pub(crate) relative_m: Arc<Vec<f32>>,
     pub(crate) surfaces: Option<Arc<Surfaces>>,
     pub(crate) obstacle: Option<Arc<Vec<bool>>>,
+    /// Cells whose elevation was worked out from the ground around a hole.
+    pub(crate) filled: Option<Arc<Vec<bool>>>,
+    pub(crate) warnings: Arc<Vec<Warning>>,
+    /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
+    pub crs: Option<String>,
 }
 
 /// What the ground is made of, cell by cell.
@@ -60,32 +70,24 @@ impl Surfaces {
 impl Terrain {
     /// Most cells a map may have: 10 000 × 10 000 and some margin, 0.5 GB of elevation.
     pub const MAX_CELLS: u64 = 128_000_000;
-    /// Lowest elevation accepted [m]; dry land begins at −430, mines reach −1000.
-    pub const LOWEST_M: f64 = -1000.0;
-    /// Highest elevation accepted [m], above any ground; −9999 and −32768 of unmarked nodata fall outside.
-    pub const HIGHEST_M: f64 = 9000.0;
-    const CELL_SIZE_M: (f64, f64) = (0.01, 100.0);
+    /// Lowest elevation accepted [m]: the deepest ground of Earth (−10 984), Moon (−9 130) and Mars (−8 200) lies above it.
+    pub const LOWEST_M: f64 = -11_000.0;
+    /// Highest elevation accepted [m]: the highest ground of Mars (21 230), Moon (10 790) and Earth (8 849) lies below it.
+    pub const HIGHEST_M: f64 = 22_000.0;
+    /// Smallest edge of a cell [m].
+    pub const SMALLEST_CELL_M: f64 = 0.01;
+    const CELL_SIZE_M: (f64, f64) = (Self::SMALLEST_CELL_M, 100.0);
     /// Projected coordinates stay below the circumference of the earth.
     const ORIGIN_LIMIT_M: f64 = 5e7;
 
-    /// Builds ground from row-major elevations, southernmost row first, NaN where unknown.
+    /// Builds ground from row-major elevations, southernmost row first, NaN where unknown. Conventional fill values that no
+    /// ground has ([`fill_value::is_never_ground`]) are unknown too, with a warning.
     ///
     /// # Errors
     /// Any of the grid's numbers out of range, an absurd elevation, or no known cell at all.
     pub fn new(grid: Grid, elevation_m: &[f64]) -> Result<Self, Error> {
         check_grid(&grid)?;
-        let mut lowest_m = f64::INFINITY;
-        for (index, &value) in elevation_m.iter().enumerate() {
-            if value.is_nan() {
-                continue;
-            }
-            if !(Self::LOWEST_M..=Self::HIGHEST_M).contains(&value) {
-                let Cell { row, column } = grid.cell(index);
-                let (min, max) = (Self::LOWEST_M, Self::HIGHEST_M);
-                return Err(Error::Elevation { row, column, value, min, max });
-            }
-            lowest_m = lowest_m.min(value);
-        }
+        let survey = Survey::of(&grid, elevation_m, &|z| z)?;
         if elevation_m.len() != grid.cells() {
             return Err(Error::RowCount {
                 layer: "elevation_m",
@@ -93,11 +95,21 @@ impl Terrain {
                 expected: grid.rows,
             });
         }
-        if lowest_m.is_infinite() {
-            return Err(Error::AllUnknown);
-        }
-        let relative_m = Arc::new(elevation_m.iter().map(|z| (z - lowest_m) as f32).collect());
-        Ok(Terrain { grid, base_m: lowest_m, relative_m, surfaces: None, obstacle: None })
+        let lowest_m = survey.lowest_m;
+        let relative =
+            |z: &f64| if fill_value::is_never_ground(*z) { f32::NAN } else { (z - lowest_m) as f32 };
+        let terrain = Self::of_relative(grid, lowest_m, elevation_m.iter().map(relative).collect());
+        Ok(match survey.warning() {
+            Some(warning) => terrain.with_warning(warning),
+            None => terrain,
+        })
+    }
+
+    /// Ground without anything but elevations, counted from the lowest of them.
+    pub(crate) fn of_relative(grid: Grid, base_m: f64, relative_m: Vec<f32>) -> Self {
+        let relative_m = Arc::new(relative_m);
+        let (surfaces, obstacle, filled, warnings, crs) = (None, None, None, Arc::default(), None);
+        Terrain { grid, base_m, relative_m, surfaces, obstacle, filled, warnings, crs }
     }
 
     /// Checks rows, columns, cell size and origin before anything of their size is allocated.
@@ -141,6 +153,14 @@ impl Terrain {
         (!relative_m.is_nan()).then(|| self.base_m + f64::from(relative_m))
     }
 
+    /// Where on earth the map's metres are.
+    ///
+    /// # Errors
+    /// A map without a system, or with one that is not known to the millimetre.
+    pub fn earth(&self) -> Result<Earth, EarthError> {
+        Earth::of(self.crs.as_deref().ok_or(EarthError::NoCrs)?)
+    }
+
     /// Lowest known elevation [m].
     pub fn base_m(&self) -> f64 {
         self.base_m
@@ -160,6 +180,31 @@ impl Terrain {
     /// Obstacles, row-major, if the map has any.
     pub fn obstacles(&self) -> Option<&[bool]> {
         self.obstacle.as_ref().map(|o| o.as_slice())
+    }
+
+    /// Cells whose elevation was worked out from the ground around a hole, row-major, if there are any.
+    pub fn filled(&self) -> Option<&[bool]> {
+        self.filled.as_ref().map(|filled| filled.as_slice())
+    }
+
+    /// Marks cells whose elevation was worked out from the ground around a hole, row-major.
+    pub(crate) fn with_filled(mut self, filled: Vec<bool>) -> Self {
+        debug_assert_eq!(filled.len(), self.grid.cells());
+        self.filled = Some(Arc::new(filled));
+        self
+    }
+
+    /// Doubts about the map and what was done to it.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Adds a warning, in place of one of its kind.
+    pub fn with_warning(mut self, warning: Warning) -> Self {
+        let warnings = Arc::make_mut(&mut self.warnings);
+        warnings.retain(|other| other.kind != warning.kind);
+        warnings.push(warning);
+        self
     }
 
     /// Surface classes, if the map has any.
@@ -222,6 +267,21 @@ impl Terrain {
                 hash.update([u8::from(o)]);
             }
         }
+        if let Some(filled) = &self.filled {
+            hash.update(b"filled");
+            for &f in filled.iter() {
+                hash.update([u8::from(f)]);
+            }
+        }
+        for warning in self.warnings.iter() {
+            hash.update(b"warning");
+            hash.update((warning.detail.len() as u64).to_le_bytes());
+            hash.update(warning.detail.as_bytes());
+        }
+        if let Some(crs) = &self.crs {
+            hash.update(b"crs");
+            hash.update(crs.as_bytes());
+        }
         hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }
@@ -244,6 +304,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::WarningKind;
 
     fn plane() -> Terrain {
         let grid = Grid { rows: 4, columns: 6, cell_size_m: 0.5, origin_m: [0.0, 0.0] };
@@ -266,13 +327,26 @@ mod tests {
     }
 
     #[test]
-    fn unmarked_nodata_and_absurd_heights_are_refused_with_their_cell() {
+    fn absurd_heights_are_refused_with_their_cell() {
         let grid = Grid { rows: 2, columns: 2, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
-        for bad in [-9999.0, -32768.0, 1e6, f64::INFINITY] {
+        for bad in [-12_345.0, 40_000.0, 1e6, f64::INFINITY] {
             let error = Terrain::new(grid, &[0.0, 1.0, 2.0, bad]).unwrap_err();
             assert_eq!(error.field().as_deref(), Some("elevation_m[1][1]"), "{error}");
         }
         assert!(matches!(Terrain::new(grid, &[f64::NAN; 4]), Err(Error::AllUnknown)));
+        assert!(matches!(Terrain::new(grid, &[-9999.0; 4]), Err(Error::AllUnknown)));
+    }
+
+    #[test]
+    fn unmarked_nodata_is_unknown_ground_and_said() {
+        let grid = Grid { rows: 2, columns: 2, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        for mark in [-9999.0, -32768.0, f64::from(f32::MIN), -3.40282e38, 1e30] {
+            let terrain = Terrain::new(grid, &[5.0, mark, 6.0, mark]).unwrap();
+            assert_eq!((terrain.base_m(), terrain.elevation_m(Cell { row: 1, column: 1 })), (5.0, None));
+            let [warning] = terrain.warnings() else { panic!("{:?}", terrain.warnings()) };
+            assert_eq!(warning.kind, WarningKind::UnmarkedNodata);
+            assert!(warning.detail.starts_with("2 cells"), "{}", warning.detail);
+        }
     }
 
     #[test]

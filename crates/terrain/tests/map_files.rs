@@ -98,23 +98,44 @@ fn a_point_raster_lies_half_a_cell_further_out() {
 }
 
 #[test]
+fn a_fill_value_that_no_tag_marks_is_unknown_and_said() {
+    let unmarked =
+        Sample { nodata: None, ..Sample::plain() }.write::<colortype::GrayI16>(&[1, 2, -9999, 4, 5, 6]);
+    let terrain = read(&unmarked).unwrap();
+    assert_eq!(terrain.elevation_m(Cell { row: 1, column: 2 }), None);
+    assert!(terrain.warnings()[0].detail.contains("-9999"), "{:?}", terrain.warnings());
+}
+
+#[test]
+fn an_absurd_elevation_is_refused_in_the_words_of_its_format() {
+    let tiff = Sample::plain().write::<colortype::Gray32Float>(&[1.0, 2.0, 40_000.0, 4.0, 5.0, 6.0]);
+    let options = io::Options::default();
+    let error = io::read_bytes(io::Format::GeoTiff, &tiff, &options).unwrap_err();
+    assert!(error.to_string().contains("gdal_translate -a_nodata 40000.0"), "{error}");
+    assert_eq!(error.field().as_deref(), Some("elevation_m[1][2]"));
+    let json = br#"{"cell_size_m": 1, "rows": 1, "columns": 2, "elevation_m": [[1, 40000]]}"#;
+    let error = io::read_bytes(io::Format::Json, json, &options).unwrap_err();
+    assert!(error.to_string().contains("null for unknown ground"), "{error}");
+}
+
+#[test]
 fn unusable_geotiffs_are_refused_by_what_they_lack() {
     let samples = [1, 2, 3, 4, 5, 6];
     let refused = |sample: &Sample| read(&sample.write::<colortype::GrayI16>(&samples)).unwrap_err();
     let no_scale = refused(&Sample { scale: None, ..Sample::plain() });
     assert!(no_scale.to_string().contains("ModelPixelScale"), "{no_scale}");
     let degrees = refused(&Sample { keys: vec![1, 1, 0, 1, 1024, 0, 1, 2], ..Sample::plain() });
-    assert!(degrees.to_string().contains("projected"), "{degrees}");
-    let feet = refused(&Sample { keys: vec![1, 1, 0, 1, 3076, 0, 1, 9002], ..Sample::plain() });
-    assert!(feet.to_string().contains("metres"), "{feet}");
-    let oblong = refused(&Sample { scale: Some([0.5, 0.7, 0.0]), ..Sample::plain() });
-    assert!(oblong.to_string().contains("pixel height"), "{oblong}");
-    let unmarked =
-        Sample { nodata: None, ..Sample::plain() }.write::<colortype::GrayI16>(&[1, 2, -9999, 4, 5, 6]);
-    let unmarked = read(&unmarked).unwrap_err();
-    assert_eq!(unmarked.field().as_deref(), Some("elevation_m[1][2]"));
-    let us_foot = Sample { keys: vec![1, 1, 0, 1, 4099, 0, 1, 9003], ..Sample::plain() };
-    assert!(refused(&us_foot).to_string().contains("vertical"));
+    assert!(degrees.to_string().contains("degrees"), "{degrees}");
+    assert!(degrees.to_string().contains("gdalwarp -t_srs EPSG:326"), "{degrees}");
+    let unit = refused(&Sample { keys: vec![1, 1, 0, 1, 3076, 0, 1, 9102], ..Sample::plain() });
+    assert!(
+        unit.to_string().contains("ProjLinearUnitsGeoKey") && unit.to_string().contains("9102"),
+        "{unit}"
+    );
+    let flat = refused(&Sample { scale: Some([0.5, 0.0, 0.0]), ..Sample::plain() });
+    assert!(flat.to_string().contains("pixel size"), "{flat}");
+    let fathoms = Sample { keys: vec![1, 1, 0, 1, 4096, 0, 1, 5715], ..Sample::plain() };
+    assert!(refused(&fathoms).to_string().contains("depths"));
     let crowded = io::geotiff::read(&Sample::plain().write::<colortype::GrayI16>(&samples), 5).unwrap_err();
     assert!(matches!(crowded, Error::TooManyCells { limit: 5, .. }), "{crowded}");
     let endless = Sample { nodata: Some("-inf"), ..Sample::plain() }.write::<colortype::GrayI16>(&samples);

@@ -4,7 +4,7 @@ use clap::Args;
 use service::routes::{compare::answer, plan::ObjectiveName};
 
 use crate::{
-    arguments::{Question, patience},
+    arguments::{Question, patience, warn_of_answer},
     failure::Refused,
     output, table,
 };
@@ -20,6 +20,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = request.patience(&patience()).map_err(Refused)?;
     let planner = request.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
+    warn_of_answer(&found.energy.warnings, &terrain);
     if arguments.question.driving.json {
         output::json(&found)?;
     } else {

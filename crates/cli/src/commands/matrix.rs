@@ -17,7 +17,7 @@ use crate::{
 pub(crate) struct Arguments {
     #[command(flatten)]
     driving: Driving,
-    /// Where paths start; give it once for each: X,Y[,HEADING_DEG], or @FX,FY[,HEADING_DEG] in fractions of the map
+    /// Where paths start; give it once for each: X,Y[,HEADING_DEG], @FX,FY[,HEADING_DEG] in fractions of the map, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, required = true, allow_hyphen_values = true)]
     source: Vec<Place>,
     /// Where paths end; give it once for each [default: the sources]
@@ -28,13 +28,15 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let driving = &arguments.driving;
     let (terrain, robot) = driving.read()?;
-    let poses = |places: &[Place]| places.iter().map(|place| place.pose_on(&terrain.grid)).collect();
+    let poses = |places: &[Place]| {
+        places.iter().map(|place| place.pose_on(&terrain)).collect::<anyhow::Result<Vec<_>>>()
+    };
     let mut request = MatrixRequest {
         map: None,
         map_id: None,
         robot,
-        sources: poses(&arguments.source),
-        targets: (!arguments.target.is_empty()).then(|| poses(&arguments.target)),
+        sources: poses(&arguments.source)?,
+        targets: (!arguments.target.is_empty()).then(|| poses(&arguments.target)).transpose()?,
         objective: ObjectiveName::Energy,
         speed_mps: driving.speed_mps,
         power_model: driving.power_model,

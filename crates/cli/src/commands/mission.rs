@@ -1,15 +1,12 @@
 //! `joulepath mission`.
 
-use std::path::PathBuf;
-
 use clap::Args;
-use service::routes::{
-    mission::{ChargerRequest, MissionAnswer, MissionRequest, OrderName, WaypointRequest, answer},
-    plan::StartPose,
+use service::routes::mission::{
+    ChargerRequest, MissionAnswer, MissionRequest, OrderName, WaypointRequest, answer,
 };
 
 use crate::{
-    arguments::{Place, patience, read_map, read_robot},
+    arguments::{MapArguments, Place, patience, read_robot},
     failure::{OutOfCharge, Refused},
     output,
     table::{energy, time},
@@ -17,13 +14,12 @@ use crate::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file; it needs a battery
     #[arg(long, default_value = "husky-a200")]
     robot: String,
-    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
     /// A place to visit, written as the start; give as many as there are
@@ -74,31 +70,33 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let terrain = read_map(&arguments.map)?;
-    let [x_m, y_m] = arguments.start.on(&terrain.grid);
+    let terrain = arguments.map.read()?;
     let waypoint = |place: &Place| {
-        let [x_m, y_m] = place.on(&terrain.grid);
-        WaypointRequest {
+        let [x_m, y_m] = place.on(&terrain)?;
+        anyhow::Ok(WaypointRequest {
             x_m,
             y_m,
+            lon_deg: None,
+            lat_deg: None,
             heading_rad: place.heading_rad(),
             service_s: arguments.service_s,
             service_power_w: arguments.service_power_w,
             recharge: None,
-        }
+        })
     };
     let charger = |place: &Place| {
-        let [x_m, y_m] = place.on(&terrain.grid);
+        let [x_m, y_m] = place.on(&terrain)?;
         let (power_w, level) = (arguments.charger_power_w, arguments.charger_level);
-        ChargerRequest { x_m, y_m, heading_rad: place.heading_rad(), power_w, level }
+        let heading_rad = place.heading_rad();
+        anyhow::Ok(ChargerRequest { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad, power_w, level })
     };
     let mut request = MissionRequest {
         map: None,
         map_id: None,
         robot: read_robot(&arguments.robot)?,
-        start: StartPose { x_m, y_m, heading_rad: arguments.start.heading_rad() },
-        waypoints: arguments.waypoint.iter().map(waypoint).collect(),
-        chargers: arguments.charger.iter().map(charger).collect(),
+        start: arguments.start.pose_on(&terrain)?,
+        waypoints: arguments.waypoint.iter().map(waypoint).collect::<anyhow::Result<_>>()?,
+        chargers: arguments.charger.iter().map(charger).collect::<anyhow::Result<_>>()?,
         order: if arguments.in_order { OrderName::Given } else { OrderName::Best },
         back: arguments.back,
         deadline_s: arguments.deadline_s,

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use service::routes::plan::{ObjectiveName, answer};
 
 use crate::{
-    arguments::{PathLimits, Question, patience},
+    arguments::{PathLimits, Question, patience, warn_of_answer},
     failure::Refused,
     output, table,
 };
@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = request.patience(&patience()).map_err(Refused)?;
     let planner = request.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
+    warn_of_answer(&found.warnings, &terrain);
     if arguments.question.driving.json {
         output::json(&found)?;
     } else {

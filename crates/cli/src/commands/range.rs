@@ -1,16 +1,14 @@
 //! `joulepath range`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use mission::Doubt;
 use service::routes::{
-    plan::{GoalPose, StartPose},
+    plan::GoalPose,
     range::{RangeAnswer, RangeRequest, answer},
 };
 
 use crate::{
-    arguments::{Place, patience, read_map, read_robot},
+    arguments::{MapArguments, Place, patience, read_robot},
     failure::{OutOfCharge, Refused},
     output,
     table::{energy, time},
@@ -18,13 +16,12 @@ use crate::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Map file: .json grid, .asc ESRI ASCII, .tif GeoTIFF, .yaml ROS map
-    #[arg(long)]
-    map: PathBuf,
+    #[command(flatten)]
+    map: MapArguments,
     /// Name of a built-in robot, or a robot file; it needs a battery
     #[arg(long, default_value = "husky-a200")]
     robot: String,
-    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
     /// The same; without it the farthest place that the charge reaches
@@ -69,18 +66,14 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let terrain = read_map(&arguments.map)?;
-    let [x_m, y_m] = arguments.start.on(&terrain.grid);
-    let goal = arguments.goal.map(|goal| {
-        let [x_m, y_m] = goal.on(&terrain.grid);
-        GoalPose { x_m, y_m, heading_rad: goal.heading_rad(), tolerance_m: 0.0 }
-    });
+    let terrain = arguments.map.read()?;
+    let goal = |goal: Place| anyhow::Ok(GoalPose::in_metres(goal.on(&terrain)?, goal.heading_rad()));
     let mut request = RangeRequest {
         map: None,
         map_id: None,
         robot: read_robot(&arguments.robot)?,
-        start: StartPose { x_m, y_m, heading_rad: arguments.start.heading_rad() },
-        goal,
+        start: arguments.start.pose_on(&terrain)?,
+        goal: arguments.goal.map(goal).transpose()?,
         back: arguments.back,
         charge: arguments.charge,
         ambient_c: arguments.ambient_c,

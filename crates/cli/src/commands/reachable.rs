@@ -18,7 +18,7 @@ use crate::{
 pub(crate) struct Arguments {
     #[command(flatten)]
     driving: Driving,
-    /// X,Y[,HEADING_DEG] in metres of the map, or @FX,FY[,HEADING_DEG] in fractions of it
+    /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
     /// From the place, to it, or there and back
@@ -48,7 +48,7 @@ enum Kind {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let driving = &arguments.driving;
     let (terrain, robot) = driving.read()?;
-    let start = arguments.start.pose_on(&terrain.grid);
+    let start = arguments.start.pose_on(&terrain)?;
     let some = |list: &[f64]| (!list.is_empty()).then(|| list.to_vec());
     let mut request = ReachableRequest {
         map: None,

@@ -56,6 +56,8 @@ pub(super) fn parameter(operation_id: &str, name: &str) -> Option<Value> {
         (_, "id") if operation_id.ends_with("Recording") => drive_id().into(),
         (_, "id") => "5b7c1f0e9a3d4c2b8e6f7a1d0c9b8a7f".into(),
         (_, "max_cells") => 10_000.into(),
+        (_, "fill_voids_m") => 0.5.into(),
+        (_, "nodata_m") => (-9999.0).into(),
         (_, "map") => columns().to_string().into(),
         (_, "name") => "yard".into(),
         (_, "if-none-match") => "\"5b7c1f0e9a3d4c2b\"".into(),

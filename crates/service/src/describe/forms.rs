@@ -37,11 +37,11 @@ fn usual(status: &str) -> &'static str {
     }
 }
 
-/// Gives the body of a request its example. Whatever is no JSON is sent as a file is.
+/// Gives the body of a request its example. Whatever is neither JSON nor a form of several parts is sent as a file is.
 pub(super) fn describe_body(operation: &mut Operation, operation_id: &str) {
     let Some(RefOr::T(body)) = &mut operation.request_body else { return };
     for (media_type, content) in &mut body.content {
-        if !media_type.ends_with("json") {
+        if !media_type.ends_with("json") && media_type != "multipart/form-data" {
             as_bytes(content);
         }
         let RefOr::T(content) = content else { continue };

@@ -169,15 +169,17 @@ pub fn answer(
     plan: &PlanRequest,
     patience: &Patience,
 ) -> Result<AlternativesAnswer, Problem> {
+    let plan = &plan.settled(&planner.lattice().terrain)?;
     let query: Query = plan.query(planner, patience);
     let against = match request.against {
         AgainstName::Time => Objective::Time,
         AgainstName::Distance => Objective::Distance,
     };
     let found = routing::alternatives(planner, &query, against, &plan.limits()?, request.count)
-        .map_err(|error| Problem::no_routing(&error))?;
+        .map_err(|error| plan.no_routing(planner, &error))?;
+    let path = |found| PlanAnswer::from(found).warned(planner, plan);
     Ok(AlternativesAnswer {
-        alternatives: found.plans.iter().map(PlanAnswer::from).collect(),
+        alternatives: found.plans.iter().map(path).collect(),
         complete: found.complete,
         epsilon: request.epsilon,
         timed_out: found.timed_out,

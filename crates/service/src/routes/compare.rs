@@ -57,12 +57,14 @@ pub fn answer(
     request: &PlanRequest,
     patience: &Patience,
 ) -> Result<CompareAnswer, Problem> {
+    let request = &request.settled(&planner.lattice().terrain)?;
     let query = request.query(planner, patience);
-    let found = planner.compare(&query).map_err(|e| Problem::no_plan(&e))?;
+    let found = planner.compare(&query).map_err(|error| request.no_plan(planner, &error))?;
+    let path = |plan: &planner::Plan| PlanAnswer::from(plan).warned(planner, request);
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
-        energy: (&found.energy).into(),
-        distance: (&found.distance).into(),
-        time: (&found.time).into(),
+        energy: path(&found.energy),
+        distance: path(&found.distance),
+        time: path(&found.time),
     })
 }

@@ -7,16 +7,17 @@ use axum::{
     http::{HeaderMap, StatusCode, Uri, header},
     response::{IntoResponse, Response},
 };
-use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Patch, Terrain, io, io::json::JsonText};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use terrain::{MapFile, Patch, Terrain, Warning, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
     Engine, Tenant,
     accept::preferred,
     answer::{Json, streamed},
-    body::{Content, Id, JsonBody, content_type, from_json, read as read_body},
+    body::{Id, JsonBody, read as read_body},
     cells::CellBytes,
+    map_reader::{MapReader, RosMapForm},
     maps::Stored,
     problem::{Problem, ProblemType},
 };
@@ -36,6 +37,11 @@ pub struct MapSummary {
     /// South-west corner, x and y [m].
     #[schema(min_items = 2, max_items = 2)]
     pub origin_m: [f64; 2],
+    /// Coordinate reference system whose easting and northing, in metres, are x and y: `EPSG:` and a code, or WKT. Left out
+    /// where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, example = "EPSG:26915")]
+    pub crs: Option<String>,
     /// Lowest and highest known elevation [m].
     #[schema(min_items = 2, max_items = 2)]
     pub elevation_range_m: [f64; 2],
@@ -43,6 +49,9 @@ pub struct MapSummary {
     pub passable_fraction: f64,
     /// Surfaces that the map names.
     pub surfaces: Vec<String>,
+    /// Doubts about the map, and what was done to it.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// Maps at hand.
@@ -64,21 +73,39 @@ impl MapSummary {
             columns: grid.columns,
             cell_size_m: grid.cell_size_m,
             origin_m: grid.origin_m,
+            crs: terrain.crs.clone(),
             elevation_range_m: [terrain.base_m(), terrain.base_m() + f64::from(highest_m)],
             passable_fraction: passable as f64 / grid.cells() as f64,
             surfaces: terrain.surfaces().map_or(Vec::new(), |s| s.names.clone()),
+            warnings: terrain.warnings().to_vec(),
         }
     }
 }
 
-/// Store a map: a JSON grid (application/json), an ESRI ASCII grid (text/plain) or a GeoTIFF in projected metres
-/// (image/tiff).
+/// How a map is to be read.
+#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
+pub struct ReadingQuery {
+    /// Fill holes of unknown ground that are at most so wide from the ground around them, up to 1000; the answer's warnings say
+    /// how many, and `filled` of the map which. Default: the service's setting, which is none unless it was started with one [m].
+    #[param(exclusive_minimum = 0.0, maximum = 1000.0)]
+    pub fill_voids_m: Option<f64>,
+    /// Elevation of unknown cells, beside those that the file marks. Default: the service's setting, as above [m].
+    pub nodata_m: Option<f64>,
+}
+
+/// Store a map: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres (image/tiff), or
+/// the YAML and the image of a ROS map_server map (multipart/form-data with the parts `yaml` and `image`). What looks wrong with
+/// its elevations stands in the answer's warnings.
 #[utoipa::path(
     post, path = "/v1/maps", tag = "maps",
+    params(ReadingQuery),
     request_body(content(
         (MapFile = "application/json"),
         (String = "text/plain"),
-        (Vec<u8> = "image/tiff")
+        (Vec<u8> = "image/tiff"),
+        (RosMapForm = "multipart/form-data")
     )),
     responses(
         (status = 201, description = "Stored", body = MapSummary),
@@ -93,15 +120,22 @@ impl MapSummary {
 pub(crate) async fn create(
     State(engine): State<Engine>,
     tenant: Tenant,
+    uri: Uri,
     request: Request,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
-    let parse = parser(&content_type(&request))?;
+    let query = query::<ReadingQuery>(&uri, "fill_voids_m` and `nodata_m")?;
+    let reader = MapReader::of(&request)?;
+    let usual = engine.limits().map_options();
+    let options = io::Options {
+        nodata_m: query.nodata_m.or(usual.nodata_m),
+        fill_voids_m: query.fill_voids_m.or(usual.fill_voids_m),
+        ..usual
+    };
     let content = read_body(request, &engine).await?;
-    let most_cells = engine.limits().map_cells();
     let map = engine
         .compute(move |_| {
-            let terrain = parse(content, most_cells)?;
-            refuse_too_large(&terrain, most_cells)?;
+            let terrain = reader.read(content, &options)?;
+            refuse_too_large(&terrain, options.most_cells)?;
             let summary = MapSummary::of(terrain.content_id(), &terrain);
             Ok(Stored { terrain: Arc::new(terrain), summary })
         })
@@ -109,38 +143,6 @@ pub(crate) async fn create(
     let summary = map.summary.clone();
     let new = engine.maps().insert(&tenant, map, &engine.limits().maps()).await?;
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
-}
-
-type Parser = fn(Content, u64) -> Result<Terrain, Problem>;
-
-/// Bytes of a cell while an ESRI ASCII grid is read: as it comes, from the south, and as it is kept.
-const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
-/// The same of a GeoTIFF, of which a chunk of samples is at hand beside them, as it stands and as numbers.
-const TIFF_CELL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8;
-
-/// The reader for a content type.
-fn parser(kind: &str) -> Result<Parser, Problem> {
-    Ok(match kind {
-        "application/json" => |content, _| terrain_from(content.parsed(from_json)?, ""),
-        "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => |mut content, _| {
-            let text = io::text(&content.bytes).map_err(|e| Problem::invalid_map(&e, ""))?;
-            let cells = text.split_ascii_whitespace().count() as u64;
-            content.reserved.grow_to(text.len() as u64 + ASCII_CELL_BYTES * cells)?;
-            io::ascii::read(text).map_err(|e| Problem::invalid_map(&e, ""))
-        },
-        "image/tiff" | "image/geotiff" | "application/geotiff" => |mut content, most_cells| {
-            let invalid = |error: terrain::Error| Problem::invalid_map(&error, "");
-            let cells = io::geotiff::cells(&content.bytes).map_err(invalid)?.min(most_cells);
-            content.reserved.grow_to(content.bytes.len() as u64 + TIFF_CELL_BYTES * cells)?;
-            io::geotiff::read(&content.bytes, most_cells).map_err(invalid)
-        },
-        _ => {
-            let detail = format!(
-                "a map is application/json, text/plain (ESRI ASCII grid) or image/tiff (GeoTIFF), but the request has `{kind}`"
-            );
-            return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
-        }
-    })
 }
 
 /// Refuses a map that could be kept but not planned over.
@@ -157,9 +159,10 @@ pub(crate) fn refuse_too_large(terrain: &Terrain, most_cells: u64) -> Result<(),
     Err(Problem::new(ProblemType::TooLarge, detail))
 }
 
-/// A JSON grid as terrain; `under` is where it stands in the request.
-pub(crate) fn terrain_from(file: MapFile, under: &str) -> Result<Terrain, Problem> {
-    Terrain::try_from(file).map_err(|error| Problem::invalid_map(&error, under))
+/// A JSON grid as terrain, read with options; `under` is where it stands in the request.
+pub(crate) fn terrain_from(file: MapFile, options: &io::Options, under: &str) -> Result<Terrain, Problem> {
+    let terrain = Terrain::try_from(file).and_then(|terrain| terrain.as_asked(options));
+    terrain.map_err(|error| Problem::invalid_map(&error, under))
 }
 
 /// Maps at hand.
@@ -219,14 +222,22 @@ pub(crate) async fn read(
 }
 
 fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
-    let refused =
-        |why: String| Problem::new(ProblemType::InvalidRequest, format!("the query cannot be read: {why}"));
-    let Query(query) = Query::<CellsQuery>::try_from_uri(uri)
-        .map_err(|error| refused(format!("{error}; it may hold `max_cells`")))?;
+    let query: CellsQuery = query(uri, "max_cells")?;
     match query.max_cells {
-        Some(0) => Err(refused("max_cells is 0, but must be at least 1".into())),
+        Some(0) => Err(unreadable_query("max_cells is 0, but must be at least 1")),
         _ => Ok(query),
     }
+}
+
+/// The query of a request; `fields` are those that it may hold.
+fn query<T: DeserializeOwned>(uri: &Uri, fields: &str) -> Result<T, Problem> {
+    Query::<T>::try_from_uri(uri)
+        .map(|Query(query)| query)
+        .map_err(|error| unreadable_query(&format!("{error}; it may hold `{fields}`")))
+}
+
+fn unreadable_query(why: &str) -> Problem {
+    Problem::new(ProblemType::InvalidRequest, format!("the query cannot be read: {why}"))
 }
 
 /// Change a rectangle of a map's cells. The changed map is stored beside the other, under its own id; what has been worked
@@ -257,6 +268,7 @@ pub(crate) async fn change(
         .compute(move |_| {
             let (terrain, changed) =
                 before.patched(&patch).map_err(|error| Problem::invalid_map(&error, ""))?;
+            let terrain = terrain.with_doubts();
             let summary = MapSummary::of(terrain.content_id(), &terrain);
             Ok((Stored { terrain: Arc::new(terrain), summary }, changed))
         })

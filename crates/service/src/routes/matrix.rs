@@ -16,6 +16,7 @@ use crate::{
     Engine, Limits, Tenant,
     answer::Json,
     body::JsonBody,
+    place::settle_all,
     problem::{Problem, ProblemType},
 };
 
@@ -154,9 +155,13 @@ pub fn answer(
     request: &MatrixRequest,
     patience: &Patience,
 ) -> Result<MatrixAnswer, Problem> {
+    let terrain = &planner.lattice().terrain;
+    let (mut sources, mut targets) = (request.sources.clone(), request.targets.clone());
+    settle_all(&mut sources, terrain, "/sources")?;
+    targets.as_deref_mut().map_or(Ok(()), |targets| settle_all(targets, terrain, "/targets"))?;
     let waypoints = |poses: &[StartPose]| -> Vec<Waypoint> { poses.iter().map(Waypoint::from).collect() };
-    let sources = waypoints(&request.sources);
-    let targets = request.targets.as_deref().map(waypoints);
+    let sources = waypoints(&sources);
+    let targets = targets.as_deref().map(waypoints);
     let question = Question {
         objective: request.objective.into(),
         snap_radius_m: request.snap_radius_m,

@@ -5,15 +5,21 @@ use mission::{Call, Doubt, Mission, MissionQuestion, Role, Site, Stop, mission};
 use planner::{Patience, Planner};
 use routing::Waypoint;
 use serde::{Deserialize, Serialize};
-use terrain::MapFile;
+use terrain::{MapFile, Terrain};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, PoseAnswer, StartPose, with_planner},
+    plan::{GoalPose, PlanRequest, PoseAnswer, StartPose, place_all, with_planner},
     range::{SpreadAnswer, full, stalled},
     robots::RobotChoice,
 };
-use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
+use crate::{
+    Engine, Tenant,
+    answer::Json,
+    body::JsonBody,
+    place::{Place, absent, place_deg, settle_all},
+    problem::Problem,
+};
 
 /// Waypoints to visit on a charge.
 #[derive(Clone, Debug, Deserialize, ToSchema)]
@@ -87,10 +93,20 @@ pub enum OrderName {
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaypointRequest {
-    /// East [m].
+    /// East; give this and `y_m`, or `lon_deg` and `lat_deg` [m].
+    #[serde(default = "absent")]
     pub x_m: f64,
     /// North [m].
+    #[serde(default = "absent")]
     pub y_m: f64,
+    /// Longitude on WGS 84, −180 to 180, where the map has a `crs` [°].
+    #[serde(default)]
+    #[schema(minimum = -180.0, maximum = 180.0)]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84, −90 to 90 [°].
+    #[serde(default)]
+    #[schema(minimum = -90.0, maximum = 90.0)]
+    pub lat_deg: Option<f64>,
     /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
     #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
@@ -119,10 +135,20 @@ pub struct RechargeRequest {
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ChargerRequest {
-    /// East [m].
+    /// East; give this and `y_m`, or `lon_deg` and `lat_deg` [m].
+    #[serde(default = "absent")]
     pub x_m: f64,
     /// North [m].
+    #[serde(default = "absent")]
     pub y_m: f64,
+    /// Longitude on WGS 84, −180 to 180, where the map has a `crs` [°].
+    #[serde(default)]
+    #[schema(minimum = -180.0, maximum = 180.0)]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84, −90 to 90 [°].
+    #[serde(default)]
+    #[schema(minimum = -90.0, maximum = 90.0)]
+    pub lat_deg: Option<f64>,
     /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
     #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
@@ -179,6 +205,12 @@ pub struct StopAnswer {
     pub index: Option<usize>,
     pub x_m: f64,
     pub y_m: f64,
+    /// Longitude on WGS 84; absent where the map does not say where on earth it lies [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84 [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lat_deg: Option<f64>,
     pub heading_rad: f64,
     pub arrival_s: f64,
     pub departure_s: f64,
@@ -306,8 +338,14 @@ pub fn answer(
     patience: &Patience,
 ) -> Result<MissionAnswer, Problem> {
     let _ = plan;
-    let found = mission(planner, &request.question(planner, patience));
-    found.map(|found| MissionAnswer::from(&found)).map_err(|error| Problem::no_mission(&error))
+    let terrain = &planner.lattice().terrain;
+    let mut request = request.clone();
+    request.start.settle(terrain, "/start")?;
+    settle_all(&mut request.waypoints, terrain, "/waypoints")?;
+    settle_all(&mut request.chargers, terrain, "/chargers")?;
+    let found = mission(planner, &request.question(planner, patience))
+        .map_err(|error| Problem::no_mission(&error))?;
+    Ok(MissionAnswer::from(&found).placed(terrain))
 }
 
 impl From<&Mission> for MissionAnswer {
@@ -342,6 +380,17 @@ impl From<&Mission> for MissionAnswer {
     }
 }
 
+impl MissionAnswer {
+    /// The answer with longitude and latitude of its places, where the map says where on earth it lies.
+    fn placed(mut self, terrain: &Terrain) -> Self {
+        for stop in &mut self.stops {
+            [stop.lon_deg, stop.lat_deg] = place_deg(terrain, [stop.x_m, stop.y_m]);
+            place_all(&mut stop.poses, terrain);
+        }
+        self
+    }
+}
+
 fn stop(call: &Call, poses: Vec<PoseAnswer>) -> StopAnswer {
     let (kind, index) = match call.role {
         Role::Start => ("start", None),
@@ -355,6 +404,8 @@ fn stop(call: &Call, poses: Vec<PoseAnswer>) -> StopAnswer {
         index,
         x_m,
         y_m,
+        lon_deg: None,
+        lat_deg: None,
         heading_rad,
         arrival_s: call.arrival_s,
         departure_s: call.departure_s,

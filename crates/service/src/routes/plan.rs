@@ -1,6 +1,8 @@
 //! `POST /v1/plan`: one path.
 
 mod document;
+mod unknown_ground;
+mod warnings;
 mod work;
 
 use std::{
@@ -24,11 +26,14 @@ use crate::{
     body::JsonBody,
     geojson,
     metrics::CacheLabels,
+    place::{Place, absent},
     problem::{Problem, ProblemType},
     route_file,
 };
 
+pub(crate) use document::place_all;
 pub use document::{PlanAnswer, PoseAnswer, RefinedAnswer, SearchAnswer, SnapAnswer, Snapped};
+pub(crate) use unknown_ground::no_plan_over;
 pub(crate) use work::with_planner;
 
 /// What to plan.
@@ -90,10 +95,20 @@ pub struct PlanRequest {
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StartPose {
-    /// East [m].
+    /// East; give this and `y_m`, or `lon_deg` and `lat_deg` [m].
+    #[serde(default = "absent")]
     pub x_m: f64,
     /// North [m].
+    #[serde(default = "absent")]
     pub y_m: f64,
+    /// Longitude on WGS 84, −180 to 180, where the map has a `crs` [°].
+    #[serde(default)]
+    #[schema(minimum = -180.0, maximum = 180.0)]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84, −90 to 90 [°].
+    #[serde(default)]
+    #[schema(minimum = -90.0, maximum = 90.0)]
+    pub lat_deg: Option<f64>,
     /// Counter-clockwise from east; turned to the nearest of sixteen. Default: the planner chooses; −6.3 to 6.3 [rad].
     #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
@@ -103,10 +118,20 @@ pub struct StartPose {
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GoalPose {
-    /// East [m].
+    /// East; give this and `y_m`, or `lon_deg` and `lat_deg` [m].
+    #[serde(default = "absent")]
     pub x_m: f64,
     /// North [m].
+    #[serde(default = "absent")]
     pub y_m: f64,
+    /// Longitude on WGS 84, −180 to 180, where the map has a `crs` [°].
+    #[serde(default)]
+    #[schema(minimum = -180.0, maximum = 180.0)]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84, −90 to 90 [°].
+    #[serde(default)]
+    #[schema(minimum = -90.0, maximum = 90.0)]
+    pub lat_deg: Option<f64>,
     /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
     #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
@@ -141,7 +166,7 @@ fn one() -> f64 {
     post, path = "/v1/plan", tag = "plan",
     request_body = PlanRequest,
     responses(
-        (status = 200, description = "The path, in the form that `Accept` asks for; the start of a GPX track is put at 0° N 0° E", content(
+        (status = 200, description = "The path, in the form that `Accept` asks for; longitude and latitude of WGS 84 in GeoJSON and GPX where the map has a `crs`, else metres in GeoJSON, and the start of a GPX track at 0° N 0° E", content(
             (PlanAnswer = "application/json"),
             (Object = "application/geo+json"),
             (String = "text/csv"),
@@ -185,16 +210,17 @@ const STEEP_TIME: Duration = Duration::from_secs(5);
 /// # Errors
 /// An unusable end, no path, or time that ran out before there was one.
 pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> Result<PlanAnswer, Problem> {
+    let request = &request.settled(&planner.lattice().terrain)?;
     let query = request.query(planner, patience);
     let objective = request.objective.into();
     let limits = request.limits()?;
     if request.hold_goal {
-        planner.hold_goal(&query, objective).map_err(|e| Problem::no_plan(&e))?;
+        planner.hold_goal(&query, objective).map_err(|e| request.no_plan(planner, &e))?;
     }
     let found = routing::plan_within(planner, &query, objective, &limits)
-        .map_err(|e| Problem::no_routing(&e))
+        .map_err(|error| request.no_routing(planner, &error))
         .map_err(|problem| request.too_steep(planner, problem, patience))?;
-    Ok(PlanAnswer::from(&found))
+    Ok(PlanAnswer::from(&found).warned(planner, request))
 }
 
 /// A time that a request allows; `None` where no clock counts that far, which is no limit.
@@ -222,10 +248,23 @@ impl From<ObjectiveName> for Objective {
     }
 }
 
+impl StartPose {
+    /// A start in the map's metres.
+    pub fn in_metres([x_m, y_m]: [f64; 2], heading_rad: Option<f64>) -> Self {
+        StartPose { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad }
+    }
+}
+
 impl GoalPose {
+    /// A goal in the map's metres.
+    pub fn in_metres([x_m, y_m]: [f64; 2], heading_rad: Option<f64>) -> Self {
+        GoalPose { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad, tolerance_m: 0.0 }
+    }
+
     /// Where a start is, under any heading.
     pub(crate) fn at(start: StartPose) -> Self {
-        GoalPose { x_m: start.x_m, y_m: start.y_m, heading_rad: None, tolerance_m: 0.0 }
+        let StartPose { x_m, y_m, lon_deg, lat_deg, .. } = start;
+        GoalPose { x_m, y_m, lon_deg, lat_deg, heading_rad: None, tolerance_m: 0.0 }
     }
 }
 
@@ -252,6 +291,17 @@ impl PlanRequest {
             max_distance_m: None,
             max_slope_rad: None,
         }
+    }
+
+    /// The request without its map, and with both ends in the map's metres.
+    ///
+    /// # Errors
+    /// An end that is not given, or in degrees that the map cannot place.
+    pub(crate) fn settled(&self, terrain: &Terrain) -> Result<Self, Problem> {
+        let mut settled = PlanRequest { map: None, ..self.clone() };
+        settled.start.settle(terrain, "/start")?;
+        settled.goal.settle(terrain, "/goal")?;
+        Ok(settled)
     }
 
     /// The limits on the path's totals.
@@ -308,6 +358,20 @@ impl PlanRequest {
             "no path keeps within a slope of {max_slope_rad:.3} rad; the best path without that limit comes to {steepest_rad:.3} rad: raise max_slope_rad"
         );
         Problem::new(ProblemType::LimitsContradict, detail).at("/max_slope_rad")
+    }
+
+    /// Why the planner has no path for the request.
+    pub(crate) fn no_plan(&self, planner: &Planner, error: &planner::Error) -> Problem {
+        let ends_m = [[self.start.x_m, self.start.y_m], [self.goal.x_m, self.goal.y_m]];
+        no_plan_over(planner, ends_m, error)
+    }
+
+    /// Why a question within limits has no answer.
+    pub(crate) fn no_routing(&self, planner: &Planner, error: &routing::Error) -> Problem {
+        match error {
+            routing::Error::Planner(error) => self.no_plan(planner, error),
+            other => Problem::no_routing(other),
+        }
     }
 
     /// A planner over a terrain for the request's robot.

@@ -6,7 +6,7 @@ use mission::{
 };
 use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
-use terrain::MapFile;
+use terrain::{MapFile, Terrain};
 use utoipa::ToSchema;
 
 use super::{
@@ -164,6 +164,12 @@ pub struct LegAnswer {
 pub struct ChargedPose {
     pub x_m: f64,
     pub y_m: f64,
+    /// Longitude on WGS 84; absent where the map does not say where on earth it lies [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84 [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lat_deg: Option<f64>,
     pub z_m: f64,
     pub heading_rad: f64,
     pub t_s: f64,
@@ -178,6 +184,12 @@ pub struct ChargedPose {
 pub struct TurningAnswer {
     pub x_m: f64,
     pub y_m: f64,
+    /// Longitude on WGS 84; absent where the map does not say where on earth it lies [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84 [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lat_deg: Option<f64>,
     /// Along the way there [m].
     pub distance_m: f64,
     pub charge: f64,
@@ -272,6 +284,7 @@ pub fn answer(
     plan: &PlanRequest,
     patience: &Patience,
 ) -> Result<RangeAnswer, Problem> {
+    let plan = &plan.settled(&planner.lattice().terrain)?;
     let robot = &planner.lattice().robot;
     let question = Question {
         query: plan.query(planner, patience),
@@ -288,7 +301,8 @@ pub fn answer(
         replanned: request.replanned,
         seed: request.seed,
     };
-    range(planner, &question).map(|found| RangeAnswer::from(&found)).map_err(|e| Problem::no_range(&e))
+    let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
+    Ok(RangeAnswer::from(&found).placed(&planner.lattice().terrain))
 }
 
 impl From<&Range> for RangeAnswer {
@@ -352,11 +366,31 @@ fn legs(legs: &[Leg], charge: f64) -> Vec<LegAnswer> {
     legs.iter().map(leg).collect()
 }
 
+impl RangeAnswer {
+    /// The answer with longitude and latitude of its places, where the map says where on earth it lies.
+    fn placed(mut self, terrain: &Terrain) -> Self {
+        let Ok(earth) = terrain.earth() else { return self };
+        let place = |x_m: f64, y_m: f64| {
+            let place_deg = earth.place_deg([x_m, y_m]).ok();
+            [0, 1].map(|axis| place_deg.map(|place| place[axis]))
+        };
+        for pose in self.legs.iter_mut().flat_map(|leg| &mut leg.poses) {
+            [pose.lon_deg, pose.lat_deg] = place(pose.x_m, pose.y_m);
+        }
+        if let Some(turning) = &mut self.turning_point {
+            [turning.lon_deg, turning.lat_deg] = place(turning.x_m, turning.y_m);
+        }
+        self
+    }
+}
+
 fn charged_poses(leg: &Leg) -> Vec<ChargedPose> {
     let poses = leg.plan.route.poses.iter().skip(1).zip(&leg.passages);
     let charged = poses.map(|(pose, passage)| ChargedPose {
         x_m: pose.x_m,
         y_m: pose.y_m,
+        lon_deg: None,
+        lat_deg: None,
         z_m: pose.z_m,
         heading_rad: pose.heading_rad,
         t_s: passage.t_s,
@@ -378,6 +412,8 @@ impl From<&TurningPoint> for TurningAnswer {
         TurningAnswer {
             x_m: t.x_m,
             y_m: t.y_m,
+            lon_deg: None,
+            lat_deg: None,
             distance_m: t.distance_m,
             charge: t.charge,
             homeward_energy_j: t.homeward_j,

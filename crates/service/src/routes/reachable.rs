@@ -12,11 +12,12 @@ use model::PowerModel;
 use planner::{Patience, Planner};
 use routing::{Kind, Polygon, Reach, Waypoint, available_j, reach};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, io::geotiff};
+use serde_json::json;
+use terrain::{MapFile, Warning, crs::Earth, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, no_plan_over, with_planner},
     robots::RobotChoice,
 };
 use crate::{
@@ -24,6 +25,7 @@ use crate::{
     accept::preferred,
     answer::Pieces,
     body::JsonBody,
+    place::Place,
     problem::{Problem, ProblemType},
 };
 
@@ -82,8 +84,16 @@ pub struct ReachableAnswer {
     /// Always `FeatureCollection`.
     #[serde(rename = "type")]
     pub kind: String,
+    /// The system of the coordinates, as GeoJSON had it before RFC 7946, null where nothing is known of it; absent where they are
+    /// longitude and latitude of WGS 84.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<Object>)]
+    pub crs: Option<serde_json::Value>,
     /// A contour for each energy, in the order of the request.
     pub features: Vec<ContourFeature>,
+    /// Doubts about the map.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// A contour.
@@ -224,6 +234,10 @@ pub struct Found {
     pub reach: Reach,
     kind: KindName,
     energies_j: Vec<(f64, Option<f64>)>,
+    warnings: Vec<Warning>,
+    /// Where on earth the map lies, if it says so.
+    earth: Option<Earth>,
+    crs: Option<String>,
 }
 
 impl Found {
@@ -239,21 +253,37 @@ impl Found {
             KindName::Homeward => Kind::Homeward,
             KindName::OutAndBack => Kind::OutAndBack,
         };
-        let place = Waypoint::from(&request.start);
-        let reach = reach(planner, &place, kind, most_j, request.snap_radius_m, patience)
-            .map_err(|error| Problem::no_routing(&error))?;
-        Ok(Found { reach, kind: request.kind, energies_j })
+        let terrain = &planner.lattice().terrain;
+        let mut start = request.start;
+        start.settle(terrain, "/start")?;
+        let place = Waypoint::from(&start);
+        let place_m = [start.x_m, start.y_m];
+        let reach =
+            reach(planner, &place, kind, most_j, request.snap_radius_m, patience).map_err(|error| {
+                match &error {
+                    routing::Error::Planner(error) => no_plan_over(planner, [place_m, place_m], error),
+                    other => Problem::no_routing(other),
+                }
+            })?;
+        let (warnings, crs) = (terrain.warnings().to_vec(), terrain.crs.clone());
+        Ok(Found { reach, kind: request.kind, energies_j, warnings, earth: terrain.earth().ok(), crs })
     }
 
     /// Writes the contours as GeoJSON, of which one at a time is in memory.
     fn write_contours(&self, out: &mut dyn Write, patience: &Patience) -> Result<(), Problem> {
-        out.write_all(br#"{"type":"FeatureCollection","features":["#)?;
+        out.write_all(br#"{"type":"FeatureCollection","#)?;
+        if let Some(crs) = self.member_crs() {
+            write!(out, "\"crs\":{crs},")?;
+        }
+        out.write_all(br#""features":["#)?;
         for (index, energy) in self.energies_j.iter().enumerate() {
             out.write_all(if index > 0 { b"," } else { b"" })?;
             let contour = self.contour(energy, patience)?;
             serde_json::to_writer(&mut *out, &contour).map_err(io::Error::from)?;
         }
-        Ok(out.write_all(b"]}")?)
+        out.write_all(br#"],"warnings":"#)?;
+        serde_json::to_writer(&mut *out, &self.warnings).map_err(io::Error::from)?;
+        Ok(out.write_all(b"}")?)
     }
 
     /// The contours as GeoJSON.
@@ -263,7 +293,12 @@ impl Found {
     pub fn contours(&self, patience: &Patience) -> Result<ReachableAnswer, Problem> {
         let features = self.energies_j.iter().map(|energy| self.contour(energy, patience));
         let features = features.collect::<Result<_, Problem>>()?;
-        Ok(ReachableAnswer { kind: "FeatureCollection".to_owned(), features })
+        Ok(ReachableAnswer {
+            kind: "FeatureCollection".to_owned(),
+            crs: self.member_crs(),
+            features,
+            warnings: self.warnings.clone(),
+        })
     }
 
     /// The ground within an energy, which may stand for a charge.
@@ -279,10 +314,30 @@ impl Found {
             kind: "Feature".to_owned(),
             geometry: ContourGeometry {
                 kind: "MultiPolygon".to_owned(),
-                coordinates: polygons.into_iter().map(rings).collect(),
+                coordinates: polygons.into_iter().map(|polygon| self.rings(polygon)).collect(),
             },
             properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
         })
+    }
+
+    /// The rings of a polygon, in longitude and latitude where the map says where on earth it lies, else in its metres.
+    fn rings(&self, polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
+        let mut rings: Vec<_> = std::iter::once(polygon.exterior).chain(polygon.holes).collect();
+        if let Some(earth) = &self.earth {
+            let all_deg: Option<Vec<Vec<[f64; 2]>>> = rings
+                .iter()
+                .map(|ring| ring.iter().map(|place_m| earth.place_deg(*place_m).ok()).collect())
+                .collect();
+            rings = all_deg.unwrap_or(rings);
+        }
+        rings
+    }
+
+    /// The system that the coordinates of contours are in, as GeoJSON had it before RFC 7946: absent where they are longitude and
+    /// latitude, null where nothing is known of it.
+    fn member_crs(&self) -> Option<serde_json::Value> {
+        let named = |name: &String| json!({ "type": "name", "properties": { "name": name } });
+        self.earth.is_none().then(|| json!(self.crs.as_ref().map(named)))
     }
 
     /// The least energy of every cell as a GeoTIFF [J].
@@ -294,8 +349,4 @@ impl Found {
         geotiff::write(&self.reach.grid, &energy_j)
             .map_err(|error| Problem::new(ProblemType::Internal, format!("the raster: {error}")))
     }
-}
-
-fn rings(polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
-    std::iter::once(polygon.exterior).chain(polygon.holes).collect()
 }

@@ -1,94 +1,95 @@
-//! The ESRI ASCII grid: a header of six lines, then rows from the north.
+//! The ESRI ASCII grid: a header of some lines, then rows from the north.
 
-use crate::{Error, Grid, Terrain};
+mod error;
+mod header;
+mod notation;
 
-/// Header fields, all but the last of them required.
-struct Header {
-    columns: u64,
-    rows: u64,
-    origin_m: [f64; 2],
-    cell_size_m: f64,
-    nodata: Option<f64>,
-}
+pub use self::error::AsciiError;
+use self::{header::Header, notation::Notation};
+use super::{Options, degrees::Coordinates};
+use crate::{Error, Grid, Terrain, fill_value};
 
-/// Reads an ESRI ASCII grid; `xllcorner` and `xllcenter` both place it, `NODATA_value` marks unknown cells.
+/// Reads an ESRI ASCII grid. Header lines come in any order, `xllcorner` and `xllcenter` both place the grid, `dx` and `dy` may
+/// stand for `cellsize` where they are equal. Cells of `NODATA_value`, of the options' nodata, and `nan` or `null` are unknown.
+/// Decimal commas are read where they can be nothing else.
 ///
 /// # Errors
-/// The line of a header or value that cannot be right, or the count when values are missing.
-pub fn read(text: &str) -> Result<Terrain, Error> {
-    let mut lines = text.lines().enumerate().peekable();
-    let header = read_header(&mut lines)?;
-    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size_m, header.origin_m)?;
-    let mut from_north: Vec<f64> = Vec::with_capacity(grid.cells().min(text.len() / 2 + 1));
-    for (index, line) in lines {
-        for (position, word) in line.split_ascii_whitespace().enumerate() {
-            let value: f64 = word.parse().map_err(|_| Error::AsciiNumber {
-                line: index + 1,
-                column: position + 1,
-                found: excerpt(word),
-            })?;
-            let is_nodata =
-                header.nodata.is_some_and(|mark| value == mark || (mark.is_nan() && value.is_nan()));
-            if value.is_nan() && !is_nodata {
-                return Err(Error::AsciiNumber {
-                    line: index + 1,
-                    column: position + 1,
-                    found: excerpt(word),
-                });
+/// The line of a header or value that cannot be right, the count when values are missing, or coordinates in degrees.
+pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
+    let notation = Notation::of(text)?;
+    let header = Header::read(text, notation)?;
+    let coordinates = Coordinates {
+        origin: header.origin,
+        cell_size: header.cell_size,
+        rows: header.rows,
+        columns: header.columns,
+    };
+    coordinates.refuse_degrees("asc")?;
+    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size, header.origin).map_err(
+        |error| match error {
+            Error::CellSize { value, min, max } => AsciiError::CellSize { value, min, max }.into(),
+            Error::Origin { axis, value, limit } => AsciiError::Corner { axis, value, limit }.into(),
+            other => other,
+        },
+    )?;
+    let values = Values {
+        notation,
+        marks: [header.nodata, options.nodata_m.filter(|mark| !Terrain::holds(*mark))],
+        grid: &grid,
+    };
+    let from_north = values.read(text, header.lines)?;
+    let terrain = Terrain::new(grid, &south_up(&grid, &from_north)).map_err(|error| match error {
+        Error::AllUnknown => AsciiError::AllUnknown.into(),
+        other => other,
+    })?;
+    Ok(match coordinates.unit_warning() {
+        Some(warning) => terrain.with_warning(warning),
+        None => terrain,
+    })
+}
+
+/// How the values of a grid are to be read.
+struct Values<'a> {
+    notation: Notation,
+    /// Values of unknown cells.
+    marks: [Option<f64>; 2],
+    grid: &'a Grid,
+}
+
+impl Values<'_> {
+    /// The values below so many lines of header, NaN where unknown.
+    fn read(&self, text: &str, header_lines: usize) -> Result<Vec<f64>, AsciiError> {
+        let expected = self.grid.cells();
+        // A value takes a digit and a blank at least.
+        let mut values = Vec::with_capacity(expected.min(text.len() / 2 + 1));
+        for (index, line) in text.lines().enumerate().skip(header_lines) {
+            for (position, word) in line.split_ascii_whitespace().enumerate() {
+                values.push(self.value(word, (index + 1, position + 1))?);
             }
-            from_north.push(if is_nodata { f64::NAN } else { value });
+        }
+        match values.len() {
+            found if found == expected => Ok(values),
+            found => Err(AsciiError::Count { found, expected }),
         }
     }
-    if from_north.len() != grid.cells() {
-        return Err(Error::AsciiCount { found: from_north.len(), expected: grid.cells() });
+
+    fn value(&self, word: &str, (line, column): (usize, usize)) -> Result<f64, AsciiError> {
+        let value = self.notation.number(word);
+        let value = value.ok_or_else(|| AsciiError::Number { line, column, found: excerpt(word) })?;
+        if self.marks.iter().flatten().any(|mark| fill_value::is_mark(value, *mark)) {
+            return Ok(f64::NAN);
+        }
+        if value.is_nan() || Terrain::holds(value) || fill_value::is_never_ground(value) {
+            return Ok(value);
+        }
+        let (min, max) = (Terrain::LOWEST_M, Terrain::HIGHEST_M);
+        Err(AsciiError::Elevation { line, column, value, min, max })
     }
-    Terrain::new(grid, &south_up(&grid, &from_north))
 }
 
 /// Rows from the south out of rows from the north.
 pub(crate) fn south_up(grid: &Grid, from_north: &[f64]) -> Vec<f64> {
     from_north.chunks(grid.columns).rev().flatten().copied().collect()
-}
-
-fn read_header<'a>(
-    lines: &mut std::iter::Peekable<impl Iterator<Item = (usize, &'a str)>>,
-) -> Result<Header, Error> {
-    let (_, columns) = field(lines, "ncols", &["ncols"])?;
-    let (_, rows) = field(lines, "nrows", &["nrows"])?;
-    let (x_key, x_m) = field(lines, "xllcorner", &["xllcorner", "xllcenter"])?;
-    let (y_key, y_m) = field(lines, "yllcorner", &["yllcorner", "yllcenter"])?;
-    let (_, cell_size_m) = field(lines, "cellsize", &["cellsize"])?;
-    let nodata = match lines.peek() {
-        Some((_, line)) if line.to_ascii_lowercase().trim_start().starts_with("nodata_value") => {
-            Some(field(lines, "NODATA_value", &["nodata_value"])?.1)
-        }
-        _ => None,
-    };
-    let corner = |key: &str, value: f64| {
-        if key.ends_with("center") { value - cell_size_m / 2.0 } else { value }
-    };
-    Ok(Header {
-        columns: columns.max(0.0) as u64,
-        rows: rows.max(0.0) as u64,
-        origin_m: [corner(x_key, x_m), corner(y_key, y_m)],
-        cell_size_m,
-        nodata,
-    })
-}
-
-fn field<'a>(
-    lines: &mut impl Iterator<Item = (usize, &'a str)>,
-    expected: &'static str,
-    keys: &[&'static str],
-) -> Result<(&'static str, f64), Error> {
-    let (index, line) = lines.next().unwrap_or((0, "end of file"));
-    let wrong = || Error::AsciiHeader { line: index + 1, expected, found: excerpt(line) };
-    let mut words = line.split_ascii_whitespace();
-    let word = words.next().ok_or_else(wrong)?.to_ascii_lowercase();
-    let key = keys.iter().find(|key| **key == word).ok_or_else(wrong)?;
-    let value: f64 = words.next().and_then(|v| v.parse().ok()).ok_or_else(wrong)?;
-    let whole = !matches!(*key, "ncols" | "nrows") || (value.fract() == 0.0 && value < 1e12);
-    if whole && words.next().is_none() { Ok((key, value)) } else { Err(wrong()) }
 }
 
 fn excerpt(text: &str) -> String {
@@ -98,7 +99,11 @@ fn excerpt(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Cell;
+    use crate::{Cell, WarningKind};
+
+    fn read(text: &str) -> Result<Terrain, Error> {
+        super::read(text, &Options::default())
+    }
 
     const SMALL: &str = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 0.5\nNODATA_value -9999\n\
                          1 2 3\n4 -9999 6\n";
@@ -125,20 +130,83 @@ mod tests {
     }
 
     #[test]
+    fn header_lines_come_in_any_order_and_cells_may_have_two_edges() {
+        let other = "nrows 2\nncols 3\nNODATA_value -9999\ndy 0.5\ndx 0.5\n\nyllcorner 20\nxllcorner 10\n1 2 3\n4 -9999 6\n";
+        assert_eq!(read(other).unwrap().content_id(), read(SMALL).unwrap().content_id());
+        let oblong = read(&other.replace("dy 0.5", "dy 0.25")).unwrap_err().to_string();
+        assert!(oblong.contains("square") && oblong.contains("gdalwarp -tr 0.25 0.25"), "{oblong}");
+    }
+
+    #[test]
+    fn unknown_cells_are_known_by_every_mark_that_programs_write() {
+        for (header, cell) in [
+            ("-9999", "-9999.0"),
+            ("-9999", "nan"),
+            ("-9999.000", "-9999"),
+            ("null", "null"),
+            ("nan", "-nan"),
+            ("-3.4028234663852886e+38", "-3.40282e+38"),
+            ("-3.4028235e+38", "-3.4028234663852886e+38"),
+        ] {
+            let text = SMALL.replace("-9999 6", &format!("{cell} 6"));
+            let text = text.replace("NODATA_value -9999", &format!("NODATA_value {header}"));
+            let terrain = read(&text).unwrap();
+            assert_eq!(terrain.elevation_m(Cell { row: 0, column: 1 }), None, "{header}, {cell}");
+            assert!(
+                terrain.warnings().iter().all(|w| w.kind == WarningKind::UnknownUnit),
+                "{header}, {cell}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_fill_value_that_no_header_marks_is_unknown_and_said() {
+        let terrain = read(&SMALL.replace("NODATA_value -9999\n", "")).unwrap();
+        assert_eq!(terrain.elevation_m(Cell { row: 0, column: 1 }), None);
+        let said = terrain.warnings().iter().find(|w| w.kind == WarningKind::UnmarkedNodata).unwrap();
+        assert!(said.detail.contains("1 cell holds -9999"), "{}", said.detail);
+    }
+
+    #[test]
+    fn decimal_commas_are_read_and_doubtful_ones_refused() {
+        let commas = SMALL.replace("0.5", "0,5").replace("1 2 3", "1,25 2,0 3");
+        let terrain = read(&commas).unwrap();
+        assert_eq!(terrain.elevation_m(Cell { row: 1, column: 0 }), Some(1.25));
+        let doubtful = read(&SMALL.replace("1 2 3", "1,250 2 3")).unwrap_err().to_string();
+        assert!(doubtful.contains("line 7") && doubtful.contains("decimal points"), "{doubtful}");
+    }
+
+    #[test]
+    fn degrees_are_refused_with_the_command_that_mends() {
+        let globe = SMALL.replace("xllcorner 10", "xllcorner -180").replace("yllcorner 20", "yllcorner -90");
+        let fine = SMALL.replace("cellsize 0.5", "cellsize 0.000277777777778");
+        for (text, zone) in [(globe, "EPSG:32761"), (fine, "EPSG:32632")] {
+            let said = read(&text.replace("xllcorner 10", "xllcorner 9")).unwrap_err().to_string();
+            assert!(said.contains("degrees") && said.contains("gdalwarp") && said.contains(zone), "{said}");
+        }
+    }
+
+    #[test]
     fn bad_files_are_refused_by_line() {
         let long_row = SMALL.replace("1 2 3", "1 2 3 4");
         for (text, said) in [
             (SMALL.replace("4 -9999 6", "4 x 6"), "line 8, value 2: `x`"),
-            (SMALL.replace("4 -9999 6", "4 nan 6"), "line 8, value 2: `nan`"),
+            (SMALL.replace("4 -9999 6", "4 inf 6"), "line 8, value 2: `inf`"),
             (SMALL.replace("nrows 2", "rows 2"), "line 2"),
-            (SMALL.replace("cellsize 0.5", "cellsize"), "line 5"),
+            (SMALL.replace("nrows 2", "ncols 2"), "line 2: ncols stands in the header twice"),
+            (SMALL.replace("nrows 2\n", ""), "without `nrows`"),
+            (SMALL.replace("cellsize 0.5", "cellsize"), "line 5: cellsize"),
+            (SMALL.replace("cellsize 0.5", "cellsize 0.5 0.5"), "line 5: cellsize"),
+            (SMALL.replace("NODATA_value -9999", "NODATA_value none at all"), "line 6: NODATA_value"),
             (SMALL.replace("4 -9999 6\n", ""), "truncated"),
             (long_row, "7 values"),
-            (SMALL.replace("cellsize 0.5", "cellsize -2"), "cell_size_m"),
+            (SMALL.replace("cellsize 0.5", "cellsize -2"), "cellsize is -2"),
+            (SMALL.replace("xllcorner 10", "xllcorner 1e12"), "xllcorner is 1000000000000"),
             (SMALL.replace("ncols 3", "ncols 2.5"), "line 1"),
-            (SMALL.replace("ncols 3", "ncols -3"), "columns"),
-            (SMALL.replace("4 -9999 6", "4 5 6e99"), "elevation_m"),
-            (String::new(), "line 1"),
+            (SMALL.replace("ncols 3", "ncols -3"), "ncols is `-3`"),
+            (SMALL.replace("4 -9999 6", "4 5 6e7"), "line 8, value 3 is 60000000.0"),
+            (SMALL.replace("1 2 3\n4 -9999 6", "nan nan nan\nnan nan nan"), "NODATA_value"),
+            (String::new(), "without `cellsize`"),
         ] {
             let message = read(&text).unwrap_err().to_string();
             assert!(message.contains(said), "{text}\n  said: {message}");

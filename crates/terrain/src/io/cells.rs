@@ -6,23 +6,34 @@
 //! 4 bytes  "JPT1"
 //! u64 × 2  rows, columns
 //! f64 × 4  cell_size_m, x and y of the south-west corner [m], elevation that the others count from [m]
-//! u8       1: surfaces follow, 2: obstacles follow
+//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: a system follows, 8: filled cells follow, 16: warnings follow
 //! f32 each elevation above it, NaN where unknown [m]
 //! u16      how many surfaces, then each name as u32 length and UTF-8, then u8 each cell: its class
 //! u8 each  1 where there is an obstacle
+//! u8 each  1 where the elevation was filled in
+//! u32      length of the warnings, then as many bytes of them as JSON
+//! u32      length of the system's name or text, then its UTF-8
 //! ```
 
-use std::io::{self, Read, Write};
+use std::{
+    io::{self, Read, Write},
+    sync::Arc,
+};
 
-use crate::{Surfaces, Terrain};
+use crate::{Surfaces, Terrain, Warning};
 
 const MAGIC: &[u8; 4] = b"JPT1";
 const SURFACES: u8 = 1;
 const OBSTACLES: u8 = 2;
+const CRS: u8 = 4;
+const FILLED: u8 = 8;
+const WARNINGS: u8 = 16;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
-/// Longest name of a surface that is read [bytes].
+/// Longest name of a surface or system that is read [bytes].
 const LONGEST_NAME: u32 = 1 << 16;
+/// Longest warnings that are read [bytes]; escapes of JSON make six bytes of one at most.
+const LONGEST_WARNINGS: u32 = (Warning::MOST * (100 + 6 * Warning::LONGEST_DETAIL)) as u32;
 
 /// Writes a map.
 ///
@@ -38,7 +49,10 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
         to.write_all(&number.to_le_bytes())?;
     }
     let layers = terrain.surfaces.as_ref().map_or(0, |_| SURFACES)
-        | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES);
+        | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES)
+        | terrain.filled.as_ref().map_or(0, |_| FILLED)
+        | if terrain.warnings.is_empty() { 0 } else { WARNINGS }
+        | terrain.crs.as_ref().map_or(0, |_| CRS);
     to.write_all(&[layers])?;
     for chunk in terrain.relative_m.chunks(CHUNK_CELLS) {
         let bytes: Vec<u8> = chunk.iter().flat_map(|z| z.to_le_bytes()).collect();
@@ -47,18 +61,30 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
     if let Some(surfaces) = &terrain.surfaces {
         to.write_all(&(surfaces.names.len() as u16).to_le_bytes())?;
         for name in &surfaces.names {
-            to.write_all(&(name.len() as u32).to_le_bytes())?;
-            to.write_all(name.as_bytes())?;
+            write_text(name, &mut to)?;
         }
         to.write_all(&surfaces.class)?;
     }
-    if let Some(obstacle) = &terrain.obstacle {
-        for chunk in obstacle.chunks(CHUNK_CELLS) {
-            let bytes: Vec<u8> = chunk.iter().map(|&o| u8::from(o)).collect();
+    for flags in [&terrain.obstacle, &terrain.filled].into_iter().flatten() {
+        for chunk in flags.chunks(CHUNK_CELLS) {
+            let bytes: Vec<u8> = chunk.iter().map(|&flag| u8::from(flag)).collect();
             to.write_all(&bytes)?;
         }
     }
+    if !terrain.warnings.is_empty() {
+        let text = serde_json::to_vec(&*terrain.warnings)?;
+        to.write_all(&(text.len() as u32).to_le_bytes())?;
+        to.write_all(&text)?;
+    }
+    if let Some(crs) = &terrain.crs {
+        write_text(crs, &mut to)?;
+    }
     to.flush()
+}
+
+fn write_text(text: &str, to: &mut impl Write) -> io::Result<()> {
+    to.write_all(&(text.len() as u32).to_le_bytes())?;
+    to.write_all(text.as_bytes())
 }
 
 /// Reads what [`write`] wrote.
@@ -77,7 +103,7 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
     let z = bytes(&mut from, 4 * grid.cells())?;
     let relative_m: Vec<f32> = z.as_chunks().0.iter().map(|z| f32::from_le_bytes(*z)).collect();
     drop(z);
-    let mut terrain = Terrain { grid, base_m, relative_m: relative_m.into(), surfaces: None, obstacle: None };
+    let mut terrain = Terrain::of_relative(grid, base_m, relative_m);
     let cells = terrain.grid.cells();
     if layers & SURFACES != 0 {
         let count = u16::from_le_bytes(array(&mut from)?);
@@ -89,15 +115,33 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
         terrain = terrain.with_surfaces(Surfaces { names, class });
     }
     if layers & OBSTACLES != 0 {
-        terrain = terrain.with_obstacles(bytes(&mut from, cells)?.into_iter().map(|o| o != 0).collect());
+        terrain = terrain.with_obstacles(flags(&mut from, cells)?);
+    }
+    if layers & FILLED != 0 {
+        terrain = terrain.with_filled(flags(&mut from, cells)?);
+    }
+    if layers & WARNINGS != 0 {
+        let length = u32::from_le_bytes(array(&mut from)?);
+        if length > LONGEST_WARNINGS {
+            return Err(invalid("its warnings are too long"));
+        }
+        let text = bytes(&mut from, length as usize)?;
+        terrain.warnings = Arc::new(serde_json::from_slice(&text).map_err(invalid)?);
+    }
+    if layers & CRS != 0 {
+        terrain.crs = Some(name(&mut from)?);
     }
     Ok(terrain)
+}
+
+fn flags(from: &mut impl Read, cells: usize) -> io::Result<Vec<bool>> {
+    Ok(bytes(from, cells)?.into_iter().map(|flag| flag != 0).collect())
 }
 
 fn name(from: &mut impl Read) -> io::Result<String> {
     let length = u32::from_le_bytes(array(from)?);
     if length > LONGEST_NAME {
-        return Err(invalid("a surface's name is too long"));
+        return Err(invalid("a name is too long"));
     }
     String::from_utf8(bytes(from, length as usize)?).map_err(invalid)
 }
@@ -122,7 +166,7 @@ fn invalid(why: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> io::Erro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Grid;
+    use crate::{Grid, WarningKind};
 
     fn layered() -> Terrain {
         let grid = Grid { rows: 3, columns: 4, cell_size_m: 0.1, origin_m: [1e6, -0.3] };
@@ -136,6 +180,11 @@ mod tests {
             .with_obstacles((0..12).map(|i| i == 7).collect())
     }
 
+    fn warned() -> Terrain {
+        let filled = (0..12).map(|i| i == 3).collect();
+        layered().with_filled(filled).with_warning(Warning::new(WarningKind::FilledVoids, "1 cell \"é\""))
+    }
+
     fn written(terrain: &Terrain) -> Vec<u8> {
         let mut bytes = Vec::new();
         write(terrain, &mut bytes).unwrap();
@@ -146,17 +195,18 @@ mod tests {
     fn what_is_read_back_is_the_same_map_to_the_last_bit() {
         let plain =
             Terrain::new(Grid { rows: 1, columns: 2, cell_size_m: 1.0, origin_m: [0.0; 2] }, &[0.1, 0.3]);
-        for terrain in [layered(), plain.unwrap()] {
+        for terrain in [layered(), warned(), plain.unwrap()] {
             let bytes = written(&terrain);
             let again = read(&bytes[..]).unwrap();
             assert_eq!(again.content_id(), terrain.content_id());
+            assert_eq!(again.warnings(), terrain.warnings());
             assert_eq!(written(&again), bytes);
         }
     }
 
     #[test]
     fn bytes_that_break_off_anywhere_are_refused() {
-        let bytes = written(&layered());
+        let bytes = written(&warned());
         for end in 0..bytes.len() {
             assert!(read(&bytes[..end]).is_err(), "{end} bytes");
         }

@@ -9,7 +9,7 @@ pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{Error, Terrain};
+use crate::{Error, Terrain, Warning, crs::Crs};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -28,7 +28,12 @@ pub struct MapFile {
     /// Number of columns.
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub columns: u64,
-    /// Elevation by row and column, −1000 to 9000 or null [m].
+    /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
+    /// Default: not known.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(example = "EPSG:26915"))]
+    pub crs: Option<String>,
+    /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
     pub elevation_m: Layer<Vec<f64>>,
     /// Surface names by row and column; null means the robot's default surface. Default: none named.
@@ -39,6 +44,14 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
     pub obstacle: Option<Layer<Vec<bool>>>,
+    /// Cells by row and column whose elevation was worked out from the ground around a hole. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Vec<Vec<bool>>>))]
+    pub filled: Option<Layer<Vec<bool>>>,
+    /// Doubts about the map and what was done to it, which answers repeat. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_items = 32))]
+    pub warnings: Vec<Warning>,
 }
 
 impl MapFile {
@@ -62,6 +75,7 @@ impl TryFrom<MapFile> for Terrain {
 
     fn try_from(file: MapFile) -> Result<Self, Error> {
         let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
+        let crs = file.crs.map(Crs::of_metres).transpose()?;
         let shape = (grid.rows, grid.columns);
         let mut terrain = Terrain::new(grid, &file.elevation_m.shaped("elevation_m", shape)?)?;
         if let Some(surface) = file.surface {
@@ -69,6 +83,20 @@ impl TryFrom<MapFile> for Terrain {
         }
         if let Some(obstacle) = file.obstacle {
             terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
+        }
+        terrain.crs = crs;
+        if let Some(filled) = file.filled {
+            terrain = terrain.with_filled(filled.shaped("filled", shape)?);
+        }
+        if file.warnings.len() > Warning::MOST {
+            return Err(Error::TooManyWarnings { found: file.warnings.len(), limit: Warning::MOST });
+        }
+        for (index, warning) in file.warnings.into_iter().enumerate() {
+            let (found, limit) = (warning.detail.len(), Warning::LONGEST_DETAIL);
+            if found > limit {
+                return Err(Error::LongWarning { index, found, limit });
+            }
+            terrain = terrain.with_warning(warning);
         }
         Ok(terrain)
     }
@@ -102,8 +130,23 @@ mod tests {
     }
 
     #[test]
+    fn a_coordinate_reference_system_is_kept_and_must_be_one_of_metres() {
+        let with = |crs: &str| {
+            format!(r#"{{"cell_size_m": 1, "crs": {crs}, "rows": 1, "columns": 1, "elevation_m": [[1]]}}"#)
+        };
+        for crs in [r#""EPSG:26915""#, r#""LOCAL_CS[\"yard\",UNIT[\"metre\",1]]""#] {
+            let terrain = read(&with(crs)).unwrap();
+            let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
+            assert!(String::from_utf8(again).unwrap().contains(&format!(r#""crs":{crs}"#)));
+        }
+        assert!(refused(&with(r#""EPSG:4326""#)).contains("crs is `EPSG:4326`"));
+        assert!(refused(&with(r#""Minnesota""#)).contains("crs is `Minnesota`"));
+    }
+
+    #[test]
     fn a_map_survives_a_round_trip() {
-        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]]}"#;
+        let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]],
+                       "filled": [[true, false]], "warnings": [{"kind": "filled-voids", "detail": "1 \"cell\""}]}"#;
         let terrain = read(text).unwrap();
         let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();
         assert_eq!(read(std::str::from_utf8(&again).unwrap()).unwrap().content_id(), terrain.content_id());

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use planner::{Plan, Pose, Snap};
 use serde::{Deserialize, Serialize};
+use terrain::{Terrain, Warning};
 use utoipa::ToSchema;
 
 /// A path with its predicted energy.
@@ -37,6 +38,12 @@ pub struct PlanAnswer {
     pub snapped: Snapped,
     /// What the search did.
     pub search: SearchAnswer,
+    /// Coordinate reference system of the map, `EPSG:` and a code or WKT; absent where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Doubts about the map and about the path over it.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// A path that leaves the lattice.
@@ -57,6 +64,12 @@ pub struct RefinedAnswer {
 pub struct PoseAnswer {
     pub x_m: f64,
     pub y_m: f64,
+    /// Longitude on WGS 84; absent where the map does not say where on earth it lies [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lon_deg: Option<f64>,
+    /// Latitude on WGS 84 [°].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lat_deg: Option<f64>,
     pub z_m: f64,
     pub heading_rad: f64,
     pub t_s: f64,
@@ -130,6 +143,8 @@ impl From<&Plan> for PlanAnswer {
                 excess_at_most: plan.search.excess,
                 timed_out: plan.search.timed_out,
             },
+            crs: None,
+            warnings: Vec::new(),
         }
     }
 }
@@ -139,6 +154,8 @@ impl From<&Pose> for PoseAnswer {
         PoseAnswer {
             x_m: p.x_m,
             y_m: p.y_m,
+            lon_deg: None,
+            lat_deg: None,
             z_m: p.z_m,
             heading_rad: p.heading_rad,
             t_s: p.t_s,
@@ -149,6 +166,28 @@ impl From<&Pose> for PoseAnswer {
             roll_rad: p.roll_rad,
             radius_m: p.radius_m,
         }
+    }
+}
+
+impl PlanAnswer {
+    /// The answer with longitude and latitude of its poses, where the map says where on earth it lies.
+    #[must_use]
+    pub(crate) fn placed(mut self, terrain: &Terrain) -> Self {
+        self.crs.clone_from(&terrain.crs);
+        place_all(&mut self.poses, terrain);
+        if let Some(refined) = &mut self.refined {
+            place_all(&mut refined.poses, terrain);
+        }
+        self
+    }
+}
+
+/// Sets longitude and latitude of poses, where the map says where on earth it lies.
+pub(crate) fn place_all(poses: &mut [PoseAnswer], terrain: &Terrain) {
+    let Ok(earth) = terrain.earth() else { return };
+    for pose in poses {
+        let place_deg = earth.place_deg([pose.x_m, pose.y_m]).ok();
+        [pose.lon_deg, pose.lat_deg] = [0, 1].map(|axis| place_deg.map(|place| place[axis]));
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) async fn with_planner<T: Send + 'static>(
                         .and_then(|planner| answer(&planner, &request, patience))
                 }
                 (None, Some(file)) => {
-                    let terrain = terrain_from(file, "/map")?;
+                    let terrain = terrain_from(file, &own.limits().map_options(), "/map")?;
                     large(&terrain)
                         .and_then(|()| request.planner(&terrain, patience))
                         .and_then(|planner| answer(&planner, &request, patience))

@@ -2,6 +2,12 @@
 import { ask, send } from "./ask";
 import { upload } from "./upload";
 
+/** A doubt about a map or a path over it, in a sentence. */
+export interface Warning {
+  kind: string;
+  detail: string;
+}
+
 export interface MapSummary {
   id: string;
   rows: number;
@@ -11,6 +17,7 @@ export interface MapSummary {
   elevation_range_m: [number, number];
   passable_fraction: number;
   surfaces: string[];
+  warnings: Warning[];
 }
 
 /** Cells of a map, row by row from the south-west corner. */

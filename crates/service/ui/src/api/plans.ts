@@ -1,4 +1,5 @@
 /** What `/v1/compare` and `/v1/plan` take and answer; names are those of /openapi.json. */
+import type { Warning } from "./maps";
 import { ask, type Asking } from "./ask";
 import type { Robot } from "./robots";
 
@@ -41,6 +42,7 @@ export interface Plan {
   poses: Pose[];
   snapped: { start: { distance_m: number }; goal: { distance_m: number } };
   search: { bound: number | null; optimal: boolean; timed_out: boolean };
+  warnings: Warning[];
 }
 
 /** The objectives, in the order in which they are shown. */

@@ -5,6 +5,7 @@ import { clock, energy, energyUnit, metres, percent, type EnergyUnit } from "../
 import { STYLE } from "../map/draw";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
+import { Warnings } from "../widgets/warnings";
 import { arrivalCharge } from "./charge";
 import { followsAnswer } from "./slow";
 import * as state from "./state";
@@ -54,6 +55,7 @@ export function Answer() {
         </table>
       </div>
       <Charge plan={plans[state.focus.value]} />
+      <Warnings label="Doubts about the path" list={ofPath(plans[state.focus.value])} />
       <Proof />
     </section>
   );
@@ -210,4 +212,10 @@ function Proof() {
         ? `${near}, which follows.`
         : `${near}.`;
   return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
+}
+
+/** The doubts about a path that are not of its map, which stand beside the map. */
+function ofPath(plan: Plan) {
+  const ofMap = state.map.value?.warnings ?? [];
+  return plan.warnings.filter(({ kind }) => !ofMap.some((other) => other.kind === kind));
 }

@@ -2,6 +2,7 @@
 import { MapView } from "../map/map_view";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
+import { Warnings } from "../widgets/warnings";
 import { Answer } from "./answer";
 import { Charts } from "./charts";
 import { Downloads } from "./downloads";
@@ -21,6 +22,7 @@ export function PlanTab() {
         {!isEmpty && <MapBar />}
         {loadProblem.value && <ProblemCard problem={loadProblem.value} close={() => (loadProblem.value = null)} />}
         {sending.value !== null && <Progress label="Sending the map" share={sending.value < 1 ? sending.value : null} />}
+        <Warnings label="Doubts about the map" list={state.map.value?.warnings ?? []} />
         {isEmpty ? <FirstMap /> : <Ground />}
       </section>
       {!isEmpty && (

@@ -20,6 +20,7 @@ enum Layer {
     Elevation,
     Surface,
     Obstacle,
+    Filled,
 }
 
 impl JsonText {
@@ -32,16 +33,29 @@ impl JsonText {
         let grid = &self.terrain.grid;
         match layer {
             Layer::Elevation => format!(
-                "{{\"cell_size_m\":{},\"origin_m\":[{},{}],\"rows\":{},\"columns\":{},\"elevation_m\":[",
+                "{{\"cell_size_m\":{},\"origin_m\":[{},{}],{}\"rows\":{},\"columns\":{},\"elevation_m\":[",
                 number(grid.cell_size_m),
                 number(grid.origin_m[0]),
                 number(grid.origin_m[1]),
+                self.crs(),
                 grid.rows,
                 grid.columns
             ),
             Layer::Surface => ",\"surface\":[".to_owned(),
             Layer::Obstacle => ",\"obstacle\":[".to_owned(),
+            Layer::Filled => ",\"filled\":[".to_owned(),
         }
+    }
+
+    fn crs(&self) -> String {
+        let quoted = |crs: &String| format!("\"crs\":{},", serde_json::Value::from(crs.as_str()));
+        self.terrain.crs.as_ref().map(quoted).unwrap_or_default()
+    }
+
+    /// The end of the document.
+    fn tail(&self) -> String {
+        let warnings = serde_json::to_string(self.terrain.warnings()).unwrap_or_default();
+        if self.terrain.warnings().is_empty() { "}".into() } else { format!(",\"warnings\":{warnings}}}") }
     }
 
     fn value(&self, layer: Layer, index: usize) -> String {
@@ -57,22 +71,21 @@ impl JsonText {
                     |name| serde_json::Value::from(name.as_str()).to_string(),
                 )
             }
-            Layer::Obstacle => terrain
-                .obstacles()
-                .and_then(|cells| cells.get(index))
-                .is_some_and(|blocked| *blocked)
-                .to_string(),
+            Layer::Obstacle => flag(terrain.obstacles(), index),
+            Layer::Filled => flag(terrain.filled(), index),
         }
     }
 
     /// The layer after another that the map has.
     fn next_layer(&self, layer: Layer) -> Option<Layer> {
-        let has_obstacles = self.terrain.obstacles().is_some();
-        match layer {
-            Layer::Elevation if self.terrain.surfaces().is_some() => Some(Layer::Surface),
-            Layer::Elevation | Layer::Surface if has_obstacles => Some(Layer::Obstacle),
-            _ => None,
-        }
+        let has = |layer: &Layer| match layer {
+            Layer::Elevation => true,
+            Layer::Surface => self.terrain.surfaces().is_some(),
+            Layer::Obstacle => self.terrain.obstacles().is_some(),
+            Layer::Filled => self.terrain.filled().is_some(),
+        };
+        const ORDER: [Layer; 4] = [Layer::Elevation, Layer::Surface, Layer::Obstacle, Layer::Filled];
+        ORDER.into_iter().skip_while(|other| *other != layer).skip(1).find(has)
     }
 }
 
@@ -98,11 +111,16 @@ impl Iterator for JsonText {
             self.cell = 0;
             self.layer = self.next_layer(layer);
             if self.layer.is_none() {
-                text.push('}');
+                text.push_str(&self.tail());
             }
         }
         Some(text.into_bytes())
     }
+}
+
+/// A cell of a layer of flags.
+fn flag(cells: Option<&[bool]>, index: usize) -> String {
+    cells.and_then(|cells| cells.get(index)).is_some_and(|flag| *flag).to_string()
 }
 
 /// A finite number in the shortest form that reads back the same.
@@ -126,7 +144,8 @@ mod tests {
         let full = plain
             .clone()
             .with_surfaces(Surfaces::from_names(names).unwrap())
-            .with_obstacles((0..cells).map(|i| i % 5 == 0).collect());
+            .with_obstacles((0..cells).map(|i| i % 5 == 0).collect())
+            .with_filled((0..cells).map(|i| i % 7 == 0).collect());
         for terrain in [plain, full] {
             let pieces: Vec<Vec<u8>> = JsonText::of(&terrain).collect();
             assert!(pieces.len() > 1 && pieces.iter().all(|piece| piece.len() < 40 * PIECE_CELLS));

@@ -1,0 +1,159 @@
+//! From the body of a request to a map.
+
+use axum::{body::Bytes, extract::Request};
+use futures_util::{FutureExt, stream};
+use serde::Deserialize;
+use terrain::{Terrain, io};
+use utoipa::ToSchema;
+
+use crate::{
+    body::{Content, content_type, from_json},
+    problem::{Problem, ProblemType},
+    routes::maps::terrain_from,
+};
+
+/// Bytes of a cell while an ESRI ASCII grid is read: as it comes, from the south, and as it is kept.
+const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
+/// The same of a GeoTIFF: samples in double precision, what its mask shows, their interpolation onto other cells, and cells as
+/// they are kept.
+const TIFF_CELL_BYTES: u64 = 8 + 1 + 8 + 4;
+/// The same of a ROS map: a pixel of four colours in 16 bits, as it is decoded and as one colour, and what it stands for.
+const PIXEL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8 + 2;
+/// Bytes of a cell while holes are filled: two sums, two marks and its place in a hole.
+const FILLING_CELL_BYTES: u64 = 4 + 4 + 1 + 1 + 8;
+/// Parts of a form that are looked at.
+const MOST_PARTS: usize = 8;
+
+/// The two files of a ROS `map_server` map.
+#[derive(Debug, Deserialize, ToSchema)]
+#[allow(dead_code)]
+pub(crate) struct RosMapForm {
+    /// The YAML file, whose `image` need not be the name of the image that is sent.
+    #[schema(value_type = String, format = Binary)]
+    yaml: Vec<u8>,
+    /// The image: PGM, PNG or BMP, whatever its name.
+    #[schema(value_type = String, format = Binary)]
+    image: Vec<u8>,
+}
+
+/// The reader for a content type.
+pub(crate) enum MapReader {
+    Json,
+    Ascii,
+    GeoTiff,
+    /// A form with this boundary between its parts.
+    RosMap(String),
+}
+
+impl MapReader {
+    /// The reader for a request.
+    pub(crate) fn of(request: &Request) -> Result<Self, Problem> {
+        let kind = content_type(request);
+        Ok(match kind.as_str() {
+            "application/json" => MapReader::Json,
+            "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => MapReader::Ascii,
+            "image/tiff" | "image/geotiff" | "application/geotiff" => MapReader::GeoTiff,
+            "multipart/form-data" => {
+                let whole = request.headers().get(axum::http::header::CONTENT_TYPE);
+                let whole = whole.and_then(|value| value.to_str().ok()).unwrap_or_default();
+                let boundary = multer::parse_boundary(whole).map_err(|error| unreadable(&error))?;
+                MapReader::RosMap(boundary)
+            }
+            _ => {
+                let detail = format!(
+                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`"
+                );
+                return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
+            }
+        })
+    }
+
+    /// The map that a body holds.
+    pub(crate) fn read(&self, mut content: Content, options: &io::Options) -> Result<Terrain, Problem> {
+        let length = content.bytes.len() as u64;
+        let filling = options.fill_voids_m.map_or(0, |_| FILLING_CELL_BYTES);
+        let read = match self {
+            MapReader::Json => return terrain_from(content.parsed(from_json)?, options, ""),
+            MapReader::Ascii => {
+                let words = content.bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+                content.reserved.grow_to(length + (ASCII_CELL_BYTES + filling) * words.count() as u64)?;
+                io::read_bytes(io::Format::Ascii, &content.bytes, options)
+            }
+            MapReader::GeoTiff => {
+                let cells = io::geotiff::cells(&content.bytes).map_err(|error| invalid(&error))?;
+                let cells = cells.min(options.most_cells);
+                content.reserved.grow_to(length + (TIFF_CELL_BYTES + filling) * cells)?;
+                io::read_bytes(io::Format::GeoTiff, &content.bytes, options)
+            }
+            MapReader::RosMap(boundary) => {
+                let Content { bytes, mut reserved } = content;
+                let form = Form::read(bytes.into(), boundary)?;
+                let pixels = io::ros_map::pixels_of(&form.image).min(options.most_cells);
+                reserved.grow_to(length + (PIXEL_BYTES + filling) * pixels)?;
+                io::read_ros_map(&form.yaml, options, |_| Ok(form.image.to_vec()))
+            }
+        };
+        read.map_err(|error| invalid(&error))
+    }
+}
+
+/// The parts of a form, which share the memory of its body.
+struct Form {
+    yaml: Bytes,
+    image: Bytes,
+}
+
+impl Form {
+    fn read(body: Bytes, boundary: &str) -> Result<Self, Problem> {
+        // All of the body is there, so that nothing is waited for.
+        let parts = parts(body, boundary).now_or_never();
+        let parts =
+            parts.unwrap_or(Err(multer::Error::IncompleteStream)).map_err(|error| unreadable(&error))?;
+        let (mut yaml, mut image) = (None, None);
+        for (name, bytes) in parts {
+            match name.as_str() {
+                "yaml" => yaml = Some(bytes),
+                "image" => image = Some(bytes),
+                other => {
+                    let shown: String = other.chars().take(40).collect();
+                    return Err(form_problem(&format!(
+                        "the form has a part `{shown}`, but takes `yaml` and `image`"
+                    )));
+                }
+            }
+        }
+        let missing = |part: &str| {
+            form_problem(&format!(
+                "the form has no part `{part}`: send both files of the map, as by `curl -F yaml=@map.yaml -F image=@map.pgm`"
+            ))
+        };
+        Ok(Form { yaml: yaml.ok_or_else(|| missing("yaml"))?, image: image.ok_or_else(|| missing("image"))? })
+    }
+}
+
+/// Parts by name; of a form with more of them than are looked at, so many.
+async fn parts(body: Bytes, boundary: &str) -> Result<Vec<(String, Bytes)>, multer::Error> {
+    let body = stream::once(async { Ok::<Bytes, std::convert::Infallible>(body) });
+    let mut form = multer::Multipart::new(body, boundary);
+    let mut parts = Vec::new();
+    while let Some(part) = form.next_field().await? {
+        let name = part.name().unwrap_or_default().to_owned();
+        parts.push((name, part.bytes().await?));
+        if parts.len() == MOST_PARTS {
+            break;
+        }
+    }
+    Ok(parts)
+}
+
+fn unreadable(error: &multer::Error) -> Problem {
+    form_problem(&format!("the form cannot be read: {error}"))
+}
+
+fn form_problem(detail: &str) -> Problem {
+    Problem::new(ProblemType::InvalidRequest, detail)
+}
+
+fn invalid(error: &terrain::Error) -> Problem {
+    Problem::invalid_map(error, "")
+}

@@ -1,0 +1,78 @@
+//! What is doubtful about a path because of the map it lies on.
+
+use planner::Planner;
+use terrain::{Terrain, Warning, WarningKind};
+
+use super::{PlanAnswer, PlanRequest, PoseAnswer};
+
+/// Cells that are longer than so many wheelbases are said to be coarse: an order of magnitude, from which on a cell's one slope
+/// stands for ground that the robot climbs and descends many times over.
+const COARSE_WHEELBASES: f64 = 10.0;
+
+impl PlanAnswer {
+    /// The answer with its place on earth and doubts about the map and about this path over it.
+    pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest) -> Self {
+        let lattice = planner.lattice();
+        let mut answer = self.placed(&lattice.terrain);
+        answer.warnings = lattice.terrain.warnings().to_vec();
+        let own = [
+            coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m),
+            moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
+            filled_ground(&lattice.terrain, &answer.poses),
+        ];
+        answer.warnings.extend(own.into_iter().flatten());
+        answer
+    }
+}
+
+fn coarse_cells(terrain: &Terrain, wheelbase_m: f64) -> Option<Warning> {
+    let cell_size_m = terrain.grid.cell_size_m;
+    (cell_size_m > COARSE_WHEELBASES * wheelbase_m).then(|| {
+        let detail = format!(
+            "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell; use a finer map"
+        );
+        Warning::new(WarningKind::CoarseCells, detail)
+    })
+}
+
+/// A warning where the moves of the ends, at the path's energy per metre, come to more than the uncertainty that is stated.
+fn moved_ends(answer: &PlanAnswer, request: &PlanRequest, cell_size_m: f64) -> Option<Warning> {
+    let (start_m, goal_m) = (answer.snapped.start.distance_m, answer.snapped.goal.distance_m);
+    let apart_m = (request.goal.x_m - request.start.x_m).hypot(request.goal.y_m - request.start.y_m);
+    let moves =
+        format!("the start was moved by {start_m:.1} m and the goal by {goal_m:.1} m to centres of cells");
+    if answer.distance_m == 0.0 {
+        let is_asked = apart_m > request.goal.tolerance_m;
+        return is_asked.then(|| {
+            let detail = format!(
+                "{moves}, and both came to lie in one cell of {cell_size_m} m: the {apart_m:.1} m between them are in no figure of the answer; use a map of finer cells"
+            );
+            Warning::new(WarningKind::MovedEnds, detail)
+        });
+    }
+    let [low_j, high_j] = answer.energy_interval_j;
+    let missed_j = (start_m + goal_m) * answer.energy_j.abs() / answer.distance_m;
+    (missed_j > (high_j - low_j) / 2.0).then(|| {
+        let detail =
+            format!("{moves}, which matters more to the energy than the uncertainty that is stated of it");
+        Warning::new(WarningKind::MovedEnds, detail)
+    })
+}
+
+/// A warning where the path leads over ground that was filled in, with how much of it.
+fn filled_ground(terrain: &Terrain, poses: &[PoseAnswer]) -> Option<Warning> {
+    let filled = terrain.filled()?;
+    let is_filled = |pose: &PoseAnswer| {
+        let cell = terrain.grid.cell_at(pose.x_m, pose.y_m);
+        cell.and_then(|cell| filled.get(terrain.grid.index(cell))).is_some_and(|filled| *filled)
+    };
+    let over_m: f64 = poses
+        .array_windows()
+        .filter(|[from, to]| is_filled(from) || is_filled(to))
+        .map(|[from, to]| to.distance_m - from.distance_m)
+        .sum();
+    (over_m > 0.0).then(|| {
+        let detail = format!("{over_m:.1} m of the path lead over ground that was filled in, not measured");
+        Warning::new(WarningKind::FilledGround, detail)
+    })
+}

@@ -1,0 +1,93 @@
+//! Coordinate reference systems: what a name (`EPSG:32632`) or a text (WKT, `.prj`) says of a map's axes.
+//!
+//! A [`crate::Terrain`] keeps the name or text. Its x and y are the easting and northing of that system **in metres**, whatever unit
+//! the system itself has.
+
+mod earth;
+mod epsg;
+mod ground;
+mod mercator;
+mod unit;
+mod wkt;
+
+pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
+pub use self::{
+    earth::{Earth, EarthError},
+    epsg::vertical,
+    mercator::{GroundScale, Mercator, Spacing},
+    unit::{LinearUnit, by_epsg_code, by_name},
+};
+
+use crate::Error;
+
+/// A system's axes, as far as a map needs to know them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crs {
+    /// `EPSG:` and a code, or WKT; `None` where only some properties of it are known.
+    pub text: Option<String>,
+    /// Whether its axes are longitude and latitude.
+    pub is_geographic: bool,
+    /// Unit of its easting and northing, if it is projected and says so.
+    pub unit: Option<LinearUnit>,
+    /// Its projection, where that is a Mercator or equidistant cylindrical one, whose metres are no metres of the ground.
+    pub mercator: Option<Mercator>,
+    /// Unit and direction of its heights, if it has any.
+    pub vertical: Option<Vertical>,
+}
+
+/// Unit and direction of a vertical system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertical {
+    /// Unit of its numbers.
+    pub unit: LinearUnit,
+    /// Whether they grow downwards.
+    pub is_depth: bool,
+}
+
+/// Longest text that is looked at [bytes]; the longest of the EPSG registry has some 5 kB.
+const LONGEST_TEXT: usize = 1 << 16;
+
+impl Crs {
+    /// What `EPSG:code`, `EPSG:code+vertical code`, WKT (1 or 2) or the text of a `.prj` file says; `None` for any other text.
+    ///
+    /// ```
+    /// use terrain::crs::Crs;
+    /// let long_island = Crs::parse("EPSG:2263").unwrap();
+    /// assert!((long_island.unit.unwrap().metres - 1200.0 / 3937.0).abs() < 1e-12);
+    /// assert!(Crs::parse("EPSG:4326").unwrap().is_geographic);
+    /// assert!(Crs::parse("somewhere in Minnesota").is_none());
+    /// ```
+    pub fn parse(text: &str) -> Option<Self> {
+        let text = text.trim();
+        if text.len() > LONGEST_TEXT {
+            return None;
+        }
+        if let Some(codes) =
+            text.get(..5).filter(|head| head.eq_ignore_ascii_case("EPSG:")).map(|_| &text[5..])
+        {
+            let (code, vertical_code) = codes.split_once('+').map_or((codes, None), |(h, v)| (h, Some(v)));
+            let mut crs = Crs::from_epsg(code.parse().ok()?);
+            if let Some(code) = vertical_code {
+                crs.vertical = epsg::vertical(code.parse().ok()?);
+            }
+            return Some(crs);
+        }
+        wkt::parse(text)
+    }
+
+    /// The text of a system that a map in metres may be in.
+    ///
+    /// # Errors
+    /// A text that names no system, or one in degrees.
+    pub fn of_metres(text: String) -> Result<String, Error> {
+        match Crs::parse(&text) {
+            Some(crs) if !crs.is_geographic => Ok(text),
+            _ => Err(Error::Crs { found: text.chars().take(60).collect() }),
+        }
+    }
+
+    /// What the EPSG registry says of a code. Of a code that is not known here nothing but itself is known.
+    pub fn from_epsg(code: u32) -> Self {
+        epsg::horizontal(code)
+    }
+}

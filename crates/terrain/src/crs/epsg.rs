@@ -1,0 +1,129 @@
+//! What the EPSG registry says of a code: kind, unit, Mercator or not, heights or depths.
+//!
+//! The definitions come from `crs-definitions`; a table beside it has what is newer or what definitions of PROJ cannot hold.
+
+use super::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, by_name, mercator};
+
+/// Codes of Web Mercator outside the EPSG registry: Google's first, OSGeo's, and two of Esri.
+const WEB_MERCATORS: [u32; 4] = [900_913, 41_001, 102_100, 102_113];
+/// Codes of Esri's World Mercator on the ellipsoid: the earlier and the present one.
+const WORLD_MERCATORS: [u32; 2] = [54_004, 3395];
+
+/// Systems in other units than the metre that are newer than the definitions: first and last code, code of the unit (EPSG v12).
+const NEWER: [(u32, u32, u32); 10] = [
+    (3139, 3139, 9098),
+    (9748, 9749, 9003),
+    (10_481, 10_481, 9003),
+    (10_516, 10_516, 9003),
+    (10_622, 10_622, 9003),
+    (10_911, 10_916, 9003),
+    (10_980, 10_987, 9002),
+    (20_050, 20_050, 9002),
+    (22_300, 22_300, 9036),
+    (23_301, 23_333, 9003),
+];
+
+/// Heights in other units than the metre: code of the system, code of its unit (EPSG v12).
+const HEIGHTS: [(u32, u32); 10] = [
+    (5702, 9003),
+    (5754, 9095),
+    (6130, 9002),
+    (6131, 9002),
+    (6132, 9002),
+    (6360, 9003),
+    (8050, 9002),
+    (8052, 9003),
+    (8228, 9002),
+    (10_919, 9003),
+];
+
+/// Depths in other units than the metre.
+const DEPTHS: [(u32, u32); 6] =
+    [(5614, 9002), (6358, 9003), (6359, 9003), (8051, 9002), (8053, 9003), (8897, 9002)];
+
+/// Depths in metres: first and last code (EPSG v12).
+const METRE_DEPTHS: [(u32, u32); 23] = [
+    (5336, 5336),
+    (5612, 5612),
+    (5706, 5706),
+    (5715, 5715),
+    (5734, 5734),
+    (5739, 5739),
+    (5789, 5789),
+    (5831, 5831),
+    (5861, 5867),
+    (5873, 5873),
+    (6357, 6357),
+    (7976, 7976),
+    (8358, 8358),
+    (8378, 8378),
+    (9287, 9288),
+    (9672, 9672),
+    (10_150, 10_151),
+    (10_349, 10_349),
+    (10_364, 10_364),
+    (10_370, 10_379),
+    (10_547, 10_552),
+    (10_649, 10_650),
+    (10_678, 10_678),
+];
+
+/// The projected or geographic system with a code.
+pub(super) fn horizontal(code: u32) -> Crs {
+    let text = Some(format!("EPSG:{code}"));
+    if WEB_MERCATORS.contains(&code) {
+        let mercator = Some(mercator::WEB);
+        return Crs { text, unit: Some(LinearUnit::METRE), mercator, ..Crs::default() };
+    }
+    if WORLD_MERCATORS.contains(&code) {
+        let mercator = Some(mercator::WORLD);
+        return Crs { text, unit: Some(LinearUnit::METRE), mercator, ..Crs::default() };
+    }
+    if let Some((_, _, unit)) = NEWER.iter().find(|(first, last, _)| (first..=last).contains(&&code)) {
+        return Crs { text, unit: by_epsg_code(*unit), ..Crs::default() };
+    }
+    let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code);
+    let Some(definition) = definition else { return Crs { text, ..Crs::default() } };
+    let value = |key: &str| {
+        let mut words = definition.proj4.split_ascii_whitespace();
+        words.find_map(|word| word.strip_prefix('+')?.strip_prefix(key)?.strip_prefix('='))
+    };
+    if value("proj") == Some("longlat") {
+        return Crs { text, is_geographic: true, ..Crs::default() };
+    }
+    let unit = match value("to_meter").and_then(|metres| metres.parse().ok()) {
+        Some(metres) => Some(LinearUnit::of_metres(metres)),
+        None => value("units").map_or(Some(LinearUnit::METRE), by_proj_name),
+    };
+    Crs { text, unit, mercator: Mercator::from_proj(value), ..Crs::default() }
+}
+
+/// The unit that PROJ names so.
+fn by_proj_name(name: &str) -> Option<LinearUnit> {
+    match name {
+        "us-ch" => by_epsg_code(9033),
+        "us-mi" => by_epsg_code(9035),
+        "ch" => by_epsg_code(9097),
+        "link" => by_epsg_code(9098),
+        "kmi" => by_epsg_code(9030),
+        "mi" => by_epsg_code(9093),
+        "ind-ft" => by_epsg_code(9081),
+        "ind-yd" => by_epsg_code(9085),
+        other => by_name(other),
+    }
+}
+
+/// The vertical system with a code; one that is not listed counts heights in metres, as all others of the registry do.
+pub fn vertical(code: u32) -> Option<Vertical> {
+    let unit = |listed: &[(u32, u32)]| {
+        listed.iter().find(|(known, _)| *known == code).and_then(|(_, unit)| by_epsg_code(*unit))
+    };
+    if let Some(unit) = unit(&HEIGHTS) {
+        return Some(Vertical { unit, is_depth: false });
+    }
+    if let Some(unit) = unit(&DEPTHS) {
+        return Some(Vertical { unit, is_depth: true });
+    }
+    let is_depth = METRE_DEPTHS.iter().any(|(first, last)| (first..=last).contains(&&code));
+    Some(Vertical { unit: LinearUnit::METRE, is_depth })
+}

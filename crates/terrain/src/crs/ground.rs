@@ -1,0 +1,145 @@
+//! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
+
+use std::sync::Arc;
+
+use super::{Crs, Mercator};
+use crate::{
+    Error, Grid, Terrain, Warning, WarningKind,
+    io::degrees::{Coordinates, utm_epsg},
+    resample::Affine,
+};
+
+/// Largest displacement that a grid cannot tell: half a cell.
+pub(crate) const UNTOLD_CELLS: f64 = 0.5;
+
+/// Scale error that is left to maps in UTM, which has 0.9996 on a zone's meridian and 1.0010 at its edges (Snyder 1987, page 58).
+const UTM_SCALE_ERROR: f64 = 1e-3;
+
+/// Pixels of a raster.
+#[derive(Clone, Copy)]
+pub(crate) struct Size {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl Affine {
+    /// Where a raster of some size lies, in the unit of its coordinates.
+    pub(crate) fn coordinates(&self, size: Size) -> Coordinates {
+        let [west, south, ..] = self.bounds(size.columns, size.rows);
+        let [width, _] = self.edges();
+        Coordinates {
+            origin: [west, south],
+            cell_size: width,
+            rows: size.rows as u64,
+            columns: size.columns as u64,
+        }
+    }
+}
+
+/// Refuses coordinates in degrees; `ending` is that of the file's name. Here is the one place where such a raster could be warped to
+/// UTM instead.
+pub(crate) fn refuse_degrees(
+    affine: &Affine,
+    size: Size,
+    crs: &Crs,
+    ending: &'static str,
+) -> Result<(), Error> {
+    if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
+}
+
+/// Brings projected coordinates to metres of the ground: by the system's unit and, of a Mercator, by its scale. Returns the text of the
+/// system that they are in then. What was changed is added to the warnings.
+///
+/// # Errors
+/// A Mercator whose scale changes over the map by more than its cells can tell.
+pub(crate) fn to_ground(
+    affine: Affine,
+    size: Size,
+    crs: &Crs,
+    ending: &'static str,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Affine, Option<String>), Error> {
+    let metres = crs.unit.map_or(1.0, |unit| unit.metres);
+    let affine = affine.scaled(metres, metres);
+    match &crs.mercator {
+        Some(mercator) => mercator_to_ground(affine, size, mercator, (crs, ending), warnings),
+        None => Ok((affine, crs.text.clone())),
+    }
+}
+
+/// Brings a Mercator's metres to those of the ground, if one scale serves all the map.
+fn mercator_to_ground(
+    affine: Affine,
+    size: Size,
+    mercator: &Mercator,
+    (crs, ending): (&Crs, &'static str),
+    warnings: &mut Vec<Warning>,
+) -> Result<(Affine, Option<String>), Error> {
+    let [west, south, east, north] = affine.bounds(size.columns, size.rows);
+    let middle_m = [(west + east) / 2.0, (south + north) / 2.0];
+    let [at_south, scale, at_north] = [south, middle_m[1], north].map(|y_m| mercator.ground_scale(y_m));
+    let (columns, rows) = (size.columns as f64, size.rows as f64);
+    // Rows grow shorter towards a pole, by as much on either side of the middle; their distances do too.
+    let sideways = (at_north.east - at_south.east).abs() / scale.east * columns / 4.0;
+    let lengthways = (at_north.north - at_south.north).abs() / scale.north * rows / 8.0;
+    let name = crs.text.clone().unwrap_or_else(|| "of the file's own".into());
+    let displaced = sideways + lengthways;
+    if displaced.is_nan() || displaced > UNTOLD_CELLS {
+        let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
+        return Err(Error::MercatorScale {
+            crs: name,
+            south: at_south.east,
+            north: at_north.east,
+            ending,
+            epsg: utm_epsg(longitude_deg, latitude_deg),
+        });
+    }
+    let longest = columns.max(rows);
+    if (scale.east - 1.0).abs().max((scale.north - 1.0).abs()) <= UTM_SCALE_ERROR {
+        return Ok((affine, crs.text.clone()));
+    }
+    let mean = (scale.east * scale.north).sqrt();
+    let detail = format!(
+        "a metre of the projection ({name}) is {:.4} m of ground eastwards and {:.4} m northwards here: coordinates were multiplied by that",
+        scale.east, scale.north
+    );
+    warnings.push(Warning::new(WarningKind::ProjectionScale, detail));
+    if (scale.east / mean - 1.0).abs() * longest <= UNTOLD_CELLS {
+        return Ok((affine.scaled(mean, mean), mercator.scaled_wkt(mean)));
+    }
+    Ok((affine.scaled(scale.east, scale.north), None))
+}
+
+impl Terrain {
+    /// This ground with its grid, read as numbers of some system, brought to metres of the ground. Files whose system stands beside
+    /// them, as `.prj` does beside `.asc`, are placed so; `ending` is that of the file's name.
+    ///
+    /// # Errors
+    /// Degrees, or a Mercator that no one scale brings to the ground.
+    pub fn placed_in(mut self, crs: &Crs, ending: &'static str) -> Result<Self, Error> {
+        let Grid { rows, columns, cell_size_m: cell, origin_m: origin } = self.grid;
+        let size = Size { columns, rows };
+        let affine = Affine { origin, column: [cell, 0.0], row: [0.0, cell] };
+        refuse_degrees(&affine, size, crs, ending)?;
+        let mut warnings = Vec::new();
+        let (affine, text) = to_ground(affine, size, crs, ending, &mut warnings)?;
+        let [width_m, height_m] = affine.edges();
+        let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
+        if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
+            let [longitude_deg, latitude_deg] = mercator.place_deg(origin[0], origin[1]);
+            return Err(Error::MercatorScale {
+                crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
+                south: width_m / cell,
+                north: height_m / cell,
+                ending,
+                epsg: utm_epsg(longitude_deg, latitude_deg),
+            });
+        }
+        self.grid = Terrain::check_size(rows as u64, columns as u64, width_m, affine.origin)?;
+        self.crs = text;
+        // The system says what its unit is.
+        let kept = self.warnings.iter().filter(|warning| warning.kind != WarningKind::UnknownUnit).cloned();
+        self.warnings = Arc::new(kept.collect());
+        Ok(warnings.into_iter().fold(self, Terrain::with_warning))
+    }
+}

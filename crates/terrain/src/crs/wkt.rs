@@ -1,0 +1,261 @@
+//! Well-known text: of the tree that it writes, kind, unit, code and projection. Also the older `.prj` of Esri, a word a line.
+
+use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, mercator};
+
+/// Deepest nesting that is read; texts of the EPSG registry have 8.
+const DEEPEST: usize = 32;
+
+/// Systems made of others: of a horizontal one and a vertical one, or of one and its transformation.
+const COMPOUND: [&str; 4] = ["COMPD_CS", "COMPOUNDCRS", "BOUNDCRS", "SOURCECRS"];
+
+/// A keyword with what stands in its brackets.
+#[derive(Debug, Default)]
+struct Node<'a> {
+    keyword: &'a str,
+    words: Vec<&'a str>,
+    nodes: Vec<Node<'a>>,
+}
+
+/// What a text says; `None` if it is no WKT and no `.prj`.
+pub(super) fn parse(text: &str) -> Option<Crs> {
+    let Some((node, _)) = Node::read(text, 0) else { return older_prj(text) };
+    let mut crs = node.crs()?;
+    crs.text = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
+    if let Some(code) = node.horizontal().epsg_code() {
+        let of_code = Crs::from_epsg(code);
+        // The registry knows its projection by more than a name.
+        crs.mercator = crs.mercator.or(of_code.mercator);
+        crs.text = of_code.text;
+    }
+    Some(crs)
+}
+
+impl<'a> Node<'a> {
+    /// Reads a node and returns what follows it.
+    fn read(text: &'a str, depth: usize) -> Option<(Self, &'a str)> {
+        let text = text.trim_start();
+        let end = text.find(|c: char| !c.is_ascii_alphanumeric() && c != '_')?;
+        let (keyword, rest) = text.split_at(end);
+        let mut rest = rest.trim_start().strip_prefix(['[', '('])?;
+        if keyword.is_empty() || depth == DEEPEST {
+            return None;
+        }
+        let mut node = Node { keyword, ..Node::default() };
+        loop {
+            rest = rest.trim_start();
+            if let Some(quoted) = rest.strip_prefix('"') {
+                let (word, after) = quoted.split_once('"')?;
+                node.words.push(word);
+                rest = after;
+            } else if let Some((child, after)) = Node::read(rest, depth + 1) {
+                node.nodes.push(child);
+                rest = after;
+            } else {
+                let end = rest.find([',', ']', ')'])?;
+                let (word, after) = rest.split_at(end);
+                if !word.trim().is_empty() {
+                    node.words.push(word.trim());
+                }
+                rest = after;
+            }
+            rest = rest.trim_start();
+            if let Some(after) = rest.strip_prefix([']', ')']) {
+                return Some((node, after));
+            }
+            rest = rest.strip_prefix(',')?;
+        }
+    }
+
+    fn is(&self, keywords: &[&str]) -> bool {
+        keywords.iter().any(|keyword| self.keyword.eq_ignore_ascii_case(keyword))
+    }
+
+    fn child(&self, keywords: &[&str]) -> Option<&Node<'a>> {
+        self.nodes.iter().find(|node| node.is(keywords))
+    }
+
+    /// The horizontal part of a compound system, or the system itself.
+    fn horizontal(&self) -> &Node<'a> {
+        let part = self.is(&COMPOUND).then(|| self.nodes.iter().find(|node| node.crs().is_some())).flatten();
+        part.map_or(self, Node::horizontal)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        if self.is(&COMPOUND) {
+            let mut parts = self.nodes.iter();
+            let mut crs = parts.find_map(Node::crs)?;
+            crs.vertical = crs.vertical.or_else(|| parts.find_map(Node::vertical));
+            return Some(crs);
+        }
+        if self.is(&["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"]) {
+            return Some(Crs { is_geographic: true, ..Crs::default() });
+        }
+        if self.is(&["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"]) {
+            return Some(Crs { unit: self.unit(), ..Crs::default() });
+        }
+        if !self.is(&["PROJCS", "PROJCRS", "PROJECTEDCRS"]) {
+            return None;
+        }
+        Some(Crs { unit: self.unit(), mercator: self.mercator(), ..Crs::default() })
+    }
+
+    fn vertical(&self) -> Option<Vertical> {
+        if !self.is(&["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"]) {
+            return None;
+        }
+        let of_code = self.epsg_code().and_then(epsg::vertical);
+        let down = |node: &Node<'_>| node.words.iter().any(|word| word.eq_ignore_ascii_case("down"));
+        let is_depth = self.nodes.iter().any(|node| node.is(&["AXIS"]) && down(node));
+        of_code.or_else(|| self.unit().map(|unit| Vertical { unit, is_depth }))
+    }
+
+    /// The unit of a system's own axes: its `UNIT`, or that of its first axis.
+    fn unit(&self) -> Option<LinearUnit> {
+        let keywords = ["UNIT", "LENGTHUNIT"];
+        let axis = || self.child(&["AXIS"]).and_then(|axis| axis.child(&keywords));
+        let unit = self.nodes.iter().rev().find(|node| node.is(&keywords)).or_else(axis)?;
+        let metres = unit.words.get(1).and_then(|word| word.parse::<f64>().ok());
+        match metres.filter(|metres| metres.is_finite() && *metres > 0.0) {
+            Some(metres) => Some(LinearUnit::of_metres(metres)),
+            None => unit.words.first().and_then(|name| by_name(name)),
+        }
+    }
+
+    /// The system's own code in the EPSG registry.
+    fn epsg_code(&self) -> Option<u32> {
+        let authority = self.nodes.iter().rev().find(|node| node.is(&["AUTHORITY", "ID"]))?;
+        let [name, code, ..] = authority.words.as_slice() else { return None };
+        if name.eq_ignore_ascii_case("EPSG") { code.parse().ok() } else { None }
+    }
+
+    fn mercator(&self) -> Option<Mercator> {
+        let conversion = self.child(&["CONVERSION"]).unwrap_or(self);
+        let method = conversion.child(&["PROJECTION", "METHOD"])?.words.first()?.to_lowercase();
+        let variant = ["transverse", "oblique", "gauss", "space"].iter().any(|kind| method.contains(kind));
+        let is_even = method.contains("equidistant") && method.contains("cylindrical")
+            || ["equirectangular", "plate"].iter().any(|kind| method.contains(kind));
+        if !(method.contains("mercator") || is_even) || variant {
+            return None;
+        }
+        let number = |names: &[&str]| {
+            let plain = |word: &str| word.to_lowercase().replace([' ', '_'], "");
+            conversion.nodes.iter().filter(|node| node.is(&["PARAMETER"])).find_map(|node| {
+                let name = node.words.first()?;
+                names.contains(&plain(name).as_str()).then(|| node.words.get(1)?.parse::<f64>().ok())?
+            })
+        };
+        let metres = self.unit().map_or(1.0, |unit| unit.metres);
+        let true_scale_rad =
+            number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0).to_radians();
+        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]).filter(|scale| *scale > 0.0);
+        let spherical = ["auxiliary", "pseudo", "visualisation", "web"];
+        let words = |node: &Node<'_>| node.words.iter().any(|word| word.contains("+b=6378137"));
+        let is_spherical = spherical.iter().any(|kind| method.contains(kind))
+            || self.child(&["EXTENSION"]).is_some_and(words);
+        let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]).and_then(|base| base.words.first());
+        Some(Mercator {
+            is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
+            spacing: match () {
+                () if is_even => Spacing::Even,
+                () if is_spherical => Spacing::Spherical,
+                () => Spacing::Conformal,
+            },
+            equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
+            central_meridian_deg: number(&["centralmeridian", "longitudeofnaturalorigin"]).unwrap_or(0.0),
+            false_origin_m: [
+                number(&["falseeasting"]).unwrap_or(0.0) * metres,
+                number(&["falsenorthing"]).unwrap_or(0.0) * metres,
+            ],
+        })
+    }
+}
+
+/// The `.prj` of ArcInfo: `Projection UTM`, `Zone 15`, `Datum WGS84`, `Units METERS`, a word and a value a line.
+fn older_prj(text: &str) -> Option<Crs> {
+    let value = |key: &str| {
+        text.lines().find_map(|line| {
+            let (word, value) = line.trim().split_once(char::is_whitespace)?;
+            word.eq_ignore_ascii_case(key).then(|| value.trim().to_uppercase())
+        })
+    };
+    let projection = value("Projection")?;
+    let unit = value("Units").and_then(|name| by_name(&name));
+    if projection == "GEOGRAPHIC" {
+        return Some(Crs { is_geographic: true, ..Crs::default() });
+    }
+    let mut crs = Crs { unit, ..Crs::default() };
+    if projection == "MERCATOR" {
+        crs.mercator = Some(mercator::WORLD);
+    }
+    let zone =
+        value("Zone").and_then(|zone| zone.parse::<i32>().ok()).filter(|zone| (1..=60).contains(&zone.abs()));
+    let wgs84 = value("Datum").is_some_and(|datum| matches!(datum.as_str(), "WGS84" | "WGS_1984"));
+    if let (true, true, Some(zone)) = (projection == "UTM", wgs84, zone) {
+        let code = if zone > 0 { 32_600 } else { 32_700 } + zone.unsigned_abs();
+        crs.text = Some(format!("EPSG:{code}"));
+        crs.unit = crs.unit.or(by_epsg_code(9001));
+    }
+    Some(crs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FEET: &str = r#"PROJCS["NAD_1983_StatePlane_New_York_Long_Island_FIPS_3104_Feet",GEOGCS["GCS_North_American_1983",
+        DATUM["D_North_American_1983",SPHEROID["GRS_1980",6378137.0,298.257222101]],PRIMEM["Greenwich",0.0],
+        UNIT["Degree",0.0174532925199433]],PROJECTION["Lambert_Conformal_Conic"],PARAMETER["False_Easting",984250.0],
+        UNIT["Foot_US",0.3048006096012192]]"#;
+
+    #[test]
+    fn the_unit_is_that_of_the_system_and_not_of_its_geographic_base() {
+        let crs = parse(FEET).unwrap();
+        assert_eq!(crs.unit.unwrap().name, "US survey foot");
+        assert!(!crs.is_geographic && crs.mercator.is_none());
+        assert!(crs.text.unwrap().starts_with("PROJCS["));
+    }
+
+    #[test]
+    fn a_code_names_the_system_and_heights_have_units_of_their_own() {
+        let text = r#"COMPD_CS["NAD83 / UTM zone 15N + NAVD88 height (ftUS)",PROJCS["NAD83 / UTM zone 15N",
+            GEOGCS["NAD83",DATUM["D",SPHEROID["GRS 1980",6378137,298.257222101]],UNIT["degree",0.0174532925199433]],
+            PROJECTION["Transverse_Mercator"],UNIT["metre",1],AUTHORITY["EPSG","26915"]],
+            VERT_CS["NAVD88 height (ftUS)",VERT_DATUM["NAVD88",2005],UNIT["US survey foot",0.304800609601219],AXIS["Up",UP]]]"#;
+        let crs = parse(text).unwrap();
+        assert!(crs.unit.unwrap().is_metre());
+        assert_eq!(crs.text.as_deref(), Some("EPSG:26915"));
+        let vertical = crs.vertical.unwrap();
+        assert_eq!((vertical.unit.name, vertical.is_depth), ("US survey foot", false));
+    }
+
+    #[test]
+    fn mercators_are_told_from_their_transverse_namesakes() {
+        let mercator = |projection: &str| {
+            let text = format!(
+                r#"PROJCS["x",GEOGCS["y"],PROJECTION["{projection}"],PARAMETER["scale_factor",0.5],UNIT["m",1]]"#
+            );
+            parse(&text).unwrap().mercator
+        };
+        assert_eq!(mercator("Transverse_Mercator"), None);
+        assert_eq!(mercator("Mercator_1SP").unwrap().spacing, Spacing::Conformal);
+        assert_eq!(mercator("Plate_Carree").unwrap().spacing, Spacing::Even);
+        let web = mercator("Mercator_Auxiliary_Sphere").unwrap();
+        assert_eq!((web.spacing, web.equator_scale), (Spacing::Spherical, 0.5));
+    }
+
+    #[test]
+    fn the_older_form_of_arcinfo_is_read_by_line() {
+        let crs = parse("Projection    UTM\nZone 15\nDatum WGS84\nUnits METERS\nParameters\n").unwrap();
+        assert_eq!(crs.text.as_deref(), Some("EPSG:32615"));
+        assert!(parse("Projection GEOGRAPHIC\nUnits DD\n").unwrap().is_geographic);
+        assert_eq!(parse("Projection STATEPLANE\nUnits FEET\n").unwrap().unit, Some(LinearUnit::FOOT));
+    }
+
+    #[test]
+    fn text_that_is_no_system_is_none() {
+        let deep = "A[".repeat(10_000);
+        for text in ["", "hello", "PROJCS[", "PROJCS[\"x\"", &deep, "\u{e4}[1]", "VERT_CS[\"x\"]"] {
+            assert_eq!(parse(text), None, "{}", &text.chars().take(20).collect::<String>());
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The GeoKey directory (OGC GeoTIFF 1.1): which coordinate reference system the raster is in.
+
+use tiff::tags::Tag;
+
+use super::directory::Tags;
+use crate::{
+    Error, Warning, WarningKind,
+    crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, vertical},
+};
+
+const MODEL_TYPE: u16 = 1024;
+const RASTER_TYPE: u16 = 1025;
+const CITATION: u16 = 1026;
+const GEODETIC_CRS: u16 = 2048;
+const SEMI_MAJOR_AXIS: u16 = 2057;
+const SEMI_MINOR_AXIS: u16 = 2058;
+const INVERSE_FLATTENING: u16 = 2059;
+const PROJECTED_CRS: u16 = 3072;
+const PROJECTED_CITATION: u16 = 3073;
+const PROJECTION_METHOD: u16 = 3075;
+const LINEAR_UNITS: u16 = 3076;
+const LINEAR_UNIT_SIZE: u16 = 3077;
+const STANDARD_PARALLEL: u16 = 3078;
+const NATURAL_ORIGIN_LONGITUDE: u16 = 3080;
+const FALSE_EASTING: u16 = 3082;
+const FALSE_NORTHING: u16 = 3083;
+const NATURAL_ORIGIN_SCALE: u16 = 3092;
+const VERTICAL_CRS: u16 = 4096;
+const VERTICAL_UNITS: u16 = 4099;
+
+const USER_DEFINED: u32 = 32767;
+/// A directory that says: projected, a pixel is an area, some frame of the user's, in metres.
+#[rustfmt::skip]
+pub(super) const PROJECTED_METRES: [u16; 20] = [
+    1, 1, 0, 4,
+    MODEL_TYPE, 0, 1, 1,
+    RASTER_TYPE, 0, 1, 1,
+    PROJECTED_CRS, 0, 1, 32767,
+    LINEAR_UNITS, 0, 1, 9001,
+];
+
+/// What a GeoTIFF says of its coordinate reference system.
+pub(super) struct GeoKeys {
+    /// Key and value of short keys; a double's or text's place otherwise.
+    entries: Vec<[u16; 4]>,
+    doubles: Vec<f64>,
+    text: String,
+}
+
+impl GeoKeys {
+    /// Reads the directory; a file without one has no keys.
+    pub(super) fn read(tags: &mut Tags<'_, '_>) -> Result<Self, Error> {
+        let directory = tags.unsigned_list(Tag::GeoKeyDirectoryTag)?;
+        let directory: Vec<u16> = directory.iter().map(|&value| u16::try_from(value).unwrap_or(0)).collect();
+        Ok(GeoKeys {
+            entries: directory.get(4..).unwrap_or_default().as_chunks().0.to_vec(),
+            doubles: tags.doubles(Tag::GeoDoubleParamsTag)?.unwrap_or_default(),
+            text: tags.text(Tag::GeoAsciiParamsTag)?.unwrap_or_default(),
+        })
+    }
+
+    /// The value of a key that is there and not zero, which stands for undefined.
+    fn code(&self, key: u16) -> Option<u32> {
+        let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 0)?;
+        Some(u32::from(entry[3])).filter(|value| *value != 0)
+    }
+
+    fn double(&self, key: u16) -> Option<f64> {
+        let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 34736)?;
+        self.doubles.get(usize::from(entry[3])).copied().filter(|value| value.is_finite())
+    }
+
+    fn citation(&self, key: u16) -> Option<&str> {
+        let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 34737)?;
+        let start = usize::from(entry[3]);
+        let end = self.text.len().min(start + usize::from(entry[2]));
+        Some(self.text.get(start..end)?.trim_end_matches(['|', '\0', ' ']))
+    }
+
+    /// Whether samples belong to points at the corners of the frame's cells, not to cells.
+    pub(super) fn pixel_is_point(&self) -> bool {
+        self.code(RASTER_TYPE) == Some(2)
+    }
+
+    /// Whether anything says what the coordinates are.
+    pub(super) fn name_a_system(&self) -> bool {
+        [MODEL_TYPE, GEODETIC_CRS, PROJECTED_CRS, LINEAR_UNITS].iter().any(|key| self.code(*key).is_some())
+    }
+
+    /// The system, with its unit as the file says or as its code implies. Doubts are added to the warnings.
+    ///
+    /// # Errors
+    /// A unit or kind of system that cannot be read, by name.
+    pub(super) fn crs(&self, warnings: &mut Vec<Warning>) -> Result<Crs, Error> {
+        const PROJECTED: u32 = 1;
+        const GEOGRAPHIC: u32 = 2;
+        const GEOCENTRIC: u32 = 3;
+        let projected = self.code(PROJECTED_CRS);
+        let kind = self.code(MODEL_TYPE);
+        if kind == Some(GEOCENTRIC) {
+            let value = "3, geocentric".to_owned();
+            return Err(Error::TiffValue {
+                tag: "model type (GTModelTypeGeoKey)",
+                value,
+                expected: "1, projected",
+            });
+        }
+        let geodetic = self.code(GEODETIC_CRS).filter(|code| *code != USER_DEFINED);
+        if kind == Some(GEOGRAPHIC) || (kind != Some(PROJECTED) && projected.is_none() && geodetic.is_some())
+        {
+            let text = geodetic.map(|code| format!("EPSG:{code}"));
+            return Ok(Crs { text, is_geographic: true, ..Crs::default() });
+        }
+        let mut crs = match projected.filter(|code| *code != USER_DEFINED) {
+            Some(code) => Crs::from_epsg(code),
+            None => self.own_system(),
+        };
+        let own_unit = self.linear_unit()?;
+        let name = crs.text.as_deref().unwrap_or_default();
+        let doubt = match (own_unit, crs.unit) {
+            (Some(own), Some(implied)) if !own.is(&implied) => Some(format!(
+                "the file's unit is {}, but that of {name} is {}: the file was followed",
+                own.name, implied.name
+            )),
+            (None, None) if projected.is_some() && crs.text.is_some() => {
+                Some(format!("the unit of {name} is not known here: coordinates were read as metres"))
+            }
+            _ => None,
+        };
+        warnings.extend(doubt.map(|detail| Warning::new(WarningKind::AssumedUnit, detail)));
+        crs.unit = own_unit.or(crs.unit);
+        crs.vertical = self.vertical()?.or(crs.vertical);
+        Ok(crs)
+    }
+
+    /// A system without a code: Esri writes its text into the citation, others its parameters into keys.
+    fn own_system(&self) -> Crs {
+        const ESRI: &str = "ESRI PE String = ";
+        const MERCATOR: u32 = 7;
+        const EQUIRECTANGULAR: u32 = 17;
+        const WGS_84: u32 = 4326;
+        let citations = [self.citation(PROJECTED_CITATION), self.citation(CITATION)];
+        let of_esri = citations.iter().flatten().find_map(|text| Crs::parse(text.strip_prefix(ESRI)?));
+        if let Some(crs) = of_esri {
+            return crs;
+        }
+        let method = self.code(PROJECTION_METHOD);
+        if method != Some(MERCATOR) && method != Some(EQUIRECTANGULAR) {
+            return Crs::default();
+        }
+        let major_m = self.double(SEMI_MAJOR_AXIS);
+        let is_sphere = major_m.is_some() && major_m == self.double(SEMI_MINOR_AXIS)
+            || self.double(INVERSE_FLATTENING) == Some(0.0);
+        let names = citations.iter().flatten().copied().collect::<String>().to_lowercase();
+        let spherical = ["pseudo", "web", "google", "visualisation", "sphere"];
+        let true_scale_rad = self.double(STANDARD_PARALLEL).unwrap_or(0.0).to_radians();
+        let scale = self.double(NATURAL_ORIGIN_SCALE).filter(|scale| *scale > 0.0);
+        let mercator = Some(Mercator {
+            is_on_wgs84: self.code(GEODETIC_CRS) == Some(WGS_84),
+            spacing: match () {
+                () if method == Some(EQUIRECTANGULAR) => Spacing::Even,
+                () if is_sphere || spherical.iter().any(|word| names.contains(word)) => Spacing::Spherical,
+                () => Spacing::Conformal,
+            },
+            equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
+            central_meridian_deg: self.double(NATURAL_ORIGIN_LONGITUDE).unwrap_or(0.0),
+            false_origin_m: [
+                self.double(FALSE_EASTING).unwrap_or(0.0),
+                self.double(FALSE_NORTHING).unwrap_or(0.0),
+            ],
+        });
+        Crs { mercator, ..Crs::default() }
+    }
+
+    fn linear_unit(&self) -> Result<Option<LinearUnit>, Error> {
+        const TAG: &str = "linear unit (ProjLinearUnitsGeoKey)";
+        let size = self.double(LINEAR_UNIT_SIZE);
+        if let Some(size) = size.filter(|size| *size <= 0.0) {
+            let tag = "linear unit size (ProjLinearUnitSizeGeoKey)";
+            return Err(Error::TiffValue { tag, value: size.to_string(), expected: "metres above zero" });
+        }
+        match self.code(LINEAR_UNITS) {
+            None | Some(USER_DEFINED) => Ok(size.map(LinearUnit::of_metres)),
+            Some(code) => by_epsg_code(code).map(Some).ok_or(Error::TiffValue {
+                tag: TAG,
+                value: code.to_string(),
+                expected: "EPSG's code of a unit of length, as 9001 for metres",
+            }),
+        }
+    }
+
+    fn vertical(&self) -> Result<Option<Vertical>, Error> {
+        let of_code = self.code(VERTICAL_CRS).filter(|code| *code != USER_DEFINED).and_then(vertical);
+        let unit = match self.code(VERTICAL_UNITS) {
+            None | Some(USER_DEFINED) => return Ok(of_code),
+            Some(code) => by_epsg_code(code).ok_or(Error::TiffValue {
+                tag: "vertical unit (VerticalUnitsGeoKey)",
+                value: code.to_string(),
+                expected: "EPSG's code of a unit of length, as 9001 for metres",
+            })?,
+        };
+        Ok(Some(Vertical { unit, is_depth: of_code.is_some_and(|vertical| vertical.is_depth) }))
+    }
+}

@@ -1,0 +1,100 @@
+//! The grid that a raster becomes: metres of the ground, square cells, north up; or the refusal that says how to bring it there.
+
+use super::geokeys::GeoKeys;
+use crate::{
+    Error, Grid, Terrain, Warning, WarningKind,
+    crs::{Crs, Size, UNTOLD_CELLS, refuse_degrees, to_ground},
+    resample::Affine,
+};
+
+/// Edge below which pixels of a file without a system, within the bounds of degrees, are taken for degrees.
+const DEGREE_PIXEL: f64 = 0.1;
+
+/// The grid of a map and how pixels come to its cells.
+#[derive(Debug)]
+pub(super) struct Placement {
+    pub(super) grid: Grid,
+    pub(super) arrangement: Arrangement,
+    pub(super) crs: Option<String>,
+}
+
+/// How pixels become cells.
+#[derive(Debug, PartialEq)]
+pub(super) enum Arrangement {
+    /// Each pixel is a cell; rows or columns may have to be taken from their other end to begin in the south-west.
+    Cells { rows_from_north: bool, columns_from_east: bool },
+    /// Cells lie between pixels.
+    Resampled(Affine),
+}
+
+impl Placement {
+    /// Places a raster in metres of the ground. What had to be assumed or changed is added to the warnings.
+    ///
+    /// # Errors
+    /// Degrees, a scale that changes over the map, or a grid that no map may have.
+    pub(super) fn of(
+        affine: Affine,
+        size: Size,
+        keys: &GeoKeys,
+        crs: &Crs,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self, Error> {
+        let affine = if keys.pixel_is_point() { affine.with_centred_pixels() } else { affine };
+        refuse_degrees(&affine, size, crs, "tif")?;
+        if !keys.name_a_system() {
+            doubt_nameless(&affine, size, warnings)?;
+        }
+        let (affine, text) = to_ground(affine, size, crs, "tif", warnings)?;
+        let (grid, arrangement) = lay_out(affine, size, warnings)?;
+        Ok(Placement { grid, arrangement, crs: text })
+    }
+}
+
+/// Refuses a file without any system whose coordinates are plainly degrees, and doubts one that may be in metres.
+fn doubt_nameless(affine: &Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(), Error> {
+    let coordinates = affine.coordinates(size);
+    coordinates.refuse_degrees("tif")?;
+    let doubt = coordinates.unit_warning();
+    if doubt.is_some() && affine.edges().iter().all(|edge| *edge < DEGREE_PIXEL) {
+        return Err(coordinates.degrees("tif"));
+    }
+    warnings.extend(doubt);
+    Ok(())
+}
+
+/// The grid of a raster in metres of the ground.
+fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(Grid, Arrangement), Error> {
+    /// Relative difference of a pixel's edges that comes of the digits they are written with.
+    const WRITTEN_DIGITS: f64 = 1e-6;
+    let [west_m, south_m, east_m, north_m] = affine.bounds(size.columns, size.rows);
+    let [width_m, height_m] = affine.edges();
+    let (columns, rows) = (size.columns as u64, size.rows as u64);
+    let longest = columns.max(rows) as f64;
+    let same = (width_m - height_m).abs() <= WRITTEN_DIGITS * width_m;
+    let cell_size_m = if same { width_m } else { (width_m * height_m).sqrt() };
+    let displaced =
+        ((width_m - cell_size_m).abs()).max((height_m - cell_size_m).abs()) / cell_size_m * longest;
+    if affine.is_upright() && (same || displaced <= UNTOLD_CELLS) {
+        if !same {
+            let detail =
+                format!("pixels of {width_m} × {height_m} m were taken as square ones of {cell_size_m} m");
+            warnings.push(Warning::new(WarningKind::Interpolated, detail));
+        }
+        let origin_m = [west_m, south_m];
+        let grid = Terrain::check_size(rows, columns, cell_size_m, origin_m)?;
+        let cells = Arrangement::Cells {
+            rows_from_north: affine.row[1] < 0.0,
+            columns_from_east: affine.column[0] < 0.0,
+        };
+        return Ok((grid, cells));
+    }
+    let count = |length_m: f64| (length_m / cell_size_m + WRITTEN_DIGITS).floor().max(1.0) as u64;
+    let (columns, rows) = (count(east_m - west_m), count(north_m - south_m));
+    let grid = Terrain::check_size(rows, columns, cell_size_m, [west_m, south_m])?;
+    let shape = if affine.is_upright() { "oblong" } else { "turned" };
+    let detail = format!(
+        "pixels are {shape} ({width_m:.4} × {height_m:.4} m): elevations were interpolated onto cells of {cell_size_m:.4} m, north up"
+    );
+    warnings.push(Warning::new(WarningKind::Interpolated, detail));
+    Ok((grid, Arrangement::Resampled(affine)))
+}

@@ -1,0 +1,101 @@
+//! A band's samples, decoded block by block on all cores.
+
+use std::io::Read;
+
+use rayon::prelude::*;
+
+use super::{
+    codec::Compression,
+    layout::{Layout, is_absent},
+    lerc,
+    sample::{Number, RowOrder, convert, restore},
+};
+use crate::Error;
+
+/// A band of an image and the file it lies in.
+pub(super) struct Band<'a> {
+    pub(super) file: &'a [u8],
+    pub(super) big_endian: bool,
+    pub(super) layout: &'a Layout,
+    /// Position of the band.
+    pub(super) band: usize,
+}
+
+impl Band<'_> {
+    /// All samples, row-major in the order of the file's rows; blocks that were never written hold `absent`.
+    ///
+    /// # Errors
+    /// A block that ends early or is damaged.
+    pub(super) fn read<T: Number>(&self, absent: T) -> Result<Vec<T>, Error> {
+        let layout = self.layout;
+        let mut samples = vec![absent; layout.columns * layout.rows];
+        let across = layout.across();
+        // Blocks of the same rows are decoded by one task, which alone writes these rows.
+        let rows_of_blocks = samples.par_chunks_mut(layout.block_rows.min(layout.rows) * layout.columns);
+        rows_of_blocks.zip(layout.blocks_of(self.band).par_chunks(across)).try_for_each(
+            |(rows, blocks)| {
+                let mut scratch = Scratch::default();
+                for (index, block) in blocks.iter().enumerate() {
+                    let left = index * layout.block_columns;
+                    let width = layout.block_columns.min(layout.columns - left);
+                    if is_absent(*block) {
+                        continue;
+                    }
+                    let rows = rows.chunks_mut(layout.columns).map(|row| &mut row[left..left + width]);
+                    match layout.compression {
+                        Compression::Lerc(_) => lerc::read(self, *block, absent, rows)?,
+                        _ => self.read_block(*block, &mut scratch, rows)?,
+                    }
+                }
+                Ok::<(), Error>(())
+            },
+        )?;
+        Ok(samples)
+    }
+
+    /// The compressed bytes of a block.
+    pub(super) fn bytes_of(&self, (offset, count): (u64, u64)) -> Result<&[u8], Error> {
+        let (start, end) = (offset, offset.saturating_add(count));
+        let range = usize::try_from(start).ok().zip(usize::try_from(end).ok());
+        let file_bytes = self.file.len() as u64;
+        range
+            .and_then(|(start, end)| self.file.get(start..end))
+            .ok_or(Error::TiffTruncated { declared_bytes: end, file_bytes })
+    }
+
+    /// Position of the band's samples within a pixel.
+    pub(super) fn first(&self) -> usize {
+        if self.layout.planar { 0 } else { self.band }
+    }
+
+    fn read_block<'s, T: Number + 's>(
+        &self,
+        block: (u64, u64),
+        scratch: &mut Scratch,
+        rows: impl Iterator<Item = &'s mut [T]>,
+    ) -> Result<(), Error> {
+        let layout = self.layout;
+        let step = layout.samples_per_pixel();
+        let mut reader = layout.compression.open(self.bytes_of(block)?)?;
+        let bits = usize::from(layout.sample.bits());
+        let order = RowOrder {
+            sample_bytes: if bits.is_multiple_of(8) { bits / 8 } else { 1 },
+            big_endian: self.big_endian,
+            step,
+        };
+        for row in rows {
+            scratch.row.resize(layout.row_bytes(), 0);
+            reader.read_exact(&mut scratch.row).map_err(|why| Error::TiffBlock { why: why.to_string() })?;
+            restore(&mut scratch.row, &mut scratch.spare, layout.predictor, order);
+            convert(layout.sample, &scratch.row, self.first(), step, row);
+        }
+        Ok(())
+    }
+}
+
+/// Room for a row of a block, used again for the next.
+#[derive(Default)]
+struct Scratch {
+    row: Vec<u8>,
+    spare: Vec<u8>,
+}
