@@ -11,6 +11,7 @@ mod unit;
 mod wkt;
 
 pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
+pub(crate) use self::mercator::is_of_earth;
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
