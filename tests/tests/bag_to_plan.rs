@@ -153,7 +153,10 @@ fn bags_of_a_robot_of_ones_own_become_a_plan() {
         "motors": {"left": {"k1_w_per_n2": 0.0023, "k2": 1.7158}, "right": {"k1_w_per_n2": 0.0016, "k2": 1.7723}},
         "battery": {"capacity_wh": 480.0, "nominal_voltage_v": 24.0, "reserve_fraction": 0.2},
         "limits": {"max_side_force_n": 600.0, "max_pitch_rad": 0.52, "max_roll_rad": 0.45},
-        "surfaces": {"marble": {"mu_roll": 0.063, "mu_skid": 0.29, "slip_angle_scale_rad": 0.30}},
+        "surfaces": {
+            "marble": {"mu_roll": 0.063, "mu_skid": 0.29, "slip_angle_scale_rad": 0.30},
+            "sandy_loam": {"mu_roll": 0.12, "mu_skid": 0.4, "slip_angle_scale_rad": 0.30}
+        },
         "default_surface": "marble"
     });
     std::fs::write(folder.path().join("own.json"), robot.to_string()).unwrap();

@@ -11,7 +11,7 @@ mod second;
 mod stuck_sensor;
 
 use model::Robot;
-use recording::{Recording, Watch};
+use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
 pub use self::{
@@ -42,12 +42,22 @@ impl std::fmt::Display for Doubt {
 /// # Errors
 /// As [`crate::predict_watched()`].
 pub fn circumstances(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
-    let stuck = stuck_sensor::stuck_sensors(robot, recording);
+    let stuck = stuck(robot, recording, watch)?;
     if !stuck.is_empty() {
         return Ok(stuck);
     }
     let seconds = second::seconds(robot, recording, watch)?;
     Ok(lifted::lifted(robot, recording, &seconds).into_iter().collect())
+}
+
+/// Doubts about sensors of one side.
+fn stuck(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
+    let found = stuck_sensor::stuck_sensors(robot, recording, true);
+    let is_shown = found.is_empty() || recording.channel(Channel::YawRate).is_some();
+    if is_shown || follow::of(robot, recording, watch)?.r2 <= change::FOLLOWS_WELL {
+        return Ok(found);
+    }
+    Ok(stuck_sensor::stuck_sensors(robot, recording, false))
 }
 
 /// A doubt about a battery that is charged in the drives, where nothing else is doubtful.
@@ -64,7 +74,7 @@ pub fn charged(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Op
 /// As [`crate::predict_watched()`].
 pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
     let recording = recording.thinned_watched(watch)?;
-    let stuck = stuck_sensor::stuck_sensors(robot, &recording);
+    let stuck = stuck(robot, &recording, watch)?;
     if !stuck.is_empty() {
         // Signs, sides and units are told by drives as a robot makes them.
         return Ok(stuck);

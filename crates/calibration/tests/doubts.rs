@@ -181,3 +181,20 @@ fn a_battery_that_is_charged_on_the_way_is_doubted_and_one_that_recovers_power_d
     assert!(found.len() == 1 && found[0].name == "charging", "{found:?}");
     assert!(found[0].statement.contains("the battery takes up"), "{found:?}");
 }
+
+#[test]
+fn a_side_that_truly_keeps_its_speed_is_not_doubted() {
+    for with_gyroscope in [true, false] {
+        let mut random = seeded(9);
+        let mut steered = drives(&mut random, 3, 400);
+        let rows = steered.runs[0].rows.clone();
+        steered.channels.get_mut(&Channel::LeftSpeed).unwrap()[rows].fill(0.4);
+        if with_gyroscope {
+            let of = |channel| steered.channel(channel).unwrap().to_vec();
+            let (left, right) = (of(Channel::LeftSpeed), of(Channel::RightSpeed));
+            let rate = left.iter().zip(&right).map(|(l, r)| (r - l) / robot().slip_track_m).collect();
+            steered.channels.insert(Channel::YawRate, rate);
+        }
+        assert_eq!(names(&with_power(&robot(), steered, &mut random)), [""; 0], "{with_gyroscope}");
+    }
+}

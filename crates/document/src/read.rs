@@ -52,7 +52,7 @@ struct Failed {
     path: String,
     pointer: String,
     /// Where the text is no JSON.
-    not_json: Option<NotJson>,
+    not_json: Option<Box<NotJson>>,
 }
 
 /// The place at which a text is no JSON.
@@ -116,7 +116,7 @@ where
         let place = |of: fn(&Path) -> String| if fault.is_syntax() { String::new() } else { of(path) };
         let not_json = fault.is_syntax().then(|| {
             let (line, column) = fault.line_and_column();
-            NotJson { line, column, path: shown(path), pointer: tracked_pointer(path) }
+            Box::new(NotJson { line, column, path: shown(path), pointer: tracked_pointer(path) })
         });
         Failed {
             fault: fault.to_string(),

@@ -342,8 +342,8 @@ fn spread(body: &Body, heights: &Heights, place: (isize, isize), cell_size_m: f3
     for &(columns, at_row) in &body.under_any {
         let height_m = &heights.row_m(place, (columns, at_row), TILE)[..TILE];
         let (x_m, y_m) = (cell_size_m * columns as f32, cell_size_m * at_row as f32);
-        for x in 0..TILE {
-            let above_m = height_m[x] - (rows.height_m[x] + x_m * rows.east[x] + y_m * rows.north[x]);
+        for (x, height_m) in height_m.iter().enumerate() {
+            let above_m = height_m - (rows.height_m[x] + x_m * rows.east[x] + y_m * rows.north[x]);
             // Comparisons that are false of unknown ground.
             rows.above_m[x] = if above_m > rows.above_m[x] { above_m } else { rows.above_m[x] };
             rows.below_m[x] = if above_m < rows.below_m[x] { above_m } else { rows.below_m[x] };

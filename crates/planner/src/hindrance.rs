@@ -58,7 +58,7 @@ impl fmt::Display for Hindrance {
                 "look for a wall, unknown cells, or slopes and side forces beyond the robot's limits there",
             ),
             Hindrance::Ground => f.write_str(
-                "look for a wall or unknown cells there: without the robot's limits there is no path either",
+                "look for a wall, unknown cells or ground that its body would touch there: without the robot's limits there is no path either",
             ),
             Hindrance::OneLimit { limit: Limit::SideForce, allowed, needed } => write!(
                 f,

@@ -77,7 +77,12 @@ impl MapReader {
             MapReader::Ascii => {
                 let words = content.bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
                 content.reserved.grow_to(length + (ASCII_CELL_BYTES + filling) * words.count() as u64)?;
-                io::read_bytes(io::Format::Ascii, &content.bytes, options)
+                let read = io::read_bytes(io::Format::Ascii, &content.bytes, options);
+                let image = read.is_err().then(|| io::ros_map::image_named_in(&content.bytes)).flatten();
+                if let Some(image) = image {
+                    return Err(ros_yaml_alone(&image));
+                }
+                read
             }
             MapReader::GeoTiff => {
                 let cells = io::geotiff::cells(&content.bytes).map_err(|error| invalid(&error))?;
@@ -152,6 +157,15 @@ fn unreadable(error: &multer::Error) -> Problem {
 
 fn form_problem(detail: &str) -> Problem {
     Problem::new(ProblemType::InvalidRequest, detail)
+}
+
+/// The YAML of a ROS map that came without its image.
+fn ros_yaml_alone(image: &str) -> Problem {
+    let shown: String = image.chars().take(80).collect();
+    let detail = format!(
+        "this is the YAML file of a ROS map: send it together with its image, `{shown}`, as multipart/form-data with the parts yaml and image (curl -F yaml=@map.yaml -F image=@{shown})"
+    );
+    Problem::new(ProblemType::UnsupportedMediaType, detail)
 }
 
 fn invalid(error: &terrain::Error) -> Problem {

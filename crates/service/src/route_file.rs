@@ -36,7 +36,7 @@ pub(crate) fn gpx(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
     let is_placed = plan.poses.first().is_some_and(|pose| pose.lon_deg.is_some());
     let about =
         if is_placed { "" } else { "<desc>Metres east and north of the start, as degrees at 0 N 0 E</desc>" };
-    write!(out, "{HEAD}{about}<trkseg>\n")?;
+    writeln!(out, "{HEAD}{about}<trkseg>")?;
     if let Some(start) = plan.poses.first() {
         for p in &plan.poses {
             let (east, north) = match (p.lon_deg, p.lat_deg) {

@@ -12,6 +12,11 @@ mod unit;
 mod warp;
 mod wkt;
 
+<<<<<<< HEAD
+=======
+pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
+pub(crate) use self::mercator::is_of_earth;
+>>>>>>> main
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,

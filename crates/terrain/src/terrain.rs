@@ -358,5 +358,7 @@ mod tests {
         assert_ne!(a.content_id(), obstacles.content_id());
         let surfaces = Surfaces { names: vec!["grass".into()], class: vec![0; 24] };
         assert_ne!(a.content_id(), plane().with_surfaces(surfaces).content_id());
+        let placed = Terrain { crs: Some("EPSG:32632".into()), ..plane() };
+        assert_ne!(a.content_id(), placed.content_id());
     }
 }

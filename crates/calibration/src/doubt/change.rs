@@ -11,7 +11,7 @@ const CLEARLY_BETTER: f64 = 0.5;
 /// And when predictions then follow the recording at least so well (r²).
 const FOLLOWS: f64 = 0.5;
 /// Recordings that are followed so well are not doubted: half of the rest would be a twentieth of the scatter.
-const FOLLOWS_WELL: f64 = 0.9;
+pub(super) const FOLLOWS_WELL: f64 = 0.9;
 
 /// What may have been wrong with a recording, and the recording with that mended; none where it lacks the channels.
 pub struct Change {

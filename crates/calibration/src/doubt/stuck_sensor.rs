@@ -22,10 +22,11 @@ const SIDES: [([Channel; 2], &str); 3] = [
     ([Channel::LeftMotorCurrent, Channel::RightMotorCurrent], "motor current"),
 ];
 
-/// Doubts about sensors that are stuck or saturated on one side alone.
-pub(super) fn stuck_sensors(robot: &Robot, recording: &Recording) -> Vec<Doubt> {
+/// Doubts about sensors that are stuck or saturated on one side alone. Wheel speeds are looked at where asked: without a gyroscope they are
+/// as likely the true ones where power follows them.
+pub(super) fn stuck_sensors(robot: &Robot, recording: &Recording, with_speeds: bool) -> Vec<Doubt> {
     let mut doubts = Vec::new();
-    for (sides, quantity) in SIDES {
+    for (sides, quantity) in SIDES.into_iter().filter(|(sides, _)| with_speeds || sides[0].tells_power()) {
         for (one, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
             doubts.extend(stuck(robot, recording, (one, other), quantity));
         }
@@ -44,6 +45,8 @@ fn stuck(
     let is_speed = matches!(one, Channel::LeftSpeed | Channel::RightSpeed);
     let wheel = if is_left(one) == is_speed { Channel::RightSpeed } else { Channel::LeftSpeed };
     let moves = recording.channel(wheel)?;
+    // What a side draws changes with its speed, and the other way round.
+    let beside = beside(one).into_iter().find_map(|channel| recording.channel(channel));
     let mut stuck = Vec::new();
     for run in &recording.runs {
         for rows in equal(values, run.rows.clone()) {
@@ -52,13 +55,14 @@ fn stuck(
                 .filter(|row| moves[*row].abs() > STANDS_MPS)
                 .filter_map(|row| recording.step_s(run, row))
                 .sum();
-            let different: BTreeSet<u64> = rows
-                .clone()
-                .filter(|row| living[*row].is_finite() && moves[*row].abs() > STANDS_MPS)
-                .map(|row| living[row].to_bits())
-                .collect();
+            let lives = |values: &[f64]| {
+                let driven = rows.clone().filter(|row| moves[*row].abs() > STANDS_MPS);
+                let known = driven.filter(|row| values[*row].is_finite()).map(|row| values[row].to_bits());
+                known.collect::<BTreeSet<u64>>().len() >= LEAST_VALUES
+            };
             if driven_s >= LEAST_S
-                && different.len() >= LEAST_VALUES
+                && lives(living)
+                && beside.is_none_or(lives)
                 && !(is_speed && turns_so(robot, recording, rows.clone()))
             {
                 stuck.push((driven_s, rows.start, run));
@@ -82,16 +86,28 @@ fn stuck(
     })
 }
 
-/// Whether the gyroscope tells that the robot turns about a side that stands.
+/// Channels that a side's own channel goes with: power or current with speed, and speed with these.
+fn beside(channel: Channel) -> Vec<Channel> {
+    use Channel::{LeftMotorCurrent, LeftPower, LeftSpeed, RightMotorCurrent, RightPower, RightSpeed};
+    match channel {
+        LeftSpeed => vec![LeftPower, LeftMotorCurrent],
+        RightSpeed => vec![RightPower, RightMotorCurrent],
+        _ if is_left(channel) => vec![LeftSpeed],
+        _ => vec![RightSpeed],
+    }
+}
+
+/// Whether the gyroscope tells that the robot turns as wheels do of which one side's stand at a speed.
 fn turns_so(robot: &Robot, recording: &Recording, rows: Range<usize>) -> bool {
     /// Share of the turn meant by the wheels that is seen where the ground lets them turn the robot.
     const LEAST_SHARE: f64 = 0.5;
     let columns = [Channel::LeftSpeed, Channel::RightSpeed, Channel::YawRate].map(|c| recording.channel(c));
     let [Some(left), Some(right), Some(rate)] = columns else { return false };
     let (meant, seen) = rows.filter(|row| rate[*row].is_finite()).fold((0.0, 0.0), |(meant, seen), row| {
-        (meant + right[row] - left[row], seen + rate[row] * robot.slip_track_m)
+        let difference = right[row] - left[row];
+        (meant + difference * difference, seen + difference * rate[row] * robot.slip_track_m)
     });
-    seen / meant > LEAST_SHARE
+    seen > LEAST_SHARE * meant
 }
 
 fn is_left(channel: Channel) -> bool {
@@ -115,7 +131,8 @@ fn saturated(recording: &Recording) -> Vec<Doubt> {
         found.iter().find(|one| one.channel == channel && one.kind == SuspicionKind::Saturated)
     };
     let mut doubts = Vec::new();
-    for (sides, quantity) in SIDES {
+    // A robot drives at its top speed often; meters have no such limit.
+    for (sides, quantity) in SIDES.into_iter().filter(|(sides, _)| sides[0].tells_power()) {
         for (one, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
             let (Some(limit), None) = (of(one), of(other)) else { continue };
             if recording.channel(other).is_none() {

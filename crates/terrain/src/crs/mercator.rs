@@ -51,6 +51,13 @@ const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// First eccentricity squared of WGS 84 (NIMA TR8350.2, table 3.3).
 const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
 
+/// Whether a semi-major axis is one of the earth's: those of the EPSG registry lie within 3e-4 of that of WGS 84. Of other
+/// bodies nothing is known here [m].
+pub(crate) fn is_of_earth(semi_major_m: f64) -> bool {
+    const SPREAD: f64 = 1e-3;
+    (semi_major_m / SEMI_MAJOR_M - 1.0).abs() <= SPREAD
+}
+
 impl Mercator {
     /// The projection of a PROJ definition, looked up by key, if it is a Mercator.
     pub(super) fn from_proj<'a>(value: impl Fn(&str) -> Option<&'a str>) -> Option<Self> {

@@ -177,7 +177,14 @@ impl<'a> Node<'a> {
         let words = |node: &Node<'_>| node.words.iter().any(|word| word.contains("+b=6378137"));
         let is_spherical = spherical.iter().any(|kind| method.contains(kind))
             || self.child(&["EXTENSION"]).is_some_and(words);
-        let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]).and_then(|base| base.words.first());
+        let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]);
+        let ellipsoid =
+            base.and_then(|base| base.child(&["DATUM", "ENSEMBLE"])?.child(&["SPHEROID", "ELLIPSOID"]));
+        let semi_major_m = ellipsoid.and_then(|ellipsoid| ellipsoid.words.get(1)?.parse::<f64>().ok());
+        if semi_major_m.is_some_and(|semi_major_m| !mercator::is_of_earth(semi_major_m)) {
+            return None;
+        }
+        let base = base.and_then(|base| base.words.first());
         Some(Mercator {
             is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
             spacing: match () {
@@ -254,6 +261,19 @@ mod tests {
         assert_eq!(crs.text.as_deref(), Some("EPSG:26915"));
         let vertical = crs.vertical.unwrap();
         assert_eq!((vertical.unit.name, vertical.is_depth), ("US survey foot", false));
+    }
+
+    #[test]
+    fn projections_of_other_bodies_are_not_brought_to_the_ground_of_this_one() {
+        let of = |radius_m: f64| {
+            let text = format!(
+                "PROJCS[\"eqc\",GEOGCS[\"body\",DATUM[\"body\",SPHEROID[\"body\",{radius_m},0]]],PROJECTION[\"Equirectangular\"],UNIT[\"metre\",1]]"
+            );
+            parse(&text).unwrap().mercator
+        };
+        assert!(of(6_371_000.0 * 1.0011).is_some() && of(6_378_137.0).is_some());
+        assert_eq!(of(3_396_190.0), None, "Mars");
+        assert_eq!(of(1_737_400.0), None, "the moon");
     }
 
     #[test]

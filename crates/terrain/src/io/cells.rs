@@ -182,7 +182,8 @@ mod tests {
 
     fn warned() -> Terrain {
         let filled = (0..12).map(|i| i == 3).collect();
-        layered().with_filled(filled).with_warning(Warning::new(WarningKind::FilledVoids, "1 cell \"é\""))
+        let warning = Warning::new(WarningKind::FilledVoids, "1 cell \"é\"");
+        Terrain { crs: Some("EPSG:32632".into()), ..layered().with_filled(filled).with_warning(warning) }
     }
 
     fn written(terrain: &Terrain) -> Vec<u8> {
@@ -200,6 +201,7 @@ mod tests {
             let again = read(&bytes[..]).unwrap();
             assert_eq!(again.content_id(), terrain.content_id());
             assert_eq!(again.warnings(), terrain.warnings());
+            assert_eq!(again.crs, terrain.crs);
             assert_eq!(written(&again), bytes);
         }
     }

@@ -26,6 +26,12 @@ struct RosMap {
     mode: Option<String>,
 }
 
+/// The image that a text names, if it is the YAML file of a `map_server` map.
+pub fn image_named_in(text: &[u8]) -> Option<String> {
+    let map: RosMap = serde_yaml_ng::from_slice(text).ok()?;
+    Some(map.image)
+}
+
 /// Reads a `map_server` map, whose image `image` finds by its name: occupied pixels are obstacles, unknown ones unknown ground,
 /// free ones level at 0 m. Modes `trinary`, `scale` and `raw` are those of `nav2_map_server`; pixels between free and occupied
 /// are free with a warning, as there is no cost for them. The image's first bytes say which format it has, not its name.

@@ -5,7 +5,7 @@ use tiff::tags::Tag;
 use super::directory::Tags;
 use crate::{
     Error, Warning, WarningKind,
-    crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, vertical},
+    crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, is_of_earth, vertical},
 };
 
 const MODEL_TYPE: u16 = 1024;
@@ -151,6 +151,9 @@ impl GeoKeys {
             return Crs::default();
         }
         let major_m = self.double(SEMI_MAJOR_AXIS);
+        if major_m.is_some_and(|major_m| !is_of_earth(major_m)) {
+            return Crs::default();
+        }
         let is_sphere = major_m.is_some() && major_m == self.double(SEMI_MINOR_AXIS)
             || self.double(INVERSE_FLATTENING) == Some(0.0);
         let names = citations.iter().flatten().copied().collect::<String>().to_lowercase();
