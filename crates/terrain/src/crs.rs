@@ -12,11 +12,6 @@ mod unit;
 mod warp;
 mod wkt;
 
-<<<<<<< HEAD
-=======
-pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
-pub(crate) use self::mercator::is_of_earth;
->>>>>>> main
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
@@ -26,6 +21,7 @@ pub use self::{
 };
 pub(crate) use self::{
     ground::{Size, UNTOLD_CELLS, to_ground},
+    mercator::is_of_earth,
     warp::{DegreeFrame, Unwarped, Warp},
 };
 

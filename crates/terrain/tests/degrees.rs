@@ -161,6 +161,28 @@ fn numbers_that_are_no_degrees_are_refused_whatever_the_system_says() {
 }
 
 #[test]
+fn no_numbers_of_a_header_make_it_panic() {
+    let numbers = [0.0, 1e-300, 1e-9, 1e-3, 0.5, 9.0, -80.0, 84.0, 90.0, -180.0, 180.0, 359.999, 1e6, 1e300];
+    let mut read = 0;
+    for west_deg in numbers {
+        for south_deg in numbers {
+            for cell_deg in [1e-300, 1e-9, 1e-7, 1e-4, 1e-3, 0.5, 1e300] {
+                let model = Model { west_deg, south_deg, cell_deg, columns: 2, prj: DEGREES };
+                read += usize::from(model.read().is_ok());
+            }
+        }
+    }
+    assert!(read > 0);
+}
+
+#[test]
+fn what_cannot_be_read_back_is_said() {
+    let single = Model { columns: 1, cell_deg: 1e-6, ..Model::at(9.1, 48.9) }.read().unwrap();
+    let said = said(&single, WarningKind::Warped).unwrap();
+    assert!(known(&single) >= 40 && said.contains("read back"), "{said}");
+}
+
+#[test]
 fn more_cells_than_may_be_are_refused_before_they_are_made() {
     let options = io::Options { most_cells: 2000, ..io::Options::default() };
     // 1600 cells of the file, but half as many again of square ones.

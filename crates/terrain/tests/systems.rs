@@ -177,6 +177,35 @@ fn degrees_are_refused_with_the_command_for_their_zone() {
     }
 }
 
+#[test]
+fn degrees_that_are_named_are_warped_and_count_for_both_grids() {
+    let degrees = File { tie: [0.0, 0.0, 0.0, -93.9, 46.5, 0.0], scale: [1e-4, 1e-4, 0.0], ..File::epsg(0) };
+    for keys in [
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4326],
+        vec![2048, 0, 1, 4269],
+        vec![1024, 0, 1, 1, 3072, 0, 1, 4326],
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4979, 2054, 0, 1, 9102, 4096, 0, 1, 5773],
+    ] {
+        let file = File { keys, ..degrees.clone() };
+        let terrain = file.read();
+        assert_eq!(terrain.crs.as_deref(), Some("EPSG:32615"));
+        // Rows come from the north: heights rise southwards.
+        let [x_m, y_m] = terrain.earth().unwrap().place_m([-93.899_75, 46.499_85]).unwrap();
+        assert!((terrain.elevation_at_m(x_m, y_m).unwrap() - 112.0).abs() < 0.5);
+        let cells = io::geotiff::cells(&file.write()).unwrap();
+        assert_eq!(cells, 12 + terrain.grid.cells() as u64, "memory is asked for on both sides");
+    }
+    let feet = vec![1024, 0, 1, 2, 2048, 0, 1, 4326, 4096, 0, 1, 6360];
+    let in_feet = File { keys: feet, ..degrees.clone() }.read();
+    near(in_feet.base_m(), 100.0 * US_FOOT_M);
+    let mut turned = [0.0; 16];
+    [turned[0], turned[1], turned[3]] = [1e-4, 2e-5, -93.9];
+    [turned[4], turned[5], turned[7], turned[15]] = [2e-5, -1e-4, 46.5, 1.0];
+    let keys = vec![1024, 0, 1, 2, 2048, 0, 1, 4326];
+    let said = File { matrix: Some(turned), keys, ..degrees }.refused();
+    assert!(said.contains("turned against north") && said.contains("-t_srs EPSG:32615 "), "{said}");
+}
+
 impl Clone for File {
     fn clone(&self) -> Self {
         File { keys: self.keys.clone(), doubles: self.doubles.clone(), ..*self }
