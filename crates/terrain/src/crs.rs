@@ -8,6 +8,7 @@ mod epsg;
 mod geographic;
 mod ground;
 mod mercator;
+mod prj;
 mod unit;
 mod warp;
 mod wkt;
@@ -20,7 +21,7 @@ pub use self::{
     warp::WarpRefusal,
 };
 pub(crate) use self::{
-    ground::{Size, UNTOLD_CELLS, to_ground},
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, to_ground},
     mercator::is_of_earth,
     warp::{DegreeFrame, Unwarped, Warp},
 };

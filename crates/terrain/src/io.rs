@@ -75,9 +75,10 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
             read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?
         }
         () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
-        () if has(&[".hgt"]) => hgt::read(&bytes()?, &name, options)?.as_asked(options)?,
+        () if has(&[".hgt"]) => hgt::read(&bytes()?, &name, options)?.into_metres(options)?,
         () if has(&[".hgt.gz"]) => {
-            hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?.as_asked(options)?
+            hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?
+                .into_metres(options)?
         }
         () if has(&[".yaml", ".yml"]) => {
             let folder = path.parent().unwrap_or(Path::new("."));
@@ -98,7 +99,7 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
         Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options)?,
         Format::GeoTiff => {
             let unwarped = geotiff::read_unwarped(bytes, options.most_cells).map_err(Error::in_geotiff)?;
-            unwarped.as_asked(options)?
+            unwarped.into_metres(options)?
         }
     };
     let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
@@ -134,7 +135,7 @@ fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Ter
     });
     let text = text(bytes)?;
     match beside {
-        Some(crs) if crs.is_geographic => ascii::read_degrees(text, options, &crs)?.as_asked(options),
+        Some(crs) if crs.is_geographic => ascii::read_degrees(text, options, &crs)?.into_metres(options),
         Some(crs) => ascii::read(text, options)?.placed_in(&crs, "asc")?.as_asked(options),
         None => ascii::read(text, options)?.as_asked(options),
     }

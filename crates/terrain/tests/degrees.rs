@@ -141,6 +141,13 @@ fn the_widest_and_the_most_northern_that_one_zone_serves_are_read_and_no_more() 
     let wide = |columns| Model { columns, cell_deg: 1.0 / 1200.0, ..Model::at(4.5, 83.9) };
     let widest = wide(9 * 1200).read().unwrap();
     assert_eq!(widest.crs.as_deref(), Some("EPSG:32632"));
+    assert!(
+        !said(&widest, WarningKind::Warped).unwrap().contains("beyond the zone"),
+        "narrow close to a pole"
+    );
+    let equator = Model { south_deg: 0.0, ..wide(9 * 1200) }.read().unwrap();
+    let doubt = said(&equator, WarningKind::Warped).unwrap();
+    assert!(doubt.contains("beyond the zone's edges 1 m of ground is up to 1.002"), "{doubt}");
     let refused = |model: Model| model.read().unwrap_err().to_string();
     let wider = refused(wide(9 * 1200 + 1));
     assert!(wider.contains("more than the 9°") && wider.contains("-projwin 4.5 "), "{wider}");

@@ -13,7 +13,7 @@ use crate::{
 pub(crate) const UNTOLD_CELLS: f64 = 0.5;
 
 /// Scale error that is left to maps in UTM, which has 0.9996 on a zone's meridian and 1.0010 at its edges (Snyder 1987, page 58).
-const UTM_SCALE_ERROR: f64 = 1e-3;
+pub(crate) const UTM_SCALE_ERROR: f64 = 1e-3;
 
 /// Pixels of a raster.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,18 +13,21 @@ use self::{fidelity::Fidelity, lattice::Lattice};
 pub(crate) use self::{frame::DegreeFrame, unwarped::Unwarped};
 use rayon::prelude::*;
 
-use super::{Crs, Earth, Size};
+use super::{Crs, Earth, Size, UTM_SCALE_ERROR};
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
     io::degrees::utm_epsg,
     resample::{Affine, Raster},
 };
 
-/// Widest source [°]: a zone and a half. At its edges, 7.5° from a zone's meridian at most, a metre of UTM is 1.008 m of ground at most.
+/// Widest source [°]: a zone and a half. At its edges, 7.5° from a zone's meridian at most, a metre of ground is 1.008 m of UTM at most.
 const WIDEST_DEG: f64 = 9.0;
 
 /// Latitudes that UTM is for [°] (NGA.SIG.0012, section 2).
 const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
+
+/// Easting of a zone's meridian [m].
+const FALSE_EASTING_M: f64 = 500_000.0;
 
 /// Where the cells of a grid of degrees come to lie.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,12 +126,42 @@ impl Warp {
 
     fn warning(&self, fidelity: &Fidelity) -> Warning {
         let [width_m, height_m] = self.source_cell_m;
+        // Systems of WGS 84 itself, in two and in three dimensions; places of others differ by as much as the plates have moved.
+        let is_wgs_84 = ["EPSG:4326", "EPSG:4979"].contains(&self.system.as_str());
+        let datum =
+            if is_wgs_84 { "" } else { ", taken as WGS 84, from which its places differ by up to 2 m" };
         let detail = format!(
-            "cells of degrees ({}, {width_m:.2} × {height_m:.2} m here) were warped to cells of {} m in EPSG:{}, heights bilinear: {fidelity}",
-            self.system, self.grid.cell_size_m, self.epsg
+            "cells of degrees ({}{datum}; {width_m:.2} × {height_m:.2} m here) were warped to cells of {} m in EPSG:{}, heights bilinear: {fidelity}{}",
+            self.system,
+            self.grid.cell_size_m,
+            self.epsg,
+            scale_doubt(&self.grid)
         );
         Warning::new(WarningKind::Warped, detail)
     }
+}
+
+/// What is said where a metre of the grid differs from one of the ground by more than it does in the zone itself.
+fn scale_doubt(grid: &Grid) -> String {
+    let off_m = |x_m: f64| (x_m - FALSE_EASTING_M).abs();
+    let largest = utm_scale(off_m(grid.origin_m[0]).max(off_m(grid.far_corner_m()[0])));
+    if (largest - 1.0).abs() <= UTM_SCALE_ERROR {
+        return String::new();
+    }
+    format!("; beyond the zone's edges 1 m of ground is up to {largest:.4} m of the map")
+}
+
+/// Length in UTM of a metre of ground at a distance east or west of a zone's meridian.
+///
+///     k = k₀ · (1 + (x / k₀)² / 2R²)
+///
+/// k₀ scale on the meridian, x distance in UTM \[m\], R radius of the earth \[m\]. Snyder (1987), chapter 8, on the sphere to second order: right
+/// to 1e-4 within 8° of the meridian.
+fn utm_scale(x_m: f64) -> f64 {
+    const MERIDIAN_SCALE: f64 = 0.9996;
+    /// Mean radius of WGS 84 (NGA.STND.0036, table 3.4).
+    const MEAN_RADIUS_M: f64 = 6_371_008.8;
+    MERIDIAN_SCALE * (1.0 + (x_m / MERIDIAN_SCALE / MEAN_RADIUS_M).powi(2) / 2.0)
 }
 
 fn zone(epsg: u32) -> Result<Earth, WarpRefusal> {
@@ -213,6 +246,19 @@ fn three_digits(length_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_scale_is_that_of_utm_on_the_meridian_at_the_edge_and_beyond() {
+        // 0.9996 on the meridian, 1 where x is 180 km, by PROJ's factors 1.000 981 at 3° and 1.008 284 at 7.5° of the equator.
+        for (x_m, scale, tolerance) in [
+            (0.0, 0.9996, 1e-12),
+            (180e3, 1.0, 1e-5),
+            (333_978.5, 1.000_981, 2e-5),
+            (836_972.1, 1.008_284, 1e-4),
+        ] {
+            assert!((utm_scale(x_m) - scale).abs() < tolerance, "{x_m}: {}", utm_scale(x_m));
+        }
+    }
 
     #[test]
     fn cell_sizes_have_three_digits() {

@@ -1,8 +1,6 @@
-//! Well-known text: of the tree that it writes, kind, unit, code and projection. Also the older `.prj` of Esri, a word a line.
+//! Well-known text: of the tree that it writes, kind, unit, code and projection.
 
-use super::{
-    Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, geographic, mercator,
-};
+use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_name, epsg, geographic, mercator, prj};
 
 /// Deepest nesting that is read; texts of the EPSG registry have 8.
 const DEEPEST: usize = 32;
@@ -23,7 +21,7 @@ struct Node<'a> {
 
 /// What a text says; `None` if it is no WKT and no `.prj`.
 pub(super) fn parse(text: &str) -> Option<Crs> {
-    let Some((node, _)) = Node::read(text, 0) else { return older_prj(text) };
+    let Some((node, _)) = Node::read(text, 0) else { return prj::parse_words(text) };
     let mut crs = node.crs()?;
     crs.text = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
     if let Some(code) = node.horizontal().epsg_code() {
@@ -202,37 +200,6 @@ impl<'a> Node<'a> {
     }
 }
 
-/// The `.prj` of ArcInfo: `Projection UTM`, `Zone 15`, `Datum WGS84`, `Units METERS`, a word and a value a line.
-fn older_prj(text: &str) -> Option<Crs> {
-    let value = |key: &str| {
-        text.lines().find_map(|line| {
-            let (word, value) = line.trim().split_once(char::is_whitespace)?;
-            word.eq_ignore_ascii_case(key).then(|| value.trim().to_uppercase())
-        })
-    };
-    let projection = value("Projection")?;
-    let unit = value("Units").and_then(|name| by_name(&name));
-    if projection == "GEOGRAPHIC" {
-        let counts_degrees = value("Units").is_some_and(|unit| matches!(unit.as_str(), "DD" | "DEGREES"));
-        let code = value("Datum").filter(|_| counts_degrees).and_then(|name| geographic::code_by_name(&name));
-        let text = code.map(|code| format!("EPSG:{code}"));
-        return Some(Crs { text, is_geographic: true, ..Crs::default() });
-    }
-    let mut crs = Crs { unit, ..Crs::default() };
-    if projection == "MERCATOR" {
-        crs.mercator = Some(mercator::WORLD);
-    }
-    let zone =
-        value("Zone").and_then(|zone| zone.parse::<i32>().ok()).filter(|zone| (1..=60).contains(&zone.abs()));
-    let wgs84 = value("Datum").is_some_and(|datum| matches!(datum.as_str(), "WGS84" | "WGS_1984"));
-    if let (true, true, Some(zone)) = (projection == "UTM", wgs84, zone) {
-        let code = if zone > 0 { 32_600 } else { 32_700 } + zone.unsigned_abs();
-        crs.text = Some(format!("EPSG:{code}"));
-        crs.unit = crs.unit.or(by_epsg_code(9001));
-    }
-    Some(crs)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -289,14 +256,6 @@ mod tests {
         assert_eq!(mercator("Plate_Carree").unwrap().spacing, Spacing::Even);
         let web = mercator("Mercator_Auxiliary_Sphere").unwrap();
         assert_eq!((web.spacing, web.equator_scale), (Spacing::Spherical, 0.5));
-    }
-
-    #[test]
-    fn the_older_form_of_arcinfo_is_read_by_line() {
-        let crs = parse("Projection    UTM\nZone 15\nDatum WGS84\nUnits METERS\nParameters\n").unwrap();
-        assert_eq!(crs.text.as_deref(), Some("EPSG:32615"));
-        assert!(parse("Projection GEOGRAPHIC\nUnits DD\n").unwrap().is_geographic);
-        assert_eq!(parse("Projection STATEPLANE\nUnits FEET\n").unwrap().unit, Some(LinearUnit::FOOT));
     }
 
     #[test]

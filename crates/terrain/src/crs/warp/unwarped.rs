@@ -26,7 +26,7 @@ impl Unwarped {
     ///
     /// # Errors
     /// Options that cannot be, nodata that leaves no known cell, or as [`Warp::apply`].
-    pub(crate) fn as_asked(self, options: &Options) -> Result<Terrain, Error> {
+    pub(crate) fn into_metres(self, options: &Options) -> Result<Terrain, Error> {
         let terrain = self.terrain.with_own_doubts(options)?;
         Unwarped { terrain, warp: self.warp }.warped()?.with_asked_filling(options)
     }
