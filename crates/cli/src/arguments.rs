@@ -138,7 +138,7 @@ impl Place {
 /// A map and how it is to be read.
 #[derive(Args)]
 pub(crate) struct MapArguments {
-    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .yaml ROS map
+    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .hgt SRTM tile, .yaml ROS map
     #[arg(long)]
     map: PathBuf,
     #[command(flatten)]

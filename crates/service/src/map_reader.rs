@@ -61,7 +61,7 @@ impl MapReader {
             }
             _ => {
                 let detail = format!(
-                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`"
+                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
                 );
                 return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
             }

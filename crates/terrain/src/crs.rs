@@ -5,18 +5,25 @@
 
 mod earth;
 mod epsg;
+mod geographic;
 mod ground;
 mod mercator;
+mod prj;
 mod unit;
+mod warp;
 mod wkt;
 
-pub(crate) use self::ground::{Size, UNTOLD_CELLS, refuse_degrees, to_ground};
-pub(crate) use self::mercator::is_of_earth;
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},
+    warp::WarpRefusal,
+};
+pub(crate) use self::{
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, to_ground},
+    mercator::is_of_earth,
+    warp::{DegreeFrame, Unwarped, Warp},
 };
 
 use crate::Error;

@@ -156,6 +156,12 @@ pub enum Error {
         /// EPSG code of the UTM zone of the middle.
         epsg: u32,
     },
+    /// A grid of degrees that is not warped to metres.
+    #[error(transparent)]
+    Warp(#[from] crate::crs::WarpRefusal),
+    /// An SRTM tile.
+    #[error(transparent)]
+    Hgt(#[from] crate::io::hgt::HgtError),
     /// Text that is not UTF-8.
     #[error("byte {position} is not UTF-8 text{}", is_of(*found))]
     NotText {
@@ -270,7 +276,9 @@ pub enum Error {
         limit: f64,
     },
     /// A file name that says nothing about its format.
-    #[error("`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .yaml or .yml")]
+    #[error(
+        "`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .hgt, .hgt.gz, .yaml or .yml"
+    )]
     UnknownFormat {
         /// The path.
         path: String,

@@ -4,6 +4,7 @@ pub mod ascii;
 pub mod cells;
 pub mod degrees;
 pub mod geotiff;
+pub mod hgt;
 pub mod json;
 pub mod ros_map;
 
@@ -51,7 +52,7 @@ const MOST_UNPACKED_BYTES: u64 = 24 * Terrain::MAX_CELLS;
 
 /// Reads a map file; its ending says which format it is in.
 ///
-/// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.yaml`/`.yml` ROS `map_server`.
+/// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.hgt` and `.hgt.gz` SRTM tile, `.yaml`/`.yml` ROS `map_server`.
 ///
 /// # Errors
 /// What is wrong with the file, with the place in it.
@@ -70,8 +71,15 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
     let terrain = match () {
         () if has(&[".json"]) => read_bytes(Format::Json, &bytes()?, options)?,
         () if has(&[".asc"]) => read_ascii_beside(&bytes()?, path, options)?,
-        () if has(&[".asc.gz"]) => read_ascii_beside(&unpacked(&bytes()?, path)?, path, options)?,
+        () if has(&[".asc.gz"]) => {
+            read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?
+        }
         () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
+        () if has(&[".hgt"]) => hgt::read(&bytes()?, &name, options)?.into_metres(options)?,
+        () if has(&[".hgt.gz"]) => {
+            hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?
+                .into_metres(options)?
+        }
         () if has(&[".yaml", ".yml"]) => {
             let folder = path.parent().unwrap_or(Path::new("."));
             read_ros_map(&bytes()?, options, |image| fs::read(folder.join(image)))?
@@ -87,11 +95,13 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
 /// What is wrong with it, with the place in it.
 pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Terrain, Error> {
     let terrain = match format {
-        Format::Json => json::read(text(bytes)?),
-        Format::Ascii => ascii::read(text(bytes)?, options),
-        Format::GeoTiff => geotiff::read(bytes, options.most_cells).map_err(Error::in_geotiff),
-    }?;
-    let terrain = terrain.as_asked(options)?;
+        Format::Json => json::read(text(bytes)?)?.as_asked(options)?,
+        Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options)?,
+        Format::GeoTiff => {
+            let unwarped = geotiff::read_unwarped(bytes, options.most_cells).map_err(Error::in_geotiff)?;
+            unwarped.into_metres(options)?
+        }
+    };
     let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
     Ok(if is_bytes { terrain.with_doubt_of_bytes() } else { terrain })
 }
@@ -123,10 +133,11 @@ fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Ter
         let bytes = fs::read(bare.with_extension(ending)).ok()?;
         Crs::parse(text(&bytes).ok()?)
     });
-    let terrain = ascii::read(text(bytes)?, options)?;
+    let text = text(bytes)?;
     match beside {
-        Some(crs) => terrain.placed_in(&crs, "asc")?.as_asked(options),
-        None => terrain.as_asked(options),
+        Some(crs) if crs.is_geographic => ascii::read_degrees(text, options, &crs)?.into_metres(options),
+        Some(crs) => ascii::read(text, options)?.placed_in(&crs, "asc")?.as_asked(options),
+        None => ascii::read(text, options)?.as_asked(options),
     }
 }
 
@@ -153,9 +164,9 @@ fn named_by_magic(bytes: &[u8]) -> Option<&'static str> {
     MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
 }
 
-fn unpacked(bytes: &[u8], path: &Path) -> Result<Vec<u8>, Error> {
+fn unpacked(bytes: &[u8], path: &Path, most_bytes: u64) -> Result<Vec<u8>, Error> {
     let mut text = Vec::new();
-    let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED_BYTES).read_to_end(&mut text);
+    let read = MultiGzDecoder::new(bytes).take(most_bytes).read_to_end(&mut text);
     read.map(|_| text).map_err(|source| Error::Read { path: path.display().to_string(), source })
 }
 
@@ -165,14 +176,23 @@ impl Terrain {
     /// # Errors
     /// Options that cannot be, or nodata that leaves no known cell.
     pub fn as_asked(self, options: &Options) -> Result<Self, Error> {
-        let mut terrain = self;
-        if let Some(nodata_m) = options.nodata_m {
-            terrain = terrain.with_nodata(nodata_m)?;
-        }
-        terrain = terrain.with_doubts();
+        self.with_own_doubts(options)?.with_asked_filling(options)
+    }
+
+    /// The ground with the options' nodata unknown, and with doubts about what its cells hold.
+    pub(crate) fn with_own_doubts(self, options: &Options) -> Result<Self, Error> {
+        let terrain = match options.nodata_m {
+            Some(nodata_m) => self.with_nodata(nodata_m)?,
+            None => self,
+        };
+        Ok(terrain.with_doubts())
+    }
+
+    /// The ground with holes filled as the options want it.
+    pub(crate) fn with_asked_filling(self, options: &Options) -> Result<Self, Error> {
         match options.fill_voids_m {
-            Some(fill_voids_m) => terrain.with_filled_voids(fill_voids_m),
-            None => Ok(terrain),
+            Some(fill_voids_m) => self.with_filled_voids(fill_voids_m),
+            None => Ok(self),
         }
     }
 }

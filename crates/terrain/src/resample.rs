@@ -84,9 +84,14 @@ impl<T: Copy + Into<f64> + Sync> Raster<'_, T> {
     }
 
     fn at(&self, place: [f64; 2]) -> f64 {
+        self.between(self.affine.inverse(place))
+    }
+
+    /// The sample at a position in pixels from the raster's first corner, bilinear between centres; NaN outside and where a pixel that
+    /// counts is NaN. The outer half of outer pixels holds what their centres do.
+    pub(crate) fn between(&self, [column, row]: [f64; 2]) -> f64 {
         // Rounding must not push the outermost places off the raster.
         const ROUNDING: f64 = 1e-6;
-        let [column, row] = self.affine.inverse(place);
         let within = |position: f64, count: usize| (-ROUNDING..=count as f64 + ROUNDING).contains(&position);
         if !within(column, self.columns) || !within(row, self.rows) {
             return f64::NAN;

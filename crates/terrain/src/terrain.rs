@@ -76,7 +76,8 @@ impl Terrain {
     pub const HIGHEST_M: f64 = 22_000.0;
     /// Smallest edge of a cell [m].
     pub const SMALLEST_CELL_M: f64 = 0.01;
-    const CELL_SIZE_M: (f64, f64) = (Self::SMALLEST_CELL_M, 100.0);
+    /// Smallest and largest edge of a cell [m].
+    pub(crate) const CELL_SIZE_M: (f64, f64) = (Self::SMALLEST_CELL_M, 100.0);
     /// Projected coordinates stay below the circumference of the earth.
     const ORIGIN_LIMIT_M: f64 = 5e7;
 

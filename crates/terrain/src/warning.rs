@@ -48,6 +48,8 @@ pub enum WarningKind {
     ProjectionScale,
     /// Elevations were interpolated onto square cells.
     Interpolated,
+    /// Elevations on a grid of degrees were interpolated onto one of metres.
+    Warped,
     /// Parts of the file that were never written hold zero.
     UnwrittenBlocks,
     /// Cells far larger than the robot.

@@ -4,7 +4,7 @@
 
 use std::io::Cursor;
 
-use terrain::{Cell, Error, Grid, Terrain, crs::Crs, io};
+use terrain::{Cell, Grid, Terrain, crs::Crs, io};
 use tiff::{
     encoder::{TiffEncoder, colortype::Gray32Float},
     tags::Tag,
@@ -151,15 +151,19 @@ fn scale_and_offset_come_before_the_unit() {
 #[test]
 fn degrees_are_refused_with_the_command_for_their_zone() {
     let degrees = File { tie: [0.0, 0.0, 0.0, -93.9, 46.5, 0.0], scale: [1e-4, 1e-4, 0.0], ..File::epsg(0) };
+    // Nothing says that they are degrees; a datum of its own; ED50; a system that is not named.
     for keys in [
-        vec![1024, 0, 1, 2, 2048, 0, 1, 4326],
-        vec![2048, 0, 1, 4269],
-        vec![1024, 0, 1, 1, 3072, 0, 1, 4326],
         vec![],
+        vec![1024, 0, 1, 2, 2048, 0, 1, 32767],
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4230],
+        vec![1024, 0, 1, 2],
     ] {
         let said = File { keys, ..degrees.clone() }.refused();
         assert!(said.contains("degrees") && said.contains("-t_srs EPSG:32615 "), "{said}");
     }
+    let grads = vec![1024, 0, 1, 2, 2048, 0, 1, 4326, 2054, 0, 1, 9105];
+    let said = File { keys: grads, ..degrees.clone() }.refused();
+    assert!(said.contains("GeogAngularUnitsGeoKey") && said.contains("9105"), "{said}");
     let large = File { scale: [0.25, 0.25, 0.0], keys: vec![], ..degrees.clone() }.read();
     assert!(large.warnings()[0].detail.contains("degrees"), "{:?}", large.warnings());
     let local = File {
@@ -171,6 +175,35 @@ fn degrees_are_refused_with_the_command_for_their_zone() {
     for metres in [File { keys: vec![], ..File::epsg(0) }, local] {
         assert_eq!(metres.read().warnings(), [], "far from degrees, or a local frame about its origin");
     }
+}
+
+#[test]
+fn degrees_that_are_named_are_warped_and_count_for_both_grids() {
+    let degrees = File { tie: [0.0, 0.0, 0.0, -93.9, 46.5, 0.0], scale: [1e-4, 1e-4, 0.0], ..File::epsg(0) };
+    for keys in [
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4326],
+        vec![2048, 0, 1, 4269],
+        vec![1024, 0, 1, 1, 3072, 0, 1, 4326],
+        vec![1024, 0, 1, 2, 2048, 0, 1, 4979, 2054, 0, 1, 9102, 4096, 0, 1, 5773],
+    ] {
+        let file = File { keys, ..degrees.clone() };
+        let terrain = file.read();
+        assert_eq!(terrain.crs.as_deref(), Some("EPSG:32615"));
+        // Rows come from the north: heights rise southwards.
+        let [x_m, y_m] = terrain.earth().unwrap().place_m([-93.899_75, 46.499_85]).unwrap();
+        assert!((terrain.elevation_at_m(x_m, y_m).unwrap() - 112.0).abs() < 0.5);
+        let cells = io::geotiff::cells(&file.write()).unwrap();
+        assert_eq!(cells, 12 + terrain.grid.cells() as u64, "memory is asked for on both sides");
+    }
+    let feet = vec![1024, 0, 1, 2, 2048, 0, 1, 4326, 4096, 0, 1, 6360];
+    let in_feet = File { keys: feet, ..degrees.clone() }.read();
+    near(in_feet.base_m(), 100.0 * US_FOOT_M);
+    let mut turned = [0.0; 16];
+    [turned[0], turned[1], turned[3]] = [1e-4, 2e-5, -93.9];
+    [turned[4], turned[5], turned[7], turned[15]] = [2e-5, -1e-4, 46.5, 1.0];
+    let keys = vec![1024, 0, 1, 2, 2048, 0, 1, 4326];
+    let said = File { matrix: Some(turned), keys, ..degrees }.refused();
+    assert!(said.contains("turned against north") && said.contains("-t_srs EPSG:32615 "), "{said}");
 }
 
 impl Clone for File {
@@ -259,9 +292,12 @@ fn a_prj_beside_an_ascii_grid_places_it() {
         "PROJCS[\"x\",GEOGCS[\"y\"],PROJECTION[\"Lambert_Conformal_Conic\"],UNIT[\"Foot_US\",0.3048006096012192]]",
     );
     near(feet.unwrap().grid.cell_size_m, US_FOOT_M);
-    for cell in [0.5, 1e-4] {
-        let refused = read(cell, "GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.0174532925199433]]").unwrap_err();
-        assert!(matches!(&refused, Error::Degrees { epsg: 32_632, .. }), "{refused}");
-    }
+    let degrees = "GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.0174532925199433]]";
+    assert_eq!(read(1e-4, degrees).unwrap().crs.as_deref(), Some("EPSG:32632"));
+    let coarse = read(0.5, degrees).unwrap_err().to_string();
+    assert!(coarse.contains("cells of 0.5°") && coarse.contains("0.01 to 100 m"), "{coarse}");
+    let ed50 = "GEOGCS[\"GCS_European_1950\",DATUM[\"D_European_1950\"],UNIT[\"Degree\",0.0174532925199433]]";
+    let refused = read(1e-4, ed50).unwrap_err().to_string();
+    assert!(refused.contains("D_European_1950") && refused.contains("-t_srs EPSG:32632 "), "{refused}");
     assert_eq!(read(1.0, "nothing that anyone knows").unwrap().crs, None);
 }

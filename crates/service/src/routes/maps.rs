@@ -95,7 +95,7 @@ pub struct ReadingQuery {
     pub nodata_m: Option<f64>,
 }
 
-/// Store a map: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres (image/tiff), or
+/// Store a map: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), or
 /// the YAML and the image of a ROS map_server map (multipart/form-data with the parts `yaml` and `image`). What looks wrong with
 /// its elevations stands in the answer's warnings.
 #[utoipa::path(

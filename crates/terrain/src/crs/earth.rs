@@ -160,7 +160,7 @@ fn code_of(text: &str) -> Option<u32> {
 }
 
 /// Whether a PROJ definition's datum is that of WGS 84 or a realization of the same earth-centred system.
-fn is_earth_centred(definition: &str) -> bool {
+pub(super) fn is_earth_centred(definition: &str) -> bool {
     let words = || definition.split_ascii_whitespace();
     if let Some(datum) = words().find(|word| word.starts_with("+datum=")) {
         return SET_EQUAL.contains(&datum);

@@ -13,13 +13,20 @@ use crate::{
 pub(crate) const UNTOLD_CELLS: f64 = 0.5;
 
 /// Scale error that is left to maps in UTM, which has 0.9996 on a zone's meridian and 1.0010 at its edges (Snyder 1987, page 58).
-const UTM_SCALE_ERROR: f64 = 1e-3;
+pub(crate) const UTM_SCALE_ERROR: f64 = 1e-3;
 
 /// Pixels of a raster.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Size {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
+}
+
+impl Size {
+    /// Their number.
+    pub(crate) fn pixels(self) -> u64 {
+        self.columns as u64 * self.rows as u64
+    }
 }
 
 impl Affine {
@@ -36,14 +43,8 @@ impl Affine {
     }
 }
 
-/// Refuses coordinates in degrees; `ending` is that of the file's name. Here is the one place where such a raster could be warped to
-/// UTM instead.
-pub(crate) fn refuse_degrees(
-    affine: &Affine,
-    size: Size,
-    crs: &Crs,
-    ending: &'static str,
-) -> Result<(), Error> {
+/// Refuses coordinates in degrees; `ending` is that of the file's name. Readers that may warp them do not ask.
+fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs, ending: &'static str) -> Result<(), Error> {
     if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
 }
 
@@ -115,7 +116,7 @@ impl Terrain {
     /// them, as `.prj` does beside `.asc`, are placed so; `ending` is that of the file's name.
     ///
     /// # Errors
-    /// Degrees, or a Mercator that no one scale brings to the ground.
+    /// Degrees, which ground that is read already is not warped from, or a Mercator that no one scale brings to the ground.
     pub fn placed_in(mut self, crs: &Crs, ending: &'static str) -> Result<Self, Error> {
         let Grid { rows, columns, cell_size_m: cell, origin_m: origin } = self.grid;
         let size = Size { columns, rows };

@@ -1,12 +1,15 @@
-//! Well-known text: of the tree that it writes, kind, unit, code and projection. Also the older `.prj` of Esri, a word a line.
+//! Well-known text: of the tree that it writes, kind, unit, code and projection.
 
-use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, by_name, epsg, mercator};
+use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_name, epsg, geographic, mercator, prj};
 
 /// Deepest nesting that is read; texts of the EPSG registry have 8.
 const DEEPEST: usize = 32;
 
 /// Systems made of others: of a horizontal one and a vertical one, or of one and its transformation.
 const COMPOUND: [&str; 4] = ["COMPD_CS", "COMPOUNDCRS", "BOUNDCRS", "SOURCECRS"];
+
+/// Keywords of systems of longitude and latitude, in WKT 1 and 2.
+const GEOGRAPHIC: [&str; 5] = ["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"];
 
 /// A keyword with what stands in its brackets.
 #[derive(Debug, Default)]
@@ -18,7 +21,7 @@ struct Node<'a> {
 
 /// What a text says; `None` if it is no WKT and no `.prj`.
 pub(super) fn parse(text: &str) -> Option<Crs> {
-    let Some((node, _)) = Node::read(text, 0) else { return older_prj(text) };
+    let Some((node, _)) = Node::read(text, 0) else { return prj::parse_words(text) };
     let mut crs = node.crs()?;
     crs.text = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
     if let Some(code) = node.horizontal().epsg_code() {
@@ -26,6 +29,8 @@ pub(super) fn parse(text: &str) -> Option<Crs> {
         // The registry knows its projection by more than a name.
         crs.mercator = crs.mercator.or(of_code.mercator);
         crs.text = of_code.text;
+    } else if let Some(code) = node.horizontal().geographic_code() {
+        crs.text = Some(format!("EPSG:{code}"));
     }
     Some(crs)
 }
@@ -87,7 +92,7 @@ impl<'a> Node<'a> {
             crs.vertical = crs.vertical.or_else(|| parts.find_map(Node::vertical));
             return Some(crs);
         }
-        if self.is(&["GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"]) {
+        if self.is(&GEOGRAPHIC) {
             return Some(Crs { is_geographic: true, ..Crs::default() });
         }
         if self.is(&["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"]) {
@@ -126,6 +131,24 @@ impl<'a> Node<'a> {
         let authority = self.nodes.iter().rev().find(|node| node.is(&["AUTHORITY", "ID"]))?;
         let [name, code, ..] = authority.words.as_slice() else { return None };
         if name.eq_ignore_ascii_case("EPSG") { code.parse().ok() } else { None }
+    }
+
+    /// The code of a geographic system without one, by the name of its datum, if it counts degrees from Greenwich.
+    fn geographic_code(&self) -> Option<u32> {
+        /// Relative difference that a degree written with ten digits has.
+        const WRITTEN_DIGITS: f64 = 1e-9;
+        if !self.is(&GEOGRAPHIC) {
+            return None;
+        }
+        let named = self.child(&["DATUM", "ENSEMBLE", "TRF", "GEODETICDATUM"]).unwrap_or(self);
+        let number = |node: &Node<'_>| node.words.get(1)?.parse::<f64>().ok();
+        let units = ["UNIT", "ANGLEUNIT"];
+        let axis = || self.child(&["AXIS"]).and_then(|axis| axis.child(&units));
+        let radians = number(self.child(&units).or_else(axis)?)?;
+        let is_degree = (radians / 1f64.to_radians() - 1.0).abs() < WRITTEN_DIGITS;
+        let is_greenwich =
+            self.child(&["PRIMEM", "PRIMEMERIDIAN"]).is_none_or(|meridian| number(meridian) == Some(0.0));
+        (is_degree && is_greenwich).then(|| geographic::code_by_name(named.words.first()?)).flatten()
     }
 
     fn mercator(&self) -> Option<Mercator> {
@@ -175,34 +198,6 @@ impl<'a> Node<'a> {
             ],
         })
     }
-}
-
-/// The `.prj` of ArcInfo: `Projection UTM`, `Zone 15`, `Datum WGS84`, `Units METERS`, a word and a value a line.
-fn older_prj(text: &str) -> Option<Crs> {
-    let value = |key: &str| {
-        text.lines().find_map(|line| {
-            let (word, value) = line.trim().split_once(char::is_whitespace)?;
-            word.eq_ignore_ascii_case(key).then(|| value.trim().to_uppercase())
-        })
-    };
-    let projection = value("Projection")?;
-    let unit = value("Units").and_then(|name| by_name(&name));
-    if projection == "GEOGRAPHIC" {
-        return Some(Crs { is_geographic: true, ..Crs::default() });
-    }
-    let mut crs = Crs { unit, ..Crs::default() };
-    if projection == "MERCATOR" {
-        crs.mercator = Some(mercator::WORLD);
-    }
-    let zone =
-        value("Zone").and_then(|zone| zone.parse::<i32>().ok()).filter(|zone| (1..=60).contains(&zone.abs()));
-    let wgs84 = value("Datum").is_some_and(|datum| matches!(datum.as_str(), "WGS84" | "WGS_1984"));
-    if let (true, true, Some(zone)) = (projection == "UTM", wgs84, zone) {
-        let code = if zone > 0 { 32_600 } else { 32_700 } + zone.unsigned_abs();
-        crs.text = Some(format!("EPSG:{code}"));
-        crs.unit = crs.unit.or(by_epsg_code(9001));
-    }
-    Some(crs)
 }
 
 #[cfg(test)]
@@ -261,14 +256,6 @@ mod tests {
         assert_eq!(mercator("Plate_Carree").unwrap().spacing, Spacing::Even);
         let web = mercator("Mercator_Auxiliary_Sphere").unwrap();
         assert_eq!((web.spacing, web.equator_scale), (Spacing::Spherical, 0.5));
-    }
-
-    #[test]
-    fn the_older_form_of_arcinfo_is_read_by_line() {
-        let crs = parse("Projection    UTM\nZone 15\nDatum WGS84\nUnits METERS\nParameters\n").unwrap();
-        assert_eq!(crs.text.as_deref(), Some("EPSG:32615"));
-        assert!(parse("Projection GEOGRAPHIC\nUnits DD\n").unwrap().is_geographic);
-        assert_eq!(parse("Projection STATEPLANE\nUnits FEET\n").unwrap().unit, Some(LinearUnit::FOOT));
     }
 
     #[test]

@@ -7,7 +7,11 @@ mod notation;
 pub use self::error::AsciiError;
 use self::{header::Header, notation::Notation};
 use super::{Options, degrees::Coordinates};
-use crate::{Error, Grid, Terrain, fill_value};
+use crate::{
+    Error, Grid, Terrain,
+    crs::{Crs, DegreeFrame, Unwarped, Warp},
+    fill_value,
+};
 
 /// Reads an ESRI ASCII grid. Header lines come in any order, `xllcorner` and `xllcenter` both place the grid, `dx` and `dy` may
 /// stand for `cellsize` where they are equal. Cells of `NODATA_value`, of the options' nodata, and `nan` or `null` are unknown.
@@ -32,34 +36,51 @@ pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
             other => other,
         },
     )?;
-    let values = Values {
-        notation,
-        marks: [header.nodata, options.nodata_m.filter(|mark| !Terrain::holds(*mark))],
-        grid: &grid,
-    };
-    let from_north = values.read(text, header.lines)?;
-    let terrain = Terrain::new(grid, &south_up(&grid, &from_north)).map_err(|error| match error {
-        Error::AllUnknown => AsciiError::AllUnknown.into(),
-        other => other,
-    })?;
+    let terrain = Values::of(&header, notation, options).terrain(text, &header, grid)?;
     Ok(match coordinates.unit_warning() {
         Some(warning) => terrain.with_warning(warning),
         None => terrain,
     })
 }
 
+/// Reads an ESRI ASCII grid whose cells are degrees of a geographic system.
+///
+/// # Errors
+/// As [`read`], or a grid that is not warped to metres.
+pub(crate) fn read_degrees(text: &str, options: &Options, crs: &Crs) -> Result<Unwarped, Error> {
+    let notation = Notation::of(text)?;
+    let header = Header::read(text, notation)?;
+    let frame = DegreeFrame::checked(header.origin, header.cell_size, [header.columns, header.rows])?;
+    let warp = Warp::plan(frame, crs, "asc", options.most_cells)?;
+    let terrain = Values::of(&header, notation, options).terrain(text, &header, warp.source_grid())?;
+    Ok(Unwarped { terrain, warp: Some(warp) })
+}
+
 /// How the values of a grid are to be read.
-struct Values<'a> {
+struct Values {
     notation: Notation,
     /// Values of unknown cells.
     marks: [Option<f64>; 2],
-    grid: &'a Grid,
 }
 
-impl Values<'_> {
-    /// The values below so many lines of header, NaN where unknown.
-    fn read(&self, text: &str, header_lines: usize) -> Result<Vec<f64>, AsciiError> {
-        let expected = self.grid.cells();
+impl Values {
+    fn of(header: &Header, notation: Notation, options: &Options) -> Self {
+        let given = options.nodata_m.filter(|mark| !Terrain::holds(*mark));
+        Values { notation, marks: [header.nodata, given] }
+    }
+
+    /// Ground on a grid of the header's rows and columns.
+    fn terrain(&self, text: &str, header: &Header, grid: Grid) -> Result<Terrain, Error> {
+        let from_north = self.read(text, header.lines, grid.cells())?;
+        let from_south = south_up(&grid, &from_north);
+        Terrain::from_samples(grid, from_south, |z| z).map_err(|error| match error {
+            Error::AllUnknown => AsciiError::AllUnknown.into(),
+            other => other,
+        })
+    }
+
+    /// So many values below so many lines of header, NaN where unknown.
+    fn read(&self, text: &str, header_lines: usize, expected: usize) -> Result<Vec<f64>, AsciiError> {
         // A value takes a digit and a blank at least.
         let mut values = Vec::with_capacity(expected.min(text.len() / 2 + 1));
         for (index, line) in text.lines().enumerate().skip(header_lines) {

@@ -33,9 +33,8 @@ impl Coordinates {
 
     /// The refusal of coordinates that are degrees, with the command that projects the file.
     pub(crate) fn degrees(&self, ending: &'static str) -> Error {
-        let [longitude_deg, latitude_deg] = self.middle();
         let [west, south] = self.origin;
-        let epsg = utm_epsg(longitude_deg, latitude_deg);
+        let epsg = self.utm_epsg();
         Error::Degrees { cell_size: self.cell_size, west, south, ending, epsg }
     }
 
@@ -46,13 +45,18 @@ impl Coordinates {
         let [east, north] = self.far_corner();
         let holds_origin = west <= 0.0 && east >= 0.0 && south <= 0.0 && north >= 0.0;
         (self.lie_on_globe() && !holds_origin).then(|| {
-            let [longitude_deg, latitude_deg] = self.middle();
             let detail = format!(
                 "nothing says whether x {west} to {east} and y {south} to {north} are metres or degrees of longitude and latitude: taken as metres; if they are degrees, project the file to EPSG:{}",
-                utm_epsg(longitude_deg, latitude_deg)
+                self.utm_epsg()
             );
             Warning::new(WarningKind::UnknownUnit, detail)
         })
+    }
+
+    /// EPSG code of the UTM zone of the middle.
+    pub(crate) fn utm_epsg(&self) -> u32 {
+        let [longitude_deg, latitude_deg] = self.middle();
+        utm_epsg(longitude_deg, latitude_deg)
     }
 
     fn far_corner(&self) -> [f64; 2] {

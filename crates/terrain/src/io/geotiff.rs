@@ -30,7 +30,7 @@ use self::{
 };
 use crate::{
     Error, Terrain, Warning, WarningKind,
-    crs::Size,
+    crs::{Size, Unwarped},
     resample::{Affine, Raster},
     samples::Sample,
 };
@@ -43,6 +43,14 @@ use crate::{
 /// # Errors
 /// A missing or unusable property by name, truncation, or an elevation out of range by cell.
 pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
+    read_unwarped(bytes, most_cells)?.warped()
+}
+
+/// Reads a GeoTIFF as [`read`] does, but for the warp of one in degrees.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64) -> Result<Unwarped, Error> {
     let mut file = TiffFile::open(bytes)?;
     let (image, others) = file.main_image()?;
     let (columns, rows) = dimensions(&mut file.tags(image))?;
@@ -61,22 +69,24 @@ pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
     let keys = GeoKeys::read(&mut file.tags(image))?;
     let crs = keys.crs(&mut warnings)?;
     let affine = Affine::read(&mut file.tags(image))?;
-    let placement = Placement::of(affine, Size { columns, rows }, &keys, &crs, &mut warnings)?;
+    let placement = Placement::of(affine, Size { columns, rows }, (&keys, &crs), most_cells, &mut warnings)?;
     refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
     let metadata = BandMetadata::read(&mut file.tags(image), band)?;
     let heights = Heights::of(&metadata, &crs, &mut warnings)?;
     let nodata = NoData::read(&mut file.tags(image), layout.sample)?;
+    let warp = placement.warp.clone();
     let reading = Reading { layout, band, nodata, heights, placement };
     let terrain = if reading.layout.sample.is_exact_in_single() {
         reading.terrain::<f32>(&mut file, &mut warnings)?
     } else {
         reading.terrain::<f64>(&mut file, &mut warnings)?
     };
-    Ok(warnings.into_iter().fold(terrain, Terrain::with_warning))
+    let terrain = warnings.into_iter().fold(terrain, Terrain::with_warning);
+    Ok(Unwarped { terrain, warp })
 }
 
-/// Number of cells of a GeoTIFF, as its head has it.
+/// Number of cells of a GeoTIFF, as its head has it; of one in degrees, with those of the grid that it is warped to.
 ///
 /// # Errors
 /// A file that is no TIFF.
@@ -84,7 +94,13 @@ pub fn cells(bytes: &[u8]) -> Result<u64, Error> {
     let mut file = TiffFile::open(bytes)?;
     let (image, _) = file.main_image()?;
     let (columns, rows) = dimensions(&mut file.tags(image))?;
-    Ok(columns as u64 * rows as u64)
+    let size = Size { columns, rows };
+    let keys = GeoKeys::read(&mut file.tags(image))?;
+    let crs = keys.crs(&mut Vec::new());
+    let Some(crs) = crs.ok().filter(|crs| crs.is_geographic) else { return Ok(size.pixels()) };
+    let affine = Affine::read(&mut file.tags(image))?;
+    let placement = Placement::of(affine, size, (&keys, &crs), Terrain::MAX_CELLS, &mut Vec::new());
+    Ok(placement.map_or(size.pixels(), |placement| placement.numbers(size)))
 }
 
 /// The band that holds elevation: the only one, or the first of several that are no colours.

@@ -12,6 +12,7 @@ const MODEL_TYPE: u16 = 1024;
 const RASTER_TYPE: u16 = 1025;
 const CITATION: u16 = 1026;
 const GEODETIC_CRS: u16 = 2048;
+const ANGULAR_UNITS: u16 = 2054;
 const SEMI_MAJOR_AXIS: u16 = 2057;
 const SEMI_MINOR_AXIS: u16 = 2058;
 const INVERSE_FLATTENING: u16 = 2059;
@@ -108,8 +109,9 @@ impl GeoKeys {
         let geodetic = self.code(GEODETIC_CRS).filter(|code| *code != USER_DEFINED);
         if kind == Some(GEOGRAPHIC) || (kind != Some(PROJECTED) && projected.is_none() && geodetic.is_some())
         {
+            self.refuse_other_angles()?;
             let text = geodetic.map(|code| format!("EPSG:{code}"));
-            return Ok(Crs { text, is_geographic: true, ..Crs::default() });
+            return Ok(Crs { text, is_geographic: true, vertical: self.vertical()?, ..Crs::default() });
         }
         let mut crs = match projected.filter(|code| *code != USER_DEFINED) {
             Some(code) => Crs::from_epsg(code),
@@ -173,6 +175,20 @@ impl GeoKeys {
             ],
         });
         Crs { mercator, ..Crs::default() }
+    }
+
+    /// Refuses longitudes and latitudes that are counted in another unit than the degree.
+    fn refuse_other_angles(&self) -> Result<(), Error> {
+        /// EPSG's codes of the degree: its own and the one that leaves the notation open.
+        const DEGREES: [u32; 2] = [9102, 9122];
+        match self.code(ANGULAR_UNITS).filter(|code| !DEGREES.contains(code)) {
+            None => Ok(()),
+            Some(code) => Err(Error::TiffValue {
+                tag: "angular unit (GeogAngularUnitsGeoKey)",
+                value: code.to_string(),
+                expected: "9102, degrees",
+            }),
+        }
     }
 
     fn linear_unit(&self) -> Result<Option<LinearUnit>, Error> {

@@ -3,7 +3,7 @@
 use super::geokeys::GeoKeys;
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
-    crs::{Crs, Size, UNTOLD_CELLS, refuse_degrees, to_ground},
+    crs::{Crs, DegreeFrame, Size, UNTOLD_CELLS, Warp, WarpRefusal, to_ground},
     resample::Affine,
 };
 
@@ -16,6 +16,8 @@ pub(super) struct Placement {
     pub(super) grid: Grid,
     pub(super) arrangement: Arrangement,
     pub(super) crs: Option<String>,
+    /// The way to metres, where the grid is one of degrees.
+    pub(super) warp: Option<Warp>,
 }
 
 /// How pixels become cells.
@@ -35,19 +37,41 @@ impl Placement {
     pub(super) fn of(
         affine: Affine,
         size: Size,
-        keys: &GeoKeys,
-        crs: &Crs,
+        (keys, crs): (&GeoKeys, &Crs),
+        most_cells: u64,
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, Error> {
         let affine = if keys.pixel_is_point() { affine.with_centred_pixels() } else { affine };
-        refuse_degrees(&affine, size, crs, "tif")?;
+        if crs.is_geographic {
+            return Self::warped(&affine, size, crs, most_cells);
+        }
         if !keys.name_a_system() {
             doubt_nameless(&affine, size, warnings)?;
         }
         let (affine, text) = to_ground(affine, size, crs, "tif", warnings)?;
         let (grid, arrangement) = lay_out(affine, size, warnings)?;
-        Ok(Placement { grid, arrangement, crs: text })
+        Ok(Placement { grid, arrangement, crs: text, warp: None })
     }
+
+    /// Numbers that are held at once to read so large a raster and bring it to its cells.
+    pub(super) fn numbers(&self, size: Size) -> u64 {
+        self.warp.as_ref().map_or(size.pixels(), Warp::cells)
+    }
+
+    /// Places pixels of degrees, whose samples are first read onto a grid of their own.
+    fn warped(affine: &Affine, size: Size, crs: &Crs, most_cells: u64) -> Result<Self, Error> {
+        let Some(frame) = DegreeFrame::of(affine, size) else {
+            let epsg = affine.coordinates(size).utm_epsg();
+            return Err(WarpRefusal::Turned { ending: "tif", epsg }.into());
+        };
+        let warp = Warp::plan(frame, crs, "tif", most_cells)?;
+        Ok(Placement { grid: warp.source_grid(), arrangement: cells_of(affine), crs: None, warp: Some(warp) })
+    }
+}
+
+/// The cells that an upright raster's pixels are.
+fn cells_of(affine: &Affine) -> Arrangement {
+    Arrangement::Cells { rows_from_north: affine.row[1] < 0.0, columns_from_east: affine.column[0] < 0.0 }
 }
 
 /// Refuses a file without any system whose coordinates are plainly degrees, and doubts one that may be in metres.
@@ -82,11 +106,7 @@ fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(G
         }
         let origin_m = [west_m, south_m];
         let grid = Terrain::check_size(rows, columns, cell_size_m, origin_m)?;
-        let cells = Arrangement::Cells {
-            rows_from_north: affine.row[1] < 0.0,
-            columns_from_east: affine.column[0] < 0.0,
-        };
-        return Ok((grid, cells));
+        return Ok((grid, cells_of(&affine)));
     }
     let count = |length_m: f64| (length_m / cell_size_m + WRITTEN_DIGITS).floor().max(1.0) as u64;
     let (columns, rows) = (count(east_m - west_m), count(north_m - south_m));
