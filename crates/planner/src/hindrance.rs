@@ -8,6 +8,7 @@ use crate::{
     cost::SINGLE_PRECISION,
     ends::Ends,
     error::Error,
+    heading::{Heading, turn_rad},
     lattice::Lattice,
     objective::Objective,
     planner::{Planner, surface_names},
@@ -24,6 +25,8 @@ pub enum Limit {
     Pitch,
     /// Largest roll [rad].
     Roll,
+    /// Height of ground under the body above the plane of the wheels [m].
+    Clearance,
 }
 
 /// Why no path leads to a goal.
@@ -65,13 +68,18 @@ impl fmt::Display for Hindrance {
                 "the robot's limits.max_side_force_n is {allowed:.1} N, and the best path without that limit needs {:.1} N: raise it",
                 rounded_up(*needed, 10.0)
             ),
+            Hindrance::OneLimit { limit: Limit::Clearance, allowed, needed } => write!(
+                f,
+                "the robot's ground_clearance_m is {allowed:.3} m (a third of the wheel radius where its file gives none), and the best path without that limit passes over ground {:.3} m above the plane of its wheels: raise it if the robot does",
+                rounded_up(*needed, 1000.0)
+            ),
             Hindrance::OneLimit { limit, allowed, needed } => write!(
                 f,
                 "the robot's limits.{limit} is {allowed:.3} rad, and the best path without that limit comes to {:.3} rad: raise it",
                 rounded_up(*needed, 1000.0)
             ),
             Hindrance::SeveralLimits => f.write_str(
-                "the robot's limits of pitch, roll and side force leave no path together, and without all of them there is one",
+                "the robot's limits of pitch, roll, side force and ground clearance leave no path together, and without all of them there is one",
             ),
         }
     }
@@ -83,16 +91,19 @@ impl fmt::Display for Limit {
             Limit::SideForce => "max_side_force_n",
             Limit::Pitch => "max_pitch_rad",
             Limit::Roll => "max_roll_rad",
+            Limit::Clearance => "ground_clearance_m",
         })
     }
 }
 
 impl Limit {
-    const ALL: [Limit; 3] = [Limit::SideForce, Limit::Pitch, Limit::Roll];
+    const ALL: [Limit; 4] = [Limit::SideForce, Limit::Pitch, Limit::Roll, Limit::Clearance];
 
-    /// The robot's value; `None` where it has no such limit.
-    fn of(self, robot: &Robot) -> Option<f64> {
+    /// The robot's value; `None` where it has no such limit, or the ground does not tell.
+    fn of(self, lattice: &Lattice) -> Option<f64> {
+        let robot = &lattice.robot;
         match self {
+            Limit::Clearance => lattice.ground.has_body().then(|| robot.clearance_m()),
             Limit::SideForce => robot.limits.max_side_force_n,
             Limit::Pitch => Some(robot.limits.max_pitch_rad),
             Limit::Roll => Some(robot.limits.max_roll_rad),
@@ -104,6 +115,7 @@ impl Limit {
             Limit::SideForce => robot.limits.max_side_force_n = None,
             Limit::Pitch => robot.limits.max_pitch_rad = STEEPEST_RAD,
             Limit::Roll => robot.limits.max_roll_rad = STEEPEST_RAD,
+            Limit::Clearance => robot.ground_clearance_m = Some(f64::INFINITY),
         }
     }
 
@@ -119,12 +131,28 @@ impl Limit {
                 of_stance.fold(of_poses(|pose| pose.pitch_rad), f64::max)
             }
             Limit::Roll => of_poses(|pose| pose.roll_rad),
+            Limit::Clearance => highest_under_m(lattice, route),
         }
     }
 }
 
 /// A slope that no ground of finite elevations reaches, and whose tangent is a number.
 const STEEPEST_RAD: f64 = FRAC_PI_2 - 1e-6;
+
+/// The highest ground under the body along a route, above the plane of the wheels [m].
+fn highest_under_m(lattice: &Lattice, route: &Route) -> f64 {
+    let rise_m = |x_m: f64, y_m: f64, heading_rad: f64| {
+        let cell = lattice.terrain.grid.cell_at(x_m, y_m)?;
+        lattice.ground.rises_m(&lattice.terrain, cell, Heading::nearest(heading_rad))
+    };
+    // A step is held against the ground half way, and a motion at its end.
+    let halves = route.poses.windows(2).filter_map(|pair| {
+        let heading_rad = pair[0].heading_rad + turn_rad(pair[0].heading_rad, pair[1].heading_rad) / 2.0;
+        rise_m((pair[0].x_m + pair[1].x_m) / 2.0, (pair[0].y_m + pair[1].y_m) / 2.0, heading_rad)
+    });
+    let ends = route.poses.iter().filter_map(|pose| rise_m(pose.x_m, pose.y_m, pose.heading_rad));
+    halves.chain(ends).fold(0.0, f64::max)
+}
 
 /// The largest force of either side along a route [N].
 fn largest_side_force_n(lattice: &Lattice, route: &Route) -> f64 {
@@ -157,14 +185,13 @@ impl Planner {
     }
 
     fn hindrance(&self, ends: &Ends, query: &Query, objective: Objective) -> Hindrance {
-        let robot = &self.lattice().robot;
         match self.without(&Limit::ALL, ends, query, objective) {
             Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) => return Hindrance::Ground,
             Err(_) => return Hindrance::Unexplained,
             Ok(_) => {}
         }
         for limit in Limit::ALL {
-            let Some(allowed) = limit.of(robot) else { continue };
+            let Some(allowed) = limit.of(self.lattice()) else { continue };
             match self.without(&[limit], ends, query, objective) {
                 Ok((planner, route)) => {
                     let needed = limit.largest(planner.lattice(), &route);

@@ -4,7 +4,8 @@
 
 use model::{Robot, STANDARD_GRAVITY_MPS2, builtin};
 use planner::{
-    Error, Goal, Heading, Lattice, Objective, Patience, Plan, Query, Settings, Start, State, plan,
+    Error, Goal, Heading, Hindrance, Lattice, Limit, Objective, Patience, Plan, Query, Settings, Start,
+    State, plan,
 };
 use rand::RngExt;
 use terrain::{Cell, Grid, Terrain};
@@ -76,6 +77,22 @@ fn ground_between_the_wheels_may_rise_by_the_clearance() {
     assert!(reaches(0.10, 0.13));
     assert!(!reaches(0.16, 0.13), "it would have to leave the ridge to start with");
     assert!(!reaches(0.10, 0.055));
+}
+
+#[test]
+fn where_only_the_clearance_forbids_a_way_the_answer_says_what_would_do() {
+    // A sleeper from border to border, lower than a wheel climbs and higher than the body is off the ground.
+    let sleeper = ground_of(CELL_M, |[x, _]| if (x - 4.0).abs() < 0.06 { 0.09 } else { 0.0 });
+    let error = along(&sleeper, &husky(), 2.025).unwrap_err();
+    let Error::NoPath { hindrance: Hindrance::OneLimit { limit: Limit::Clearance, allowed, needed }, .. } =
+        error
+    else {
+        panic!("{error}")
+    };
+    assert!(allowed == 0.055 && (0.055..=0.09).contains(&needed), "{allowed} {needed}");
+    let mut raised = husky();
+    raised.ground_clearance_m = Some(needed + 1e-3);
+    assert!(along(&sleeper, &raised, 2.025).is_ok());
 }
 
 #[test]
