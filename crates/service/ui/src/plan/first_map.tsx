@@ -13,7 +13,7 @@ export function FirstMap() {
         is cheaper, and shows it beside the shortest and the fastest.
       </p>
       <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
-        <span>GeoTIFF in projected metres, ESRI ASCII grid (.asc), or a JSON grid</span>
+        <span>GeoTIFF, ESRI ASCII grid (.asc), or a JSON grid</span>
       </DropZone>
       <p class="first-map-or">
         <button type="button" class="primary" disabled={sending.value !== null} onClick={() => void addSample()}>
