@@ -108,6 +108,7 @@ mod tests {
         assert_eq!(drive(C::Power, |_, _| 7.0), [(C::Power, Kind::Constant)]);
         assert_eq!(drive(C::Power, |_, p| p / 1000.0), [(C::Power, Kind::Unit)]);
         assert_eq!(drive(C::Power, |_, p| p.min(100.0)), [(C::Power, Kind::Saturated)]);
+        assert_eq!(drive(C::Power, |_, p| p.max(80.0)), [], "an offset at which a meter rests");
         assert_eq!(drive(C::Power, |r, p| if r < 300 { f64::NAN } else { p }), [(C::Power, Kind::Sparse)]);
         assert_eq!(drive(C::YawRate, |_, w| -w), [(C::YawRate, Kind::Opposed)]);
         assert_eq!(drive(C::YawRate, |r, _| (r as f64).sin()), [(C::YawRate, Kind::Slip)]);

@@ -76,6 +76,7 @@ impl Corridor {
             node.insert(lattice.index(*state), i as u32);
         }
         drop(pacer);
+        looked(patience).ok_or_else(late)?;
         let at = |state: State| node.get(&lattice.index(state)).copied();
         let leaving = |state: &State| -> Vec<Arc> {
             let arcs = (0..lattice.motions_per_state()).flat_map(|motion| {
@@ -105,6 +106,7 @@ impl Corridor {
         let starts = bounded.ends.starts.iter().filter_map(|start| at(*start)).collect();
         let goals = bounded.goals.iter().filter_map(|(goal, after_j)| Some((at(*goal)?, *after_j))).collect();
         let arcs = arcs.into_iter().flatten().collect::<Vec<_>>();
+        looked(patience).ok_or_else(late)?;
         Ok(Some(Self::of(states, (starts, goals), &arcs, patience).ok_or_else(late)?))
     }
 
@@ -144,6 +146,7 @@ impl Corridor {
             }
         }
         drop(pacer);
+        looked(patience)?;
         Some(Corridor { states, starts, goals, first, arcs, first_into, into })
     }
 
@@ -284,4 +287,9 @@ impl Ord for Ordered {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.0.total_cmp(&other.0)
     }
+}
+
+/// A look at the clock between two steps, of which each may leave work that it did not look after.
+fn looked(patience: &Patience) -> Option<()> {
+    (!patience.is_over()).then_some(())
 }

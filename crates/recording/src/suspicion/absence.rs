@@ -54,8 +54,10 @@ pub(super) fn saturated(present: &[f64]) -> Option<String> {
         present.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| (l.min(*v), g.max(*v)));
     let often = |value: f64| {
         let count = present.iter().filter(|v| **v == value).count();
-        // Zero is where an unsigned channel rests, not where it is clipped.
-        value != 0.0 && count >= LEAST_ROWS && count as f64 >= LEAST_SHARE * present.len() as f64
+        // Where all values have one sign, the least of them in size is where the channel rests, with its offset, and not where it
+        // is clipped; zero is so in any case.
+        let rests = value == 0.0 || (value == least && value > 0.0) || (value == greatest && value < 0.0);
+        !rests && count >= LEAST_ROWS && count as f64 >= LEAST_SHARE * present.len() as f64
     };
     // Sorting a million rows takes longer than reading them, and hardly any channel needs it.
     if !often(least) && !often(greatest) {
