@@ -85,7 +85,9 @@ impl Mercator {
 
     /// Scale on the equator of a Mercator that is true to scale on a parallel.
     ///
-    ///     k0 = cos φ / √(1 − e² sin² φ)
+    /// ```text
+    /// k0 = cos φ / √(1 − e² sin² φ)
+    /// ```
     ///
     /// Snyder (1987), Map Projections: A Working Manual, eq. 14-15, doi:10.3133/pp1395.
     pub(crate) fn equator_scale_of(latitude_rad: f64) -> f64 {
@@ -115,7 +117,9 @@ impl Mercator {
 
     /// Longitude and latitude of a place [deg].
     ///
-    ///     χ = π/2 − 2 atan exp(−y / (a k0)),  φ from χ by Snyder eq. 3-5
+    /// ```text
+    /// χ = π/2 − 2 atan exp(−y / (a k0)),  φ from χ by Snyder eq. 3-5
+    /// ```
     ///
     /// Snyder (1987), eqs 7-4, 7-10 and 3-5. Good to 1e-9 rad.
     pub fn place_deg(&self, x_m: f64, y_m: f64) -> [f64; 2] {
@@ -133,9 +137,11 @@ impl Mercator {
 
     /// Ground by map at a northing.
     ///
-    ///     east:  ν cos φ / (a k0)        ν = a / √(1 − e² sin² φ)
-    ///     north: as east; ρ cos φ / (a k0) where projected as on a sphere; ρ / a where parallels are evenly spaced
-    ///                                           ρ = ν (1 − e²) / (1 − e² sin² φ)
+    /// ```text
+    /// east:  ν cos φ / (a k0)        ν = a / √(1 − e² sin² φ)
+    /// north: as east; ρ cos φ / (a k0) where projected as on a sphere; ρ / a where parallels are evenly spaced
+    ///                                       ρ = ν (1 − e²) / (1 − e² sin² φ)
+    /// ```
     ///
     /// Snyder (1987), eqs 4-18, 4-20, 7-8; Battersby et al. (2014), doi:10.3138/carto.49.2.2313, for the sphere.
     pub fn ground_scale(&self, y_m: f64) -> GroundScale {

@@ -157,7 +157,9 @@ fn scale_doubt(grid: &Grid) -> String {
 
 /// Length in UTM of a metre of ground at a distance east or west of a zone's meridian.
 ///
-///     k = k₀ · (1 + (x / k₀)² / 2R²)
+/// ```text
+/// k = k₀ · (1 + (x / k₀)² / 2R²)
+/// ```
 ///
 /// k₀ scale on the meridian, x distance in UTM \[m\], R radius of the earth \[m\]. Snyder (1987), chapter 8, on the sphere to second order: right
 /// to 1e-4 within 8° of the meridian.
