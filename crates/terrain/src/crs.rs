@@ -21,7 +21,7 @@ pub use self::{
     warp::WarpRefusal,
 };
 pub(crate) use self::{
-    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, to_ground},
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, to_ground},
     mercator::is_of_earth,
     warp::{DegreeFrame, Unwarped, Warp},
 };

@@ -94,6 +94,18 @@ pub enum Error {
         /// The text found, or its beginning.
         found: String,
     },
+    /// A system of metres that are no metres of the ground.
+    #[error(
+        "crs is `{found}`, of which a metre is {scale:.4} m of ground here, but the cells of a grid are metres of the ground: bring the map to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.tif out.tif`, or leave crs out if its metres are those of the ground"
+    )]
+    StretchedCrs {
+        /// The text found, or its beginning.
+        found: String,
+        /// Ground by map in the map's middle, the mean of both directions.
+        scale: f64,
+        /// EPSG code of the UTM zone of the middle.
+        epsg: u32,
+    },
     /// More surface classes than a byte can index.
     #[error("surface names more than {limit} classes, the last of them `{name}`")]
     TooManySurfaces {
@@ -321,7 +333,7 @@ impl Error {
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
-            Error::Crs { .. } => "crs".into(),
+            Error::Crs { .. } | Error::StretchedCrs { .. } => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),

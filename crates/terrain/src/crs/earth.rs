@@ -81,7 +81,8 @@ impl Earth {
         if !is_earth_centred(definition.proj4) {
             return Err(EarthError::Datum { code });
         }
-        let unit_m = parsed.unit.ok_or_else(unknown)?.metres;
+        // The map's coordinates are metres whatever unit its own text has; the projection counts in that of its code.
+        let unit_m = Crs::from_epsg(code).unit.ok_or_else(unknown)?.metres;
         let projected = Proj::from_proj_string(definition.proj4).map_err(|_| unknown())?;
         let wgs84 = Proj::from_proj_string("+proj=longlat +datum=WGS84 +no_defs").map_err(|_| unknown())?;
         Ok(Earth { projected, wgs84, unit_m })
@@ -207,6 +208,15 @@ mod tests {
         ] {
             assert_eq!(code_of(text), code, "{text}");
         }
+    }
+
+    #[test]
+    fn a_zone_in_feet_lies_where_the_same_zone_in_metres_does() {
+        let text = "PROJCS[\"NAD_1983_UTM_Zone_15N\",GEOGCS[\"g\"],PROJECTION[\"Transverse_Mercator\"],UNIT[\"Foot_US\",0.3048006096012192]]";
+        let place_m = [512_000.0, 4_982_950.0];
+        let [feet, metres] =
+            [text, "EPSG:26915"].map(|crs| Earth::of(crs).unwrap().place_deg(place_m).unwrap());
+        assert_eq!(feet, metres, "both count the map's metres");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Crs, Mercator};
+use super::{Crs, Mercator, mercator::ECCENTRICITY_2};
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
     io::degrees::{Coordinates, utm_epsg},
@@ -46,6 +46,28 @@ impl Affine {
 /// Refuses coordinates in degrees; `ending` is that of the file's name. Readers that may warp them do not ask.
 fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs, ending: &'static str) -> Result<(), Error> {
     if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
+}
+
+/// Refuses a system whose metres are no metres of the ground where a grid lies, of a grid that says that they are. Up to e² of the
+/// ellipsoid, 0.7 %, the metres of a sphere are taken for those of the ground, as they are where a Mercator is brought to it.
+///
+/// # Errors
+/// [`Error::StretchedCrs`] with the command that mends.
+pub(crate) fn refuse_stretched(grid: &Grid, text: &str) -> Result<(), Error> {
+    let Some(mercator) = Crs::parse(text).and_then(|crs| crs.mercator) else { return Ok(()) };
+    let half_m = |cells: usize| cells as f64 * grid.cell_size_m / 2.0;
+    let middle_m = [grid.origin_m[0] + half_m(grid.columns), grid.origin_m[1] + half_m(grid.rows)];
+    let scale = mercator.ground_scale(middle_m[1]);
+    let mean = (scale.east * scale.north).sqrt();
+    if (mean - 1.0).abs() <= ECCENTRICITY_2 {
+        return Ok(());
+    }
+    let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
+    Err(Error::StretchedCrs {
+        found: text.chars().take(60).collect(),
+        scale: mean,
+        epsg: utm_epsg(longitude_deg, latitude_deg),
+    })
 }
 
 /// Brings projected coordinates to metres of the ground: by the system's unit and, of a Mercator, by its scale. Returns the text of the

@@ -49,7 +49,7 @@ pub(super) const WORLD: Mercator = Mercator { spacing: Spacing::Conformal, ..WEB
 /// Semi-major axis of WGS 84 [m] (NIMA TR8350.2, table 3.1). Other ellipsoids change a scale by less than 1e-4.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// First eccentricity squared of WGS 84 (NIMA TR8350.2, table 3.3).
-const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
+pub(super) const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
 
 /// Whether a semi-major axis is one of the earth's: those of the EPSG registry lie within 3e-4 of that of WGS 84. Of other
 /// bodies nothing is known here [m].

@@ -9,7 +9,10 @@ pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{Error, Terrain, Warning, crs::Crs};
+use crate::{
+    Error, Terrain, Warning,
+    crs::{Crs, refuse_stretched},
+};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -76,6 +79,7 @@ impl TryFrom<MapFile> for Terrain {
     fn try_from(file: MapFile) -> Result<Self, Error> {
         let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
         let crs = file.crs.map(Crs::of_metres).transpose()?;
+        crs.as_deref().map_or(Ok(()), |text| refuse_stretched(&grid, text))?;
         let shape = (grid.rows, grid.columns);
         let mut terrain = Terrain::new(grid, &file.elevation_m.shaped("elevation_m", shape)?)?;
         if let Some(surface) = file.surface {
@@ -141,6 +145,10 @@ mod tests {
         }
         assert!(refused(&with(r#""EPSG:4326""#)).contains("crs is `EPSG:4326`"));
         assert!(refused(&with(r#""Minnesota""#)).contains("crs is `Minnesota`"));
+        let web = |north_m: f64| with(&format!(r#""EPSG:3857", "origin_m": [0, {north_m}]"#));
+        assert!(read(&web(0.0)).is_ok(), "true to scale on the equator");
+        let stretched = refused(&web(8_399_737.0));
+        assert!(stretched.contains("0.5008 m of ground") && stretched.contains("EPSG:32631"), "{stretched}");
     }
 
     #[test]
