@@ -116,6 +116,12 @@ fn every_question_takes_degrees() {
     let reach = one("reachable", with(json!({ "start": place, "energies_j": [2000] })));
     let corner = &reach["features"][0]["geometry"]["coordinates"][0][0][0];
     assert!(near(&corner[0], START[0], 0.01) && near(&corner[1], START[1], 0.01), "{corner}");
+    let headers = [("accept", "application/json"), ("content-type", "application/json")];
+    let body = with(json!({ "start": place, "energies_j": [2000] })).to_string();
+    let in_metres = server.ask("POST", "/v1/reachable", &headers, body.as_bytes()).json();
+    assert_eq!(in_metres["crs"]["properties"]["name"], "EPSG:32632", "metres say of which system they are");
+    let corner = &in_metres["features"][0]["geometry"]["coordinates"][0][0][0];
+    assert!(near(&corner[0], 512_015.0, 100.0) && near(&corner[1], 5_422_985.0, 100.0), "{corner}");
     one("matrix", with(json!({ "sources": [place, goal] })));
     let mission = one("mission", with(json!({ "start": place, "waypoints": [goal] })));
     assert!(mission["stops"][0]["lat_deg"].is_f64(), "{mission}");

@@ -78,7 +78,8 @@ pub enum KindName {
     OutAndBack,
 }
 
-/// The ground within each energy, as a GeoJSON feature collection in the map's metres.
+/// The ground within each energy, as a GeoJSON feature collection: in longitude and latitude where `application/geo+json` is
+/// asked for and the map says where on earth it lies (RFC 7946), else in the map's metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ReachableAnswer {
     /// Always `FeatureCollection`.
@@ -138,7 +139,7 @@ pub struct ContourProperties {
     post, path = "/v1/reachable", tag = "plan",
     request_body = ReachableRequest,
     responses(
-        (status = 200, description = "The contours as GeoJSON; the least energy of every cell as a GeoTIFF when `Accept` asks for image/tiff", content(
+        (status = 200, description = "The contours as GeoJSON, in longitude and latitude of WGS 84 where the map has a `crs`; the same in the map's metres when `Accept` asks for application/json; the least energy of every cell as a GeoTIFF when `Accept` asks for image/tiff", content(
             (ReachableAnswer = "application/geo+json"),
             (ReachableAnswer = "application/json"),
             (Vec<u8> = "image/tiff")
@@ -159,11 +160,14 @@ pub(crate) async fn handler(
     JsonBody(mut request): JsonBody<ReachableRequest>,
 ) -> Result<Response, Problem> {
     let form = preferred(&headers, &["application/geo+json", "application/json", "image/tiff"]);
-    let as_raster = form == "image/tiff";
+    let (as_raster, in_metres) = (form == "image/tiff", form == "application/json");
     let mut plan = request.plan();
     let memory = engine.admission().memory().clone();
     let pieces = with_planner(&engine, &tenant, &mut plan, move |planner, _, patience| {
-        let found = Found::of(planner, &request, patience)?;
+        let mut found = Found::of(planner, &request, patience)?;
+        if in_metres {
+            found.earth = None;
+        }
         if as_raster {
             let raster = found.raster()?;
             return Pieces::written(&memory, |out| out.write_all(&raster));
@@ -314,23 +318,23 @@ impl Found {
             kind: "Feature".to_owned(),
             geometry: ContourGeometry {
                 kind: "MultiPolygon".to_owned(),
-                coordinates: polygons.into_iter().map(|polygon| self.rings(polygon)).collect(),
+                coordinates: polygons
+                    .into_iter()
+                    .map(|polygon| self.rings(polygon))
+                    .collect::<Result<_, Problem>>()?,
             },
             properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
         })
     }
 
-    /// The rings of a polygon, in longitude and latitude where the map says where on earth it lies, else in its metres.
-    fn rings(&self, polygon: Polygon) -> Vec<Vec<[f64; 2]>> {
-        let mut rings: Vec<_> = std::iter::once(polygon.exterior).chain(polygon.holes).collect();
-        if let Some(earth) = &self.earth {
-            let all_deg: Option<Vec<Vec<[f64; 2]>>> = rings
-                .iter()
-                .map(|ring| ring.iter().map(|place_m| earth.place_deg(*place_m).ok()).collect())
-                .collect();
-            rings = all_deg.unwrap_or(rings);
-        }
-        rings
+    /// The rings of a polygon, in longitude and latitude where those are wanted and known.
+    fn rings(&self, polygon: Polygon) -> Result<Vec<Vec<[f64; 2]>>, Problem> {
+        let rings = std::iter::once(polygon.exterior).chain(polygon.holes);
+        let Some(earth) = &self.earth else { return Ok(rings.collect()) };
+        let place_deg = |place_m: [f64; 2]| {
+            earth.place_deg(place_m).map_err(|error| Problem::new(ProblemType::Internal, error.to_string()))
+        };
+        rings.map(|ring| ring.into_iter().map(place_deg).collect()).collect()
     }
 
     /// The system that the coordinates of contours are in, as GeoJSON had it before RFC 7946: absent where they are longitude and

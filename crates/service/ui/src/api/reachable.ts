@@ -27,9 +27,9 @@ interface Answer {
   features: { geometry: { coordinates: [number, number][][][] }; properties: { energy_j: number; area_m2: number } }[];
 }
 
-/** The contours, the smallest first. */
+/** The contours, the smallest first. As JSON they are in the map's metres; as GeoJSON they would be in longitude and latitude. */
 export async function reachable(question: ReachQuestion, asking: Asking = {}): Promise<Contour[]> {
-  const { features } = await ask<Answer>("/v1/reachable", { ...asking, accept: "application/geo+json", json: question });
+  const { features } = await ask<Answer>("/v1/reachable", { ...asking, accept: "application/json", json: question });
   const contours = features.map(({ geometry, properties }) => ({ ...properties, polygons: geometry.coordinates }));
   return contours.sort((a, b) => a.energy_j - b.energy_j);
 }

@@ -8,12 +8,17 @@ import * as state from "./state";
 
 const FORMS = [
   { name: "JSON", type: "application/json", ending: "json", about: "Everything that is known of the path" },
-  { name: "GeoJSON", type: "application/geo+json", ending: "geojson", about: "The line in the map's metres" },
+  {
+    name: "GeoJSON",
+    type: "application/geo+json",
+    ending: "geojson",
+    about: "The line in longitude and latitude, or in metres where the map does not say where on earth it lies",
+  },
   {
     name: "GPX",
     type: "application/gpx+xml",
     ending: "gpx",
-    about: "A track; its start is put at 0° N 0° E, since maps do not say where on earth they lie",
+    about: "A track; its start is put at 0° N 0° E where the map does not say where on earth it lies",
   },
   { name: "CSV", type: "text/csv", ending: "csv", about: "Pose by pose" },
 ] as const;
