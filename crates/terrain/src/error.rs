@@ -7,6 +7,14 @@ pub enum Error {
     /// The text is not the JSON that a map needs.
     #[error(transparent)]
     Json(#[from] document::Error),
+    /// An area over the map that cannot be.
+    #[error(transparent)]
+    Area(#[from] crate::areas::AreaError),
+    /// The time allowed was over before the areas were laid over the map.
+    #[error(
+        "the time allowed was over before the areas were laid over the map: allow more, or give fewer areas"
+    )]
+    OutOfTime,
     /// A grid with no cells.
     #[error("{field} is {value}: a map needs at least one row and one column")]
     Empty {
@@ -336,6 +344,7 @@ impl Error {
             Error::Crs { .. } | Error::StretchedCrs { .. } => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
+            Error::Area(error) => error.at.clone(),
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),
             _ => return None,
         })

@@ -4,6 +4,7 @@
 //! southernmost, `origin_m` the south-west corner of cell (0, 0), so the centre of a cell lies half a cell further in.
 //! This crate knows nothing of robots.
 
+pub mod areas;
 pub mod crs;
 mod doubt;
 mod error;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     Cell, Error, Grid, Warning,
+    areas::{Areas, Zones},
     crs::{Earth, EarthError},
     fill_value,
     samples::Survey,
@@ -24,6 +25,9 @@ pub struct Terrain {
     /// Cells whose elevation was worked out from the ground around a hole.
     pub(crate) filled: Option<Arc<Vec<bool>>>,
     pub(crate) warnings: Arc<Vec<Warning>>,
+    pub(crate) areas: Option<Arc<Areas>>,
+    /// What the areas come to, where they have been laid over the ground.
+    pub(crate) zones: Option<Arc<Zones>>,
     /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
     pub crs: Option<String>,
 }
@@ -108,9 +112,18 @@ impl Terrain {
 
     /// Ground without anything but elevations, counted from the lowest of them.
     pub(crate) fn of_relative(grid: Grid, base_m: f64, relative_m: Vec<f32>) -> Self {
-        let relative_m = Arc::new(relative_m);
-        let (surfaces, obstacle, filled, warnings, crs) = (None, None, None, Arc::default(), None);
-        Terrain { grid, base_m, relative_m, surfaces, obstacle, filled, warnings, crs }
+        Terrain {
+            grid,
+            base_m,
+            relative_m: Arc::new(relative_m),
+            surfaces: None,
+            obstacle: None,
+            filled: None,
+            warnings: Arc::default(),
+            areas: None,
+            zones: None,
+            crs: None,
+        }
     }
 
     /// Checks rows, columns, cell size and origin before anything of their size is allocated.
@@ -282,6 +295,10 @@ impl Terrain {
         if let Some(crs) = &self.crs {
             hash.update(b"crs");
             hash.update(crs.as_bytes());
+        }
+        if let Some(areas) = &self.areas {
+            hash.update(b"areas");
+            hash.update(areas.text().as_bytes());
         }
         hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }

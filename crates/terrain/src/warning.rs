@@ -58,6 +58,8 @@ pub enum WarningKind {
     MovedEnds,
     /// The path leads over ground that was filled in.
     FilledGround,
+    /// How the areas' coordinates were read, or what of them means nothing here.
+    Areas,
 }
 
 impl WarningKind {

@@ -6,13 +6,14 @@
 //! 4 bytes  "JPT1"
 //! u64 × 2  rows, columns
 //! f64 × 4  cell_size_m, x and y of the south-west corner [m], elevation that the others count from [m]
-//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: a system follows, 8: filled cells follow, 16: warnings follow
+//! u8       sum of 1: surfaces follow, 2: obstacles follow, 4: a system follows, 8: filled cells follow, 16: warnings follow, 32: areas follow
 //! f32 each elevation above it, NaN where unknown [m]
 //! u16      how many surfaces, then each name as u32 length and UTF-8, then u8 each cell: its class
 //! u8 each  1 where there is an obstacle
 //! u8 each  1 where the elevation was filled in
 //! u32      length of the warnings, then as many bytes of them as JSON
 //! u32      length of the system's name or text, then its UTF-8
+//! u32      length of the areas, then as many bytes of them as GeoJSON
 //! ```
 
 use std::{
@@ -20,7 +21,7 @@ use std::{
     sync::Arc,
 };
 
-use crate::{Surfaces, Terrain, Warning};
+use crate::{Surfaces, Terrain, Warning, areas::Areas};
 
 const MAGIC: &[u8; 4] = b"JPT1";
 const SURFACES: u8 = 1;
@@ -28,6 +29,7 @@ const OBSTACLES: u8 = 2;
 const CRS: u8 = 4;
 const FILLED: u8 = 8;
 const WARNINGS: u8 = 16;
+const AREAS: u8 = 32;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
 /// Longest name of a surface or system that is read [bytes].
@@ -52,7 +54,8 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
         | terrain.obstacle.as_ref().map_or(0, |_| OBSTACLES)
         | terrain.filled.as_ref().map_or(0, |_| FILLED)
         | if terrain.warnings.is_empty() { 0 } else { WARNINGS }
-        | terrain.crs.as_ref().map_or(0, |_| CRS);
+        | terrain.crs.as_ref().map_or(0, |_| CRS)
+        | terrain.areas.as_ref().map_or(0, |_| AREAS);
     to.write_all(&[layers])?;
     for chunk in terrain.relative_m.chunks(CHUNK_CELLS) {
         let bytes: Vec<u8> = chunk.iter().flat_map(|z| z.to_le_bytes()).collect();
@@ -78,6 +81,9 @@ pub fn write(terrain: &Terrain, mut to: impl Write) -> io::Result<()> {
     }
     if let Some(crs) = &terrain.crs {
         write_text(crs, &mut to)?;
+    }
+    if let Some(areas) = &terrain.areas {
+        write_text(areas.text(), &mut to)?;
     }
     to.flush()
 }
@@ -131,6 +137,15 @@ pub fn read(mut from: impl Read) -> io::Result<Terrain> {
     if layers & CRS != 0 {
         terrain.crs = Some(name(&mut from)?);
     }
+    if layers & AREAS != 0 {
+        let length = u32::from_le_bytes(array(&mut from)?);
+        if length as usize > Areas::LONGEST_TEXT {
+            return Err(invalid("its areas are too long"));
+        }
+        let text = bytes(&mut from, length as usize)?;
+        let areas = Areas::of(&serde_json::from_slice(&text).map_err(invalid)?, &terrain).map_err(invalid)?;
+        terrain = terrain.with_areas(areas);
+    }
     Ok(terrain)
 }
 
@@ -183,7 +198,13 @@ mod tests {
     fn warned() -> Terrain {
         let filled = (0..12).map(|i| i == 3).collect();
         let warning = Warning::new(WarningKind::FilledVoids, "1 cell \"é\"");
-        Terrain { crs: Some("EPSG:32632".into()), ..layered().with_filled(filled).with_warning(warning) }
+        let terrain =
+            Terrain { crs: Some("EPSG:32632".into()), ..layered().with_filled(filled).with_warning(warning) };
+        let line = serde_json::json!({"type": "FeatureCollection", "crs": null, "features": [
+            {"type": "Feature", "properties": {"keep_out": true},
+             "geometry": {"type": "LineString", "coordinates": [[1e6, 0.0], [1e6 + 0.2, -0.1]]}}]});
+        let areas = Areas::of(&line, &terrain).unwrap();
+        terrain.with_areas(areas)
     }
 
     fn written(terrain: &Terrain) -> Vec<u8> {

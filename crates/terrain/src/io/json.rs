@@ -11,6 +11,7 @@ pub use self::{
 };
 use crate::{
     Error, Terrain, Warning,
+    areas::Areas,
     crs::{Crs, refuse_stretched},
 };
 
@@ -55,6 +56,12 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(max_items = 32))]
     pub warnings: Vec<Warning>,
+    /// What people know of parts of the ground and want of the robot there: a GeoJSON feature collection of polygons and lines, in
+    /// longitude and latitude where the map has a `crs`, else in its metres. Their properties may be `surface`, `keep_out`,
+    /// `max_speed_mps`, `cost_factor` and `one_way_rad`. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Object>))]
+    pub areas: Option<serde_json::Value>,
 }
 
 impl MapFile {
@@ -101,6 +108,10 @@ impl TryFrom<MapFile> for Terrain {
                 return Err(Error::LongWarning { index, found, limit });
             }
             terrain = terrain.with_warning(warning);
+        }
+        if let Some(areas) = file.areas.filter(|areas| !areas.is_null()) {
+            let areas = Areas::of(&areas, &terrain)?;
+            terrain = terrain.with_areas(areas);
         }
         Ok(terrain)
     }
@@ -154,6 +165,8 @@ mod tests {
     #[test]
     fn a_map_survives_a_round_trip() {
         let text = r#"{"cell_size_m": 1.0, "rows": 1, "columns": 2, "elevation_m": [[1.5, null]], "obstacle": [[true, false]],
+                       "areas": {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"cost_factor": 2},
+                           "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, 0.5]]}}]},
                        "filled": [[true, false]], "warnings": [{"kind": "filled-voids", "detail": "1 \"cell\""}]}"#;
         let terrain = read(text).unwrap();
         let again: Vec<u8> = JsonText::of(&terrain).flatten().collect();

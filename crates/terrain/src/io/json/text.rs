@@ -55,7 +55,12 @@ impl JsonText {
     /// The end of the document.
     fn tail(&self) -> String {
         let warnings = serde_json::to_string(self.terrain.warnings()).unwrap_or_default();
-        if self.terrain.warnings().is_empty() { "}".into() } else { format!(",\"warnings\":{warnings}}}") }
+        let warnings = match self.terrain.warnings() {
+            [] => String::new(),
+            _ => format!(",\"warnings\":{warnings}"),
+        };
+        let areas = self.terrain.areas().map(|areas| format!(",\"areas\":{}", areas.text()));
+        format!("{warnings}{}}}", areas.unwrap_or_default())
     }
 
     fn value(&self, layer: Layer, index: usize) -> String {
