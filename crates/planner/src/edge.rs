@@ -8,6 +8,7 @@ use terrain::Cell;
 use crate::{
     heading::Heading,
     lattice::Lattice,
+    objective::Surcharge,
     spans::{Span, first_blocked, shifted},
     stance::Offset,
     step::{Limits, PreparedStep, Step},
@@ -28,6 +29,8 @@ pub struct Edge {
     pub climb_m: f64,
     /// Height lost on the way down, 0 or more [m].
     pub descent_m: f64,
+    /// What preferences add in comparisons: cost factors of areas and prices.
+    pub surcharge: Surcharge,
 }
 
 impl Edge {
@@ -40,12 +43,13 @@ impl Edge {
         self.length_m += step.length_m;
         self.climb_m += step.rise_m.max(0.0);
         self.descent_m += (-step.rise_m).max(0.0);
+        self.surcharge.add(&step.surcharge);
     }
 }
 
 /// One way to drive a motion, with everything prepared that does not depend on the cell it starts from.
 pub(crate) struct Chain {
-    /// Its steps, each with one manoeuvre per surface.
+    /// Its steps, each with one manoeuvre per kind of ground.
     steps: Vec<(PreparedStep, Vec<Manoeuvre>)>,
     /// The pose in which it ends: the offset of its cell, and its heading.
     end: (Offset, Heading),
@@ -59,7 +63,7 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// A chain of prepared steps, each with one manoeuvre per surface, that sweeps some cells about where it starts.
+    /// A chain of prepared steps, each with one manoeuvre per kind of ground, that sweeps some cells about where it starts.
     pub(crate) fn new(steps: Vec<(PreparedStep, Vec<Manoeuvre>)>, reverse: bool, sweep: Arc<[Span]>) -> Self {
         let reach = sweep.iter().map(Span::reach).max().unwrap_or(0);
         let corners = || {
@@ -83,27 +87,27 @@ impl Chain {
         self.end
     }
 
-    /// Its steps, each with the manoeuvres of all surfaces and whether it is driven backwards.
+    /// Its steps, each with the manoeuvres on all kinds of ground and whether it is driven backwards.
     pub(crate) fn steps_with_manoeuvres(&self) -> impl Iterator<Item = (&PreparedStep, &[Manoeuvre], bool)> {
         self.steps.iter().map(|(step, manoeuvres)| (step, &manoeuvres[..], self.reverse))
     }
 
     /// Totals on level ground of the robot's default surface, whatever its limits.
     pub(crate) fn on_level_ground(&self) -> Edge {
-        self.on_level_surface(self.surfaces().saturating_sub(1))
+        self.on_level(self.classes().saturating_sub(1))
     }
 
-    /// Number of surfaces that it is prepared for.
-    fn surfaces(&self) -> usize {
+    /// Number of kinds of ground that it is prepared for.
+    fn classes(&self) -> usize {
         self.steps.first().map_or(0, |(_, manoeuvres)| manoeuvres.len())
     }
 
-    fn on_level_surface(&self, surface: usize) -> Edge {
+    fn on_level(&self, class: usize) -> Edge {
         let mut total = Edge::default();
         for (step, manoeuvres, reverse) in self.steps_with_manoeuvres() {
-            let driven = manoeuvres.get(surface).and_then(|manoeuvre| {
-                step.drive(manoeuvre, 0.0, (0.0, 0.0), reverse, &Limits::NONE, surface)
-            });
+            let driven = manoeuvres
+                .get(class)
+                .and_then(|manoeuvre| step.drive(manoeuvre, 0.0, (0.0, 0.0), reverse, &Limits::NONE, class));
             if let Some(done) = driven {
                 total.add(&done);
             }
@@ -134,7 +138,7 @@ impl Chain {
         }
         let mut height_m = lattice.ground.height_m(terrain, index);
         for (step, manoeuvres) in &self.steps {
-            let manoeuvre_on = |surface: usize| &manoeuvres[surface];
+            let manoeuvre_on = |class: usize| &manoeuvres[class];
             let (done, end_m) = step.drive_on(lattice, index, height_m, self.reverse, manoeuvre_on)?;
             visit(&done);
             height_m = end_m;

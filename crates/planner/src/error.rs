@@ -45,6 +45,11 @@ pub enum Blocked {
         /// The unknown cell.
         cell: Cell,
     },
+    /// Its footprint touches a keep-out area.
+    KeepOut {
+        /// The area's cell.
+        cell: Cell,
+    },
     /// Its footprint hangs over the edge of the map.
     Edge,
     /// The ground pitches the robot further than its limit.
@@ -79,6 +84,13 @@ impl fmt::Display for Blocked {
             }
             Blocked::Unknown { cell } => {
                 write!(f, "the robot would touch unknown ground at row {}, column {}", cell.row, cell.column)
+            }
+            Blocked::KeepOut { cell } => {
+                write!(
+                    f,
+                    "the robot would touch the keep-out area at row {}, column {}",
+                    cell.row, cell.column
+                )
             }
             Blocked::Edge => write!(f, "the robot would reach over the edge of the map"),
             Blocked::Pitch { pitch_rad, limit_rad } => write!(
@@ -235,6 +247,19 @@ pub enum Error {
         most: usize,
         /// The map's cell size [m].
         cell_size_m: f64,
+    },
+    /// Areas that cannot be laid over the map.
+    #[error("{0}")]
+    Areas(String),
+    /// More kinds of ground than a byte tells apart.
+    #[error(
+        "surfaces and areas come to {found} kinds of ground, but at most {most} are told apart: name fewer surfaces, or let fewer areas lie over each other"
+    )]
+    TooManyGrounds {
+        /// Kinds found.
+        found: usize,
+        /// Most that are told apart.
+        most: usize,
     },
     /// A grid too coarse or too fine for this robot's lattice.
     #[error(

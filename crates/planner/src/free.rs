@@ -48,12 +48,11 @@ impl<'l> FreeGround<'l> {
                 if !self.holds(&step) {
                     return None;
                 }
-                let (done, end_m) = step.drive_on(lattice, 0, height_m, reverse, |surface| {
-                    let same = prepared.take().filter(|(of, _)| *of == surface && !anew);
+                let (done, end_m) = step.drive_on(lattice, 0, height_m, reverse, |class| {
+                    let same = prepared.take().filter(|(of, _)| *of == class && !anew);
                     let heading_rad = step.heading_rad();
-                    let ready = same.unwrap_or_else(|| {
-                        (surface, lattice.manoeuvre(piece, reverse, heading_rad, surface))
-                    });
+                    let ready = same
+                        .unwrap_or_else(|| (class, lattice.manoeuvre(piece, reverse, heading_rad, class)));
                     &prepared.insert(ready).1
                 })?;
                 visit(&done);
@@ -73,8 +72,7 @@ impl<'l> FreeGround<'l> {
 
     /// Totals in the objective's own unit, lifting included: between the same ends it is the same for every path.
     pub(crate) fn weighed(&self, total: &Edge) -> f64 {
-        let Weights { per_j, per_m, per_s } = self.weights;
-        per_j * total.energy_j + per_m * total.length_m + per_s * total.duration_s
+        self.weights.of(total)
     }
 
     /// Whether the robot touches neither obstacles nor unknown ground nor the map's edge along a connection.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
-use terrain::{Cell, Surfaces, Terrain};
+use terrain::{Cell, Terrain};
 
 use crate::{
     clearance::Clearance,
@@ -11,11 +11,13 @@ use crate::{
     error::{Blocked, Error},
     footprint::Footprint,
     ground::Ground,
+    ground_class::{GroundClass, GroundClasses},
     heading::{HEADINGS, Heading},
     layout::Layout,
     objective::{Objective, Weights},
     patience::Patience,
     preparation::Preparation,
+    prices::Prices,
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
     spans::{Span, first_blocked, shifted},
     stance::Stance,
@@ -34,6 +36,12 @@ pub struct Settings {
     pub reverse: bool,
     /// Temperature of both motors [°C].
     pub motor_temperature_c: f64,
+    /// What manoeuvres weigh in comparisons besides what they take.
+    pub prices: Prices,
+    /// Whether the robot may turn on the spot.
+    pub spin: bool,
+    /// No turn is tighter; above 0 the robot does not turn on the spot [m].
+    pub least_radius_m: f64,
 }
 
 impl Settings {
@@ -46,7 +54,20 @@ impl Settings {
             power_model: PowerModel::default(),
             reverse: false,
             motor_temperature_c: robot.motors.reference_temperature_c,
+            prices: Prices::default(),
+            spin: true,
+            least_radius_m: 0.0,
         }
+    }
+
+    /// Whether the robot turns on the spot.
+    pub(crate) fn spins(&self) -> bool {
+        self.spin && self.least_radius_m == 0.0
+    }
+
+    /// Radius of the tightest arc: half the slip track, or the least that is asked for [m].
+    pub(crate) fn tightest_m(&self, robot: &Robot) -> f64 {
+        robot.half_slip_track_m().max(self.least_radius_m)
     }
 }
 
@@ -75,8 +96,7 @@ pub struct Lattice {
     pub(crate) limits: Limits,
     pub(crate) ground: Ground,
     pub(crate) chains: Arc<[Vec<Vec<Chain>>; HEADINGS]>,
-    /// Friction of every surface class, the robot's default last.
-    pub(crate) surfaces: Vec<model::robot::Surface>,
+    pub(crate) classes: GroundClasses,
     stand: [Vec<Span>; HEADINGS],
 }
 
@@ -101,14 +121,16 @@ impl Lattice {
         patience: &Patience,
     ) -> Result<Arc<Self>, Error> {
         check_speed(robot, settings.speed_mps)?;
-        let surfaces = surface_classes(terrain, robot)?;
+        settings.prices.check()?;
+        let terrain = &as_driven(terrain, patience)?;
+        let classes = GroundClasses::of(terrain, robot)?;
         let cell_size_m = terrain.grid.cell_size_m;
         let (rows, columns) = (terrain.grid.rows, terrain.grid.columns);
         let layout = Layout::new(&terrain.grid).ok_or(Error::TooManyStates { rows, columns })?;
         check_cells(robot, cell_size_m)?;
-        let motions = motions(robot, cell_size_m, settings.reverse);
+        let motions = motions(robot, cell_size_m, &settings)?;
         let preparation =
-            Preparation { robot, settings: &settings, surfaces: &surfaces, cell_size_m, patience };
+            Preparation { robot, settings: &settings, classes: &classes.list, cell_size_m, patience };
         let chains = Arc::new(preparation.chains(&motions)?);
         let outline = Footprint::of(robot);
         let standing = |h| Rectangle::of(&outline, [0.0, 0.0, Heading::new(h).angle_rad()]);
@@ -122,7 +144,7 @@ impl Lattice {
             limits: Limits::of(robot),
             ground: Ground::new(terrain, Arc::new(Stance::new(robot, cell_size_m)), robot.clearance_m()),
             chains,
-            surfaces: surfaces.into_iter().cloned().collect(),
+            classes,
             stand: std::array::from_fn(|h| standing(h).spans(cell_size_m).collect()),
         }))
     }
@@ -132,8 +154,8 @@ impl Lattice {
     /// # Errors
     /// As [`Lattice::prepare`].
     pub fn over(&self, terrain: &Terrain, patience: &Patience) -> Result<Arc<Self>, Error> {
-        let names = |terrain: &Terrain| terrain.surfaces().map(|s| s.names.clone());
-        if terrain.grid != self.terrain.grid || names(terrain) != names(&self.terrain) {
+        let terrain = &as_driven(terrain, patience)?;
+        if terrain.grid != self.terrain.grid || GroundClasses::of(terrain, &self.robot)? != self.classes {
             return Self::prepare(terrain, &self.robot, self.settings, patience);
         }
         Ok(Arc::new(Lattice {
@@ -146,7 +168,7 @@ impl Lattice {
             limits: self.limits,
             ground: Ground::new(terrain, Arc::clone(self.ground.stance()), self.robot.clearance_m()),
             chains: Arc::clone(&self.chains),
-            surfaces: self.surfaces.clone(),
+            classes: self.classes.clone(),
             stand: self.stand.clone(),
         }))
     }
@@ -215,6 +237,7 @@ impl Lattice {
             return Err(match touched {
                 None => Blocked::Edge,
                 Some(cell) if self.terrain.elevation_m(cell).is_none() => Blocked::Unknown { cell },
+                Some(cell) if self.terrain.is_keep_out(cell) => Blocked::KeepOut { cell },
                 Some(cell) => Blocked::Obstacle { cell },
             });
         }
@@ -256,16 +279,15 @@ impl Lattice {
         &self.chains[heading.index()][motion][variant]
     }
 
-    /// A piece as driven on one surface at a heading [rad].
+    /// A piece as driven on one kind of ground at a heading [rad].
     pub(crate) fn manoeuvre(
         &self,
         piece: &Piece,
         reverse: bool,
         heading_rad: f64,
-        surface: usize,
+        class: usize,
     ) -> Manoeuvre {
-        let motion = piece_motion(&self.robot, &self.settings, piece, reverse).heading(heading_rad);
-        manoeuvre(&self.robot, &self.settings, motion, &self.surfaces[surface])
+        manoeuvre(&self.robot, &self.settings, (piece, reverse, heading_rad), &self.classes.list[class])
     }
 
     /// Totals of a step east on level ground.
@@ -298,34 +320,14 @@ impl Lattice {
         let cell = shifted(&self.terrain, state.cell, (m.columns, m.rows))?;
         Some(State { cell, heading: m.to })
     }
-
-    /// Index of a cell's surface among the prepared manoeuvres; the robot's default stands last.
-    #[inline]
-    pub(crate) fn surface_index(&self, cell: Cell) -> usize {
-        match self.terrain.surfaces() {
-            None => 0,
-            Some(surfaces) => {
-                let class = surfaces.class[self.terrain.grid.index(cell)];
-                if class == Surfaces::UNNAMED { surfaces.names.len() } else { usize::from(class) }
-            }
-        }
-    }
 }
 
-/// Friction of every class of the map in its order, then the robot's default.
-fn surface_classes<'r>(terrain: &Terrain, robot: &'r Robot) -> Result<Vec<&'r model::robot::Surface>, Error> {
-    let names = terrain.surfaces().map_or(&[][..], |s| &s.names);
-    names
-        .iter()
-        .map(String::as_str)
-        .chain([robot.default_surface.as_str()])
-        .map(|name| {
-            robot.surface(name).map_err(|_| Error::UnknownSurface {
-                name: name.to_owned(),
-                known: robot.surfaces.keys().cloned().collect(),
-            })
-        })
-        .collect()
+/// The ground with its areas laid over it.
+fn as_driven(terrain: &Terrain, patience: &Patience) -> Result<Terrain, Error> {
+    terrain.as_driven(&|| patience.is_over()).map_err(|error| match error {
+        terrain::Error::OutOfTime => Error::Timeout { expanded: 0 },
+        other => Error::Areas(other.to_string()),
+    })
 }
 
 fn check_speed(robot: &Robot, speed_mps: f64) -> Result<(), Error> {
@@ -349,19 +351,21 @@ fn check_cells(robot: &Robot, cell_size_m: f64) -> Result<(), Error> {
     if cell_size_m >= least_m { Ok(()) } else { Err(Error::CellsTooFine { cell_size_m, least_m }) }
 }
 
-/// A manoeuvre of a robot as driven, at the motors' temperature.
+/// A piece as driven on a kind of ground at a heading [rad], at the motors' temperature.
 pub(crate) fn manoeuvre(
     robot: &Robot,
     settings: &Settings,
-    motion: BodyMotion,
-    surface: &model::robot::Surface,
+    (piece, reverse, heading_rad): (&Piece, bool, f64),
+    class: &GroundClass,
 ) -> Manoeuvre {
+    let settings = class.settings(settings);
+    let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
     let temperature_c = Sides::both(settings.motor_temperature_c);
-    Manoeuvre::new(settings.power_model, robot, surface, motion, temperature_c)
+    Manoeuvre::new(settings.power_model, robot, &class.surface, motion, temperature_c)
 }
 
 /// Body speeds on a piece at the speed asked for.
-pub(crate) fn piece_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
+fn piece_motion(robot: &Robot, settings: &Settings, piece: &Piece, reverse: bool) -> BodyMotion {
     body_motion(robot, settings.speed_mps, piece.radius_m(), piece.turn_rad, reverse)
 }
 

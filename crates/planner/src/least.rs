@@ -5,6 +5,7 @@ use model::{Manoeuvre, PowerModel};
 use crate::{
     cost::SINGLE_PRECISION,
     edge::Chain,
+    ground_class::GroundClass,
     lattice::Lattice,
     objective::Weights,
     primitive::Motion,
@@ -62,14 +63,20 @@ pub(crate) fn least_cost_of_motion(
 fn least_cost_on_slopes(lattice: &Lattice, weights: &Weights, chain: &Chain) -> f64 {
     let steps = chain.steps_with_manoeuvres();
     let of_step = |(step, manoeuvres, reverse): (&PreparedStep, &[Manoeuvre], bool)| {
-        let on = |(surface, manoeuvre)| {
-            let driven = move |slope| driven_on(step, (manoeuvre, surface, reverse), slope);
-            slopes(lattice).filter_map(driven).map(|done| {
+        let on = |(manoeuvre, class): (&Manoeuvre, &GroundClass)| {
+            let weights = class.weights(weights, &lattice.settings, step, reverse);
+            let driven =
+                slopes(lattice).filter_map(|slope| driven_on(step, (manoeuvre, class.name, reverse), slope));
+            let cost = |done: Step| {
                 let unlifted_j = lattice.unlifted_j(&done);
-                weights.per_j * unlifted_j + weights.per_m * done.length_m + weights.per_s * done.duration_s
-            })
+                weights.per_j * unlifted_j
+                    + weights.per_m * done.length_m
+                    + weights.per_s * done.duration_s
+                    + weights.fixed
+            };
+            driven.map(cost).fold(f64::INFINITY, f64::min)
         };
-        manoeuvres.iter().enumerate().flat_map(on).fold(f64::INFINITY, f64::min)
+        manoeuvres.iter().zip(&lattice.classes.list).map(on).fold(f64::INFINITY, f64::min)
     };
     steps.map(of_step).sum()
 }
@@ -89,18 +96,17 @@ fn friction_floor(lattice: &Lattice) -> Option<f64> {
 }
 
 fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain, floor: f64) -> f64 {
-    let of_step = |(step, manoeuvres)| least_of_step(lattice, weights, (step, manoeuvres), floor);
-    chain.steps_with_manoeuvres().map(|(step, manoeuvres, _)| of_step((step, manoeuvres))).sum()
+    chain.steps_with_manoeuvres().map(|step| least_of_step(lattice, weights, step, floor)).sum()
 }
 
 fn least_of_step(
     lattice: &Lattice,
     weights: &Weights,
-    (step, manoeuvres): (&PreparedStep, &[Manoeuvre]),
+    (step, manoeuvres, reverse): (&PreparedStep, &[Manoeuvre], bool),
     floor: f64,
 ) -> f64 {
     let steepest = lattice.robot.limits.max_roll_rad.tan();
-    let on = |manoeuvre: &Manoeuvre| {
+    let on = |(manoeuvre, class): (&Manoeuvre, &GroundClass)| {
         let (kernel, motion) = (manoeuvre.kernel(), manoeuvre.motion());
         let left = |tilt| kernel.pull.left_of_skid(tilt, 0.0);
         let skid_n = kernel.skid_n * left(steepest).min(left(-steepest));
@@ -112,9 +118,14 @@ fn least_of_step(
             0.0 => step.turn_rad / motion.yaw_rate_radps,
             horizontal_m => horizontal_m / motion.speed_mps.abs(),
         };
-        weights.per_j * least_w * duration_s + weights.per_m * step.horizontal_m + weights.per_s * duration_s
+        let weights = class.weights(weights, &lattice.settings, step, reverse);
+        let taken_j = least_w * duration_s;
+        weights.per_j * taken_j
+            + weights.per_m * step.horizontal_m
+            + weights.per_s * duration_s
+            + weights.fixed
     };
-    manoeuvres.iter().map(on).fold(f64::INFINITY, f64::min)
+    manoeuvres.iter().zip(&lattice.classes.list).map(on).fold(f64::INFINITY, f64::min)
 }
 
 /// Level ground and the steepest that limits allow, up, down and to either side.

@@ -31,6 +31,26 @@ pub struct Weights {
     pub per_m: f64,
     /// Of time [1/s].
     pub per_s: f64,
+    /// Of what preferences add, each in its own unit.
+    pub of_surcharge: Surcharge,
+}
+
+/// What preferences add to a path in comparisons: it is not drawn from the battery, nor driven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surcharge {
+    /// To energy [J].
+    pub j: f64,
+    /// To length [m].
+    pub m: f64,
+    /// To time [s].
+    pub s: f64,
+}
+
+impl Surcharge {
+    /// Adds another.
+    pub fn add(&mut self, other: &Surcharge) {
+        (self.j, self.m, self.s) = (self.j + other.j, self.m + other.m, self.s + other.s);
+    }
 }
 
 impl Objective {
@@ -40,6 +60,16 @@ impl Objective {
             Objective::Energy => total.energy_j,
             Objective::Distance => total.length_m,
             Objective::Time => total.duration_s,
+        }
+    }
+
+    /// What a path is compared by: its amount, with what preferences add [J, m or s].
+    pub fn compared(self, total: &Edge) -> f64 {
+        let Surcharge { j, m, s } = total.surcharge;
+        match self {
+            Objective::Energy => total.energy_j + j,
+            Objective::Distance => total.length_m + m,
+            Objective::Time => total.duration_s + s,
         }
     }
 
@@ -57,9 +87,20 @@ impl Objective {
                 per_j: 1.0,
                 per_m: 0.0,
                 per_s: FRICTIONLESS_TIE_SHARE * missing_j / level.duration_s,
+                of_surcharge: Surcharge { j: 1.0, ..Surcharge::default() },
             },
-            Objective::Distance => Weights { per_j: tie(level.length_m), per_m: 1.0, per_s: 0.0 },
-            Objective::Time => Weights { per_j: tie(level.duration_s), per_m: 0.0, per_s: 1.0 },
+            Objective::Distance => Weights {
+                per_j: tie(level.length_m),
+                per_m: 1.0,
+                per_s: 0.0,
+                of_surcharge: Surcharge { m: 1.0, ..Surcharge::default() },
+            },
+            Objective::Time => Weights {
+                per_j: tie(level.duration_s),
+                per_m: 0.0,
+                per_s: 1.0,
+                of_surcharge: Surcharge { s: 1.0, ..Surcharge::default() },
+            },
         }
     }
 }
@@ -76,8 +117,15 @@ impl Weights {
         self.of(&Edge { energy_j: friction_j.max(0.0), ..*edge })
     }
 
-    /// Weighted sum of a motion's energy, length and time.
+    /// Weighted sum of a motion's energy, length and time, with what preferences add.
     pub(crate) fn of(&self, edge: &Edge) -> f64 {
-        self.per_j * edge.energy_j + self.per_m * edge.length_m + self.per_s * edge.duration_s
+        let taken = self.per_j * edge.energy_j + self.per_m * edge.length_m + self.per_s * edge.duration_s;
+        taken + self.of_surcharge(&edge.surcharge)
+    }
+
+    /// Weighted sum of what preferences add.
+    pub(crate) fn of_surcharge(&self, surcharge: &Surcharge) -> f64 {
+        let Surcharge { j, m, s } = self.of_surcharge;
+        j * surcharge.j + m * surcharge.m + s * surcharge.s
     }
 }

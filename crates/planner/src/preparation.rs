@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use model::{Manoeuvre, Robot, robot::Surface};
+use model::{Manoeuvre, Robot};
 
 use crate::{
     edge::Chain,
     error::Error,
     footprint::Footprint,
+    ground_class::GroundClass,
     heading::HEADINGS,
-    lattice::{Settings, manoeuvre, piece_motion},
+    lattice::{Settings, manoeuvre},
     patience::{Pacer, Patience, work},
     primitive::{Motion, Piece},
     spans::Span,
@@ -24,8 +25,8 @@ const MOST_MANOEUVRES: usize = 1 << 20;
 pub(crate) struct Preparation<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) settings: &'a Settings,
-    /// Friction of every surface class.
-    pub(crate) surfaces: &'a [&'a Surface],
+    /// Kinds of ground.
+    pub(crate) classes: &'a [GroundClass],
     pub(crate) cell_size_m: f64,
     pub(crate) patience: &'a Patience,
 }
@@ -65,7 +66,7 @@ impl Preparation<'_> {
         let mut steps = Vec::new();
         for piece in pieces {
             for step in prepare_steps(piece, reverse, self.cell_size_m, STEP_CELLS) {
-                progress.pacer.after(self.surfaces.len() as u64 * work::MOTION)?;
+                progress.pacer.after(self.classes.len() as u64 * work::MOTION)?;
                 let manoeuvres = self.manoeuvres(piece, reverse, step.heading_rad());
                 steps.push((step, manoeuvres));
             }
@@ -73,10 +74,10 @@ impl Preparation<'_> {
         Some(Chain::new(steps, reverse, self.swept(pieces, progress)?))
     }
 
-    /// The manoeuvres of a piece at a heading, one per surface.
+    /// The manoeuvres of a piece at a heading, one per kind of ground.
     fn manoeuvres(&self, piece: &Piece, reverse: bool, heading_rad: f64) -> Vec<Manoeuvre> {
-        let motion = piece_motion(self.robot, self.settings, piece, reverse).heading(heading_rad);
-        self.surfaces.iter().map(|surface| manoeuvre(self.robot, self.settings, motion, surface)).collect()
+        let on = |class| manoeuvre(self.robot, self.settings, (piece, reverse, heading_rad), class);
+        self.classes.iter().map(on).collect()
     }
 
     /// The cells that pieces sweep. A robot that backs along a motion sweeps what one driving forwards along it does.
@@ -95,7 +96,7 @@ impl Preparation<'_> {
             motions.iter().flatten().flat_map(|m| m.variants.iter().flatten().map(|p| (p, m.reverse)));
         let steps: usize =
             pieces.map(|(p, reverse)| prepare_steps(p, reverse, self.cell_size_m, STEP_CELLS).len()).sum();
-        let surfaces = self.surfaces.len();
+        let surfaces = self.classes.len();
         if steps * surfaces <= MOST_MANOEUVRES {
             return Ok(());
         }
@@ -107,6 +108,7 @@ impl Preparation<'_> {
 #[cfg(test)]
 mod tests {
     use model::builtin;
+    use terrain::areas::Rule;
 
     use super::*;
     use crate::primitive::motions;
@@ -117,14 +119,14 @@ mod tests {
         (robot.wheelbase_m, robot.track_m, robot.slip_track_m) = (1.4, 1.5, 3.0);
         let cell_size_m = 0.05;
         let settings = Settings { reverse: true, ..Settings::of(&robot) };
-        let surface = robot.surfaces["marble"].clone();
-        let motions = motions(&robot, cell_size_m, settings.reverse);
+        let class = GroundClass { surface: robot.surfaces["marble"].clone(), name: 0, rule: Rule::FREE };
+        let motions = motions(&robot, cell_size_m, &settings).unwrap();
         let prepared = |patience: Patience| {
             let (patience, meter) = patience.metered();
             let preparation = Preparation {
                 robot: &robot,
                 settings: &settings,
-                surfaces: &[&surface],
+                classes: std::slice::from_ref(&class),
                 cell_size_m,
                 patience: &patience,
             };

@@ -2,7 +2,11 @@
 
 use model::Robot;
 
-use crate::heading::{HEADINGS, Heading, turn_rad};
+use crate::{
+    error::Error,
+    heading::{HEADINGS, Heading, turn_rad},
+    lattice::Settings,
+};
 
 /// What a motion looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,22 +88,45 @@ impl Piece {
 /// All motions that start at each heading, in a fixed order.
 ///
 /// One straight, arcs by one and two headings to either side, a point turn to either side; with `reverse` also the
-/// straight and the arcs backwards. Arcs are driven at R' (half the slip track) or at the widest radius that fits their
+/// straight and the arcs backwards. Arcs are driven at R' (half the slip track), or the least radius asked for if that is wider, or at the widest radius that fits their
 /// corner, whichever costs less where they are.
-pub fn motions(robot: &Robot, cell_size_m: f64, reverse: bool) -> [Vec<Motion>; HEADINGS] {
-    std::array::from_fn(|index| {
+///
+/// # Errors
+/// A least radius so wide that no arc fits the cells.
+pub fn motions(
+    robot: &Robot,
+    cell_size_m: f64,
+    settings: &Settings,
+) -> Result<[Vec<Motion>; HEADINGS], Error> {
+    check_radius(robot, cell_size_m, settings)?;
+    let tightest_m = settings.tightest_m(robot);
+    Ok(std::array::from_fn(|index| {
         let from = Heading::new(index);
-        let mut list = forward(robot, from, cell_size_m);
-        if reverse {
-            list.extend(forward(robot, from.turned(HALF_CIRCLE), cell_size_m).into_iter().map(backed));
+        let mut list = forward(tightest_m, from, cell_size_m);
+        if settings.reverse {
+            list.extend(forward(tightest_m, from.turned(HALF_CIRCLE), cell_size_m).into_iter().map(backed));
         }
-        list.extend([1, -1].map(|turns| point_turn(from, turns)));
+        if settings.spins() {
+            list.extend([1, -1].map(|turns| point_turn(from, turns)));
+        }
         list
-    })
+    }))
 }
 
-fn forward(robot: &Robot, from: Heading, cell_size_m: f64) -> Vec<Motion> {
-    let arcs = ARC_TURNS.iter().filter_map(|&turns| arc(robot, from, turns, cell_size_m));
+/// Arcs by one heading must fit a corner of at most [`LONGEST_LEAD`] lattice steps.
+fn check_radius(robot: &Robot, cell_size_m: f64, settings: &Settings) -> Result<(), Error> {
+    // The sharpest corner between neighbouring headings: 26.6° between a step of one cell and another of √5.
+    let sharpest = 0.5f64.atan() / 2.0;
+    let max = f64::from(LONGEST_LEAD) * cell_size_m / sharpest.tan();
+    let value = settings.least_radius_m;
+    if (0.0..=max).contains(&value) && settings.tightest_m(robot) <= max {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { field: "least_radius_m", value, min: 0.0, max })
+}
+
+fn forward(tightest_m: f64, from: Heading, cell_size_m: f64) -> Vec<Motion> {
+    let arcs = ARC_TURNS.iter().filter_map(|&turns| arc(tightest_m, from, turns, cell_size_m));
     std::iter::once(straight(from, cell_size_m)).chain(arcs).collect()
 }
 
@@ -137,7 +164,7 @@ fn point_turn(from: Heading, turns: i32) -> Motion {
 }
 
 /// A turn round a corner of lattice lines: `lead` steps along the old heading, as many along the new.
-fn arc(robot: &Robot, from: Heading, turns: i32, cell_size_m: f64) -> Option<Motion> {
+fn arc(tightest_m: f64, from: Heading, turns: i32, cell_size_m: f64) -> Option<Motion> {
     let to = from.turned(turns);
     let turn = turn_rad(from.angle_rad(), to.angle_rad());
     let step_m = |h: Heading| {
@@ -145,7 +172,6 @@ fn arc(robot: &Robot, from: Heading, turns: i32, cell_size_m: f64) -> Option<Mot
         f64::from(columns).hypot(f64::from(rows)) * cell_size_m
     };
     let widest_m = |lead: i32| f64::from(lead) * step_m(from).min(step_m(to)) / (turn.abs() / 2.0).tan();
-    let tightest_m = robot.half_slip_track_m();
     // Rounding must not cost an arc at the finest cells that the lattice accepts.
     let lead = (1..=LONGEST_LEAD).find(|lead| widest_m(*lead) >= tightest_m * (1.0 - 1e-9))?;
     let widest_m = widest_m(lead).max(tightest_m);
@@ -191,7 +217,9 @@ mod tests {
     use super::*;
 
     fn all(cell_size_m: f64) -> Vec<Motion> {
-        motions(&builtin::husky_a200(), cell_size_m, true).into_iter().flatten().collect()
+        let robot = builtin::husky_a200();
+        let settings = Settings { reverse: true, ..Settings::of(&robot) };
+        motions(&robot, cell_size_m, &settings).unwrap().into_iter().flatten().collect()
     }
 
     #[test]

@@ -88,7 +88,9 @@ fn cancellation(lattice: &Lattice, weights: &Weights) -> f64 {
     let grade = lattice.limits.pitch_grade.abs().min(STEEPEST);
     let longest = chains(lattice).map(|(_, motion)| f64::from(motion.columns).hypot(f64::from(motion.rows)));
     let longest_m = longest.fold(0.0, f64::max) * lattice.terrain.grid.cell_size_m;
-    ROUNDINGS * f64::from(f32::EPSILON / 2.0) * weights.per_j * lattice.lift_j_per_m() * grade * longest_m
+    let [_, largest_factor] = lattice.classes.factors();
+    let per_j = weights.per_j * largest_factor.max(1.0);
+    ROUNDINGS * f64::from(f32::EPSILON / 2.0) * per_j * lattice.lift_j_per_m() * grade * longest_m
 }
 
 /// Costs of a path besides those of its length or time, at most: the energy among them, and turns on the spot.
@@ -111,13 +113,15 @@ impl Tie {
         let (mut share, mut turn) = (0.0f64, 0.0f64);
         for (chain, _) in chains(lattice) {
             for (step, manoeuvres, reverse) in chain.steps_with_manoeuvres() {
-                for (surface, manoeuvre) in manoeuvres.iter().enumerate() {
+                for (manoeuvre, class) in manoeuvres.iter().zip(&lattice.classes.list) {
+                    let weights = class.weights(weights, &lattice.settings, step, reverse);
                     for slope in slopes(lattice) {
-                        let Some(done) = driven_on(step, (manoeuvre, surface, reverse), slope) else {
+                        let Some(done) = driven_on(step, (manoeuvre, class.name, reverse), slope) else {
                             continue;
                         };
                         let energy = weights.per_j * lattice.unlifted_j(&done).max(0.0);
-                        let amount = weights.per_m * done.length_m + weights.per_s * done.duration_s;
+                        let amount =
+                            weights.per_m * done.length_m + weights.per_s * done.duration_s + weights.fixed;
                         if amount > 0.0 {
                             share = share.max(energy / amount);
                         } else {
@@ -128,6 +132,9 @@ impl Tie {
             }
         }
         let once = Self::TURNS_IN_PLACE * turn;
-        Tie { share: share + once / lattice.terrain.grid.cell_size_m, once }
+        // Where a cost factor is below 1, a cell's length counts for less than the cell.
+        let [least_factor, _] = lattice.classes.factors();
+        let least_m = lattice.terrain.grid.cell_size_m * least_factor.min(1.0);
+        Tie { share: share + once / least_m, once }
     }
 }

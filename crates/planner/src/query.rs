@@ -74,7 +74,7 @@ pub struct SearchReport {
     /// Time for preparing and searching.
     pub duration: Duration,
     /// Proven: the answer has at most so many times the least of the objective that any path of the lattice takes, with the
-    /// rounding of costs in the table included. `None` where the least may be nothing or a gain, which no factor bounds.
+    /// rounding of costs in the table and what preferences add included. `None` where the least may be nothing or a gain, which no factor bounds.
     pub bound: Option<f64>,
     /// By how much the answer may exceed the least, in the objective's unit, rounding included.
     pub excess: f64,
@@ -87,7 +87,7 @@ pub struct SearchReport {
 impl SearchReport {
     /// What is proven of a path that takes `amount` of the objective, where none takes less than `least`.
     pub(crate) fn proven(found: &Found, objective: Objective, total: &Edge, duration: Duration) -> Self {
-        let amount = objective.amount(total);
+        let amount = objective.compared(total);
         SearchReport {
             expanded: found.expanded,
             duration,

@@ -4,7 +4,9 @@ use model::{Acceleration, Grade};
 
 use crate::{
     connection::{Connection, Ends, Side, WORDS, Waypoint},
+    edge::Edge,
     free::FreeGround,
+    objective::Surcharge,
     primitive::Piece,
 };
 
@@ -32,6 +34,8 @@ pub(crate) struct LevelRates {
     radii_m: Vec<f64>,
     /// By direction (forward, reverse).
     directions: Vec<Direction>,
+    /// Position of the first radius that may be driven: 1 where the robot may not turn on the spot.
+    first: usize,
 }
 
 struct Direction {
@@ -42,7 +46,8 @@ struct Direction {
 
 impl LevelRates {
     pub(crate) fn new(ground: &FreeGround<'_>) -> Self {
-        let tightest_m = ground.lattice.robot.half_slip_track_m();
+        let lattice = ground.lattice;
+        let tightest_m = lattice.settings.tightest_m(&lattice.robot);
         let within = |k: usize| (k as f64 / PER_DOUBLING as f64).exp2();
         let doubled = (0..=DOUBLINGS * PER_DOUBLING).map(|k| tightest_m * within(k));
         let radii_m: Vec<f64> = std::iter::once(0.0).chain(doubled).collect();
@@ -55,10 +60,11 @@ impl LevelRates {
                     .map(|sign| radii_m.iter().map(|&r| rate(ground, r, sign, reverse)).collect()),
             })
             .collect();
-        LevelRates { radii_m, directions }
+        let first = usize::from(!lattice.settings.spins());
+        LevelRates { radii_m, directions, first }
     }
 
-    /// Half the slip track [m].
+    /// Radius of the tightest arc [m].
     pub(crate) fn tightest_m(&self) -> f64 {
         self.radii_m[1]
     }
@@ -124,8 +130,8 @@ impl LevelRates {
         };
         let (least, chosen) = match radii {
             Radii::EveryPair => {
-                let mut seeds: Vec<(f64, [usize; 2])> = (0..useful)
-                    .filter_map(|first| cheapest(&mut (0..useful).map(|last| [first, last])))
+                let mut seeds: Vec<(f64, [usize; 2])> = (self.first..useful)
+                    .filter_map(|first| cheapest(&mut (self.first..useful).map(|last| [first, last])))
                     .filter(|(cost, _)| cost.is_finite())
                     .collect();
                 seeds.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -136,7 +142,7 @@ impl LevelRates {
             }
             Radii::InTurn => {
                 // 0, R' and its doublings.
-                let doubled = || std::iter::once(0).chain((1..useful).step_by(PER_DOUBLING));
+                let doubled = || (self.first..1).chain((1..useful).step_by(PER_DOUBLING));
                 let (_, [_, last]) = cheapest(&mut doubled().map(|both| [both, both]))?;
                 let (_, [first, _]) = cheapest(&mut doubled().map(|first| [first, last]))?;
                 cheapest(&mut doubled().map(|last| [first, last]))?
@@ -193,12 +199,25 @@ pub(crate) enum Radii {
 /// Cost of a piece by its length, or by its turn on the spot.
 fn rate(ground: &FreeGround<'_>, length_m: f64, turn_rad: f64, reverse: bool) -> f64 {
     let piece = Piece { start_m: [0.0, 0.0], heading_rad: 0.0, length_m, turn_rad };
-    let surface = ground.lattice.surfaces.len() - 1;
-    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, f64::NAN, surface);
+    let class = ground.lattice.classes.list.len() - 1;
+    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, f64::NAN, class);
     let motion = manoeuvre.motion();
     let duration_s =
         if length_m > 0.0 { length_m / motion.speed_mps.abs() } else { turn_rad / motion.yaw_rate_radps };
     let bus_w = manoeuvre.power_on_grade(Grade::LEVEL, Acceleration::NONE).bus_w;
-    let weights = ground.weights;
-    weights.per_j * bus_w * duration_s + weights.per_m * length_m + weights.per_s * duration_s
+    let prices = &ground.lattice.settings.prices;
+    let reversed_m = if reverse { length_m } else { 0.0 };
+    let spun_rad = if length_m > 0.0 { 0.0 } else { turn_rad.abs() };
+    let surcharge = Surcharge {
+        j: prices.reverse_j_per_m * reversed_m + prices.spin_j_per_rad * spun_rad,
+        m: 0.0,
+        s: prices.reverse_s_per_m * reversed_m + prices.spin_s_per_rad * spun_rad,
+    };
+    ground.weights.of(&Edge {
+        energy_j: bus_w * duration_s,
+        length_m,
+        duration_s,
+        surcharge,
+        ..Edge::default()
+    })
 }

@@ -1,8 +1,17 @@
 //! One step of a motion from a row of cells side by side, in single precision.
 
-use model::{Grade, PowerKernel};
+use model::{Grade, Manoeuvre, PowerKernel};
 
-use crate::{edge::Chain, layout::TILE, stance::orientation, window::Window};
+use crate::{
+    edge::Chain,
+    ground_class::GroundClass,
+    lattice::{Lattice, Settings},
+    layout::TILE,
+    objective::Weights,
+    stance::orientation,
+    step::PreparedStep,
+    window::Window,
+};
 
 /// What steps are measured by.
 #[derive(Clone, Copy)]
@@ -10,9 +19,6 @@ pub(crate) struct Pricing {
     pub(crate) pitch_grade: f32,
     pub(crate) roll_grade: f32,
     pub(crate) side_force_n: f32,
-    pub(crate) per_j: f32,
-    pub(crate) per_m: f32,
-    pub(crate) per_s: f32,
     pub(crate) lift_j_per_m: f32,
 }
 
@@ -50,9 +56,21 @@ pub(crate) struct RowStep {
     per_horizontal_m: f32,
     travel: (f32, f32),
     facing: f32,
+    /// How it is driven on each kind of ground.
+    grounds: Vec<GroundStep>,
+}
+
+/// A step on one kind of ground.
+#[derive(Clone, Copy)]
+struct GroundStep {
     s_per_m: f32,
     on_the_spot_s: f32,
-    kernels: Vec<PowerKernel<f32>>,
+    per_j: f32,
+    per_m: f32,
+    per_s: f32,
+    /// Cost whatever the step takes, infinite where its direction is forbidden.
+    fixed: f32,
+    kernel: PowerKernel<f32>,
 }
 
 impl RowStep {
@@ -89,17 +107,17 @@ impl RowStep {
         let north = window.lanes(north, row, self.middle);
         let ground = self.ground(&rise_m, east, north);
         if let [only] = window.present[..] {
-            let step = self.costs(pricing, &self.kernels[usize::from(only)], &ground, &rise_m);
+            let step = self.costs(pricing, &self.grounds[usize::from(only)], &ground, &rise_m);
             for x in 0..TILE {
                 costs[x] += step[x];
             }
             return;
         }
-        let surface = window.lanes(&window.surface, row, self.middle);
+        let classes = window.lanes(&window.class, row, self.middle);
         for &class in &window.present {
-            let step = self.costs(pricing, &self.kernels[usize::from(class)], &ground, &rise_m);
+            let step = self.costs(pricing, &self.grounds[usize::from(class)], &ground, &rise_m);
             for x in 0..TILE {
-                costs[x] += if surface[x] == class { step[x] } else { 0.0 };
+                costs[x] += if classes[x] == class { step[x] } else { 0.0 };
             }
         }
     }
@@ -134,12 +152,12 @@ impl RowStep {
         ground
     }
 
-    /// The cost of the step on one surface, infinite where limits forbid it.
+    /// The cost of the step on one kind of ground, infinite where limits forbid it.
     #[inline(always)]
-    fn costs(&self, pricing: &Pricing, power: &PowerKernel<f32>, ground: &Ground, rise_m: &Lanes) -> Lanes {
+    fn costs(&self, pricing: &Pricing, on: &GroundStep, ground: &Ground, rise_m: &Lanes) -> Lanes {
         // Copies that the compiler can keep in registers, and short loops, in which the processor finds enough to do while
         // it waits for roots.
-        let (power, limits) = (*power, *pricing);
+        let (on, power, limits) = (*on, on.kernel, *pricing);
         let (mut steepened, mut skid_n) = (Lanes::ZERO, Lanes::ZERO);
         if power.steepening != 0.0 {
             for x in 0..TILE {
@@ -161,16 +179,17 @@ impl RowStep {
             largest_n[x] = force_n.left.abs().max(force_n.right.abs());
             bus_w[x] = power.bus_w(power.side_w(force_n), along);
         }
-        let (per_j, per_m, per_s) = (pricing.per_j, pricing.per_m, pricing.per_s);
         let lift_j_per_m = if self.horizontal_m == 0.0 { 0.0 } else { pricing.lift_j_per_m };
         let mut costs = Lanes::ZERO;
         for x in 0..TILE {
             let grade = ground.grade[x];
             let length_m = self.horizontal_m * grade.mul_add(grade, 1.0) * ground.cos_pitch[x];
-            let duration_s = length_m.mul_add(self.s_per_m, self.on_the_spot_s);
+            let duration_s = length_m.mul_add(on.s_per_m, on.on_the_spot_s);
             let friction_j = bus_w[x].mul_add(duration_s, -(lift_j_per_m * rise_m[x]));
             let friction_j = if friction_j > 0.0 { friction_j } else { 0.0 };
-            let cost = per_j.mul_add(friction_j, per_m.mul_add(length_m, per_s * duration_s));
+            let cost = on
+                .per_j
+                .mul_add(friction_j, on.per_m.mul_add(length_m, on.per_s.mul_add(duration_s, on.fixed)));
             // Written so that a NaN of unknown ground fails too.
             let allowed = (grade.abs() <= limits.pitch_grade)
                 & (ground.stance_grade[x].abs() <= limits.pitch_grade)
@@ -179,6 +198,27 @@ impl RowStep {
             costs[x] = if allowed { cost } else { f32::INFINITY };
         }
         costs
+    }
+}
+
+impl GroundStep {
+    fn new(
+        (step, manoeuvre, reverse): (&PreparedStep, &Manoeuvre, bool),
+        class: &GroundClass,
+        settings: &Settings,
+        weights: &Weights,
+    ) -> Self {
+        let (turning, motion) = (step.horizontal_m == 0.0, manoeuvre.motion());
+        let weights = class.weights(weights, settings, step, reverse);
+        GroundStep {
+            s_per_m: if turning { 0.0 } else { (1.0 / motion.speed_mps.abs()) as f32 },
+            on_the_spot_s: if turning { (step.turn_rad / motion.yaw_rate_radps) as f32 } else { 0.0 },
+            per_j: weights.per_j as f32,
+            per_m: weights.per_m as f32,
+            per_s: weights.per_s as f32,
+            fixed: if class.allows(step) { weights.fixed as f32 } else { f32::INFINITY },
+            kernel: manoeuvre.kernel().single(),
+        }
     }
 }
 
@@ -207,11 +247,15 @@ fn inverse_sqrt(x: f32) -> f32 {
 
 impl Chain {
     /// Its steps in the form that rows are evaluated with.
-    pub(crate) fn row_steps(&self) -> impl Iterator<Item = RowStep> + '_ {
-        self.steps_with_manoeuvres().map(|(step, manoeuvres, reverse)| {
-            let motion = manoeuvres.first().map(|m| *m.motion());
-            let speed_mps = motion.map_or(1.0, |m| m.speed_mps.abs());
-            let yaw_radps = motion.map_or(1.0, |m| m.yaw_rate_radps);
+    pub(crate) fn row_steps<'c>(
+        &'c self,
+        lattice: &'c Lattice,
+        weights: &'c Weights,
+    ) -> impl Iterator<Item = RowStep> + 'c {
+        self.steps_with_manoeuvres().map(move |(step, manoeuvres, reverse)| {
+            let on = |(manoeuvre, class): (&Manoeuvre, &GroundClass)| {
+                GroundStep::new((step, manoeuvre, reverse), class, &lattice.settings, weights)
+            };
             let turning = step.horizontal_m == 0.0;
             RowStep {
                 taps: if turning { Vec::new() } else { step.end.taps().collect() },
@@ -221,9 +265,7 @@ impl Chain {
                 per_horizontal_m: if turning { 0.0 } else { (1.0 / step.horizontal_m) as f32 },
                 travel: (step.travel.0 as f32, step.travel.1 as f32),
                 facing: if reverse { -1.0 } else { 1.0 },
-                s_per_m: if turning { 0.0 } else { (1.0 / speed_mps) as f32 },
-                on_the_spot_s: if turning { (step.turn_rad / yaw_radps) as f32 } else { 0.0 },
-                kernels: manoeuvres.iter().map(|m| m.kernel().single()).collect(),
+                grounds: manoeuvres.iter().zip(&lattice.classes.list).map(on).collect(),
             }
         })
     }

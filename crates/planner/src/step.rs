@@ -2,7 +2,7 @@
 
 use model::{Acceleration, Grade, Manoeuvre, Motion as BodyMotion, Robot};
 
-use crate::{heading::Heading, lattice::Lattice, primitive::Piece, stance::Offset};
+use crate::{heading::Heading, lattice::Lattice, objective::Surcharge, primitive::Piece, stance::Offset};
 
 /// A stretch of a motion at constant grade, surface and curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub struct Step {
     pub surface: usize,
     /// Power drawn from the battery [W].
     pub bus_w: f64,
+    /// What preferences add in comparisons.
+    pub surcharge: Surcharge,
 }
 
 impl Step {
@@ -135,9 +137,15 @@ impl PreparedStep {
             self.end.height_m(|index| ground.height_m(terrain, index), offset(self.end.corner), columns);
         let middle = terrain.grid.cell(offset(self.middle));
         let slope = ground.gradient(terrain, middle, self.heading);
-        let surface = lattice.surface_index(middle);
+        let place = lattice.classes.at(terrain, middle);
+        let class = &lattice.classes.list[place];
+        if !class.allows(self) {
+            return None;
+        }
         let rise_m = f64::from(end_m - height_m);
-        let step = self.drive(manoeuvre_on(surface), rise_m, slope, reverse, limits, surface)?;
+        let mut step = self.drive(manoeuvre_on(place), rise_m, slope, reverse, limits, class.name)?;
+        let takes = [lattice.unlifted_j(&step), step.length_m, step.duration_s];
+        step.surcharge = class.surcharge(&lattice.settings, self, reverse, takes);
         Some((step, end_m))
     }
 
@@ -191,6 +199,7 @@ impl PreparedStep {
             stance_pitch_rad: facing * stance_grade.atan(),
             surface,
             bus_w: power.bus_w,
+            surcharge: Surcharge::default(),
         })
     }
 }

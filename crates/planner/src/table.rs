@@ -18,8 +18,9 @@ use crate::{
     lattice::{Lattice, State},
     layout::{Layout, TILE},
     least::least_cost_per_m,
-    objective::{Objective, Weights},
+    objective::{Objective, Surcharge, Weights},
     patience::Patience,
+    prices::Prices,
     proof::Proof,
     tile::TileKernel,
     tile_builder::{Codes, Lanes, Least, QUAD, code_place},
@@ -101,9 +102,8 @@ impl CostTable {
     /// The lattice must be that of the same robot and settings over a map of the same size.
     pub(crate) fn patched(&self, lattice: &Arc<Lattice>, changed: &CellRange) -> Self {
         let table = CostTable { proof: self.proof, ..Self::weighted(lattice, self.weights) };
-        let names = |lattice: &Lattice| lattice.terrain.surfaces().map(|s| s.names.clone());
-        if names(lattice) != names(&self.lattice) {
-            // The surfaces' numbers have changed, so every tile has.
+        if lattice.classes != self.lattice.classes {
+            // The numbers of kinds of ground have changed, so every tile has.
             return table;
         }
         let reach = self.kernel.reach();
@@ -293,8 +293,23 @@ fn units_per_cost(lattice: &Lattice, weights: &Weights) -> f64 {
     let cost = weights.cost(&lattice.level_step(), 0.0).max(lattice.reference_j() * weights.per_j);
     let grid = &lattice.terrain.grid;
     let across = (grid.rows + grid.columns) as f64;
-    UNITS_OF_REFERENCE / cost / (across / LONGEST_ACROSS).max(1.0)
+    let dearer = dearest(lattice, weights, cost) / DEAREST;
+    UNITS_OF_REFERENCE / cost / (across / LONGEST_ACROSS).max(1.0) / dearer.max(1.0)
 }
+
+/// How much preferences may make of a step at most, in costs of one on level ground.
+fn dearest(lattice: &Lattice, weights: &Weights, level_cost: f64) -> f64 {
+    let [_, factor] = lattice.classes.factors();
+    let step = lattice.level_step();
+    let Prices { reverse_j_per_m, reverse_s_per_m, spin_j_per_rad, spin_s_per_rad } = lattice.settings.prices;
+    let reverse = Surcharge { j: reverse_j_per_m, m: 0.0, s: reverse_s_per_m };
+    let spin = Surcharge { j: spin_j_per_rad, m: 0.0, s: spin_s_per_rad };
+    let priced = weights.of_surcharge(&reverse) * step.length_m + weights.of_surcharge(&spin);
+    factor + priced / level_cost
+}
+
+/// Units grow coarser from where preferences make a step so many times as dear.
+const DEAREST: f64 = 4.0;
 
 /// Rows and columns of a map from which on units grow coarser. Costs stay below 2^31 units, 32 768 steps on level ground
 /// where units are finest, so a path may then cost four times as much as level steps along two sides of the map.

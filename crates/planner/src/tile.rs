@@ -65,7 +65,7 @@ impl TileKernel {
                 for chain in variants {
                     let (offset, end) = chain.end();
                     let end = lattice.ground.has_body().then(|| (offset, orientation(end)));
-                    chains.push(RowChain::new((heading, motion), chain, end));
+                    chains.push(RowChain::new((heading, motion), chain, end, (lattice, &weights)));
                 }
             }
         }
@@ -89,9 +89,6 @@ impl TileKernel {
                 pitch_grade: limits.pitch_grade as f32,
                 roll_grade: limits.roll_grade as f32,
                 side_force_n: limits.side_force_n as f32,
-                per_j: weights.per_j as f32,
-                per_m: weights.per_m as f32,
-                per_s: weights.per_s as f32,
                 lift_j_per_m: lattice.lift_j_per_m() as f32,
             },
             units: units as f32,
@@ -194,8 +191,13 @@ fn take_cheapest(kernel: &TileKernel, offered: &[RowCodes], slots: &mut [RowCode
 }
 
 impl RowChain {
-    fn new((heading, motion): (usize, usize), chain: &Chain, end: Option<(Offset, usize)>) -> Self {
-        let (sweep, steps) = (Arc::clone(chain.sweep()), chain.row_steps().collect());
+    fn new(
+        (heading, motion): (usize, usize),
+        chain: &Chain,
+        end: Option<(Offset, usize)>,
+        (lattice, weights): (&Lattice, &Weights),
+    ) -> Self {
+        let (sweep, steps) = (Arc::clone(chain.sweep()), chain.row_steps(lattice, weights).collect());
         RowChain { heading, motion, sweep, steps, end }
     }
 

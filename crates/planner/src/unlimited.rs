@@ -57,7 +57,7 @@ pub(crate) fn drive_unlimited(
         for read in [step.end.corner, step.end.far_corner(), step.middle] {
             shifted(terrain, cell, read)?;
         }
-        let manoeuvre_on = |surface: usize| &manoeuvres[surface];
+        let manoeuvre_on = |class: usize| &manoeuvres[class];
         let driven = step.drive_within(lattice, (index, height_m), reverse, manoeuvre_on, &Limits::NONE);
         let (done, end_m) = driven?;
         visit(&done);

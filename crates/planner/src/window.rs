@@ -11,8 +11,9 @@ pub(crate) struct Window {
     pub(crate) height_m: Vec<f32>,
     /// Gradients under the wheels east and north, by orientation.
     pub(crate) gradients: [[Vec<f32>; 2]; ORIENTATIONS],
-    pub(crate) surface: Vec<u8>,
-    /// Surfaces that occur.
+    /// Kinds of ground.
+    pub(crate) class: Vec<u8>,
+    /// Those that occur.
     pub(crate) present: Vec<u8>,
 }
 
@@ -27,7 +28,7 @@ impl Window {
             halo,
             height_m: vec![f32::NAN; cells],
             gradients: std::array::from_fn(|_| [vec![f32::NAN; cells], vec![f32::NAN; cells]]),
-            surface: vec![0; cells],
+            class: vec![0; cells],
             present: Vec::new(),
         };
         let first = (origin.row as isize - halo as isize, origin.column as isize - halo as isize);
@@ -45,11 +46,11 @@ impl Window {
                 let out = gradients.each_mut().map(|values| &mut values[at..at + count]);
                 lattice.ground.gradient_row(terrain, &heights, (row, west), k, out);
             }
-            for (i, surface) in window.surface[at..at + count].iter_mut().enumerate() {
-                *surface = surface_of(lattice, terrain, Cell { row, column: west + i });
+            for (i, class) in window.class[at..at + count].iter_mut().enumerate() {
+                *class = class_of(lattice, terrain, Cell { row, column: west + i });
             }
         }
-        window.present = window.surface.clone();
+        window.present = window.class.clone();
         window.present.sort_unstable();
         window.present.dedup();
         window
@@ -73,6 +74,6 @@ impl Window {
     }
 }
 
-fn surface_of(lattice: &Lattice, terrain: &Terrain, cell: Cell) -> u8 {
-    if terrain.surfaces().is_none() { 0 } else { lattice.surface_index(cell) as u8 }
+fn class_of(lattice: &Lattice, terrain: &Terrain, cell: Cell) -> u8 {
+    if lattice.classes.list.len() == 1 { 0 } else { lattice.classes.at(terrain, cell) as u8 }
 }

@@ -76,6 +76,25 @@ fn the_best_path_is_so_too_where_cells_are_small_and_the_body_may_touch_the_grou
     assert!(reached > 8 && reached < compared, "{reached} of {compared} maps had a path");
 }
 
+#[test]
+fn the_best_path_is_so_too_with_areas_prices_and_bans() {
+    let mut random = ground::random(23);
+    let (mut compared, mut reached) = (0, 0);
+    while compared < 240 {
+        let terrain = ground::small_terrain(&mut random, 9);
+        let terrain = ground::with_areas(&mut random, terrain);
+        let robot = ground::some_robot(&mut random, [0.0, 1.0][compared % 2]);
+        let mut query = ground::some_query(&mut random, &terrain, &robot);
+        query.settings = ground::with_preferences(&mut random, query.settings);
+        let objective =
+            [Objective::Energy, Objective::Energy, Objective::Distance, Objective::Time][compared % 4];
+        let Some(is_reached) = is_best(&terrain, &robot, &query, objective) else { continue };
+        compared += 1;
+        reached += usize::from(is_reached);
+    }
+    assert!(reached > 80, "only {reached} of {compared} maps had a path to compare");
+}
+
 /// Whether there is a path, and that it is the best; `None` where the robot stands at neither end.
 fn is_best(terrain: &Terrain, robot: &Robot, query: &Query, objective: Objective) -> Option<bool> {
     let lattice = Lattice::new(terrain, robot, query.settings).unwrap();
@@ -97,11 +116,7 @@ fn is_best(terrain: &Terrain, robot: &Robot, query: &Query, objective: Objective
     match plan(terrain, robot, query, objective) {
         Ok(found) => {
             let total = &found.route.total;
-            let cost = match objective {
-                Objective::Energy => total.energy_j,
-                Objective::Distance => total.length_m,
-                Objective::Time => total.duration_s,
-            };
+            let cost = objective.compared(total);
             // The table rounds costs, which are energies without lifting, up by at most its rounding.
             let rise_m = total.climb_m - total.descent_m;
             let lifted_j = lattice.kappa() * robot.mass_kg * STANDARD_GRAVITY_MPS2 * rise_m;
