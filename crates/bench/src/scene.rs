@@ -82,8 +82,9 @@ impl Scene {
         let [gx_m, gy_m] = self.terrain.grid.center_m(self.goal_cell());
         Query {
             start: Start { x_m: x_m + beside_m[0], y_m: y_m + beside_m[1], heading_rad: None },
-            goal: Goal { x_m: gx_m, y_m: gy_m, heading_rad: None, tolerance_m: 0.0 },
+            goal: Goal { x_m: gx_m, y_m: gy_m, heading_rad: None, either_way: false, tolerance_m: 0.0 },
             settings: self.lattice.settings,
+            other_goals: Vec::new(),
             snap_radius_m: Some(10.0 * self.terrain.grid.cell_size_m),
             bound: 1.0,
             refine: false,

@@ -299,6 +299,7 @@ impl Question {
             speed_mps: driving.speed_mps,
             power_model: driving.power_model,
             reverse: driving.reverse,
+            other_goals: Vec::new(),
             snap_radius_m: driving.snap_radius_m,
             bound: self.bound,
             timeout_s: driving.timeout_s,

@@ -19,8 +19,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         (terrain.grid.at_fraction_m(0.08, 0.12), terrain.grid.at_fraction_m(0.9, 0.88));
     let query = Query {
         start: Start { x_m: sx, y_m: sy, heading_rad: None },
-        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: planner.lattice().settings,
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

@@ -82,7 +82,10 @@ impl<'p> Reachable<'p> {
         let [x_m, y_m] = planner.lattice().terrain.grid.center_m(best.state.cell);
         // The way home has to begin in the heading that it was worked out for.
         let heading_rad = self.homeward.is_some().then(|| best.state.heading.angle_rad());
-        Some((Goal { x_m, y_m, heading_rad, tolerance_m: 0.0 }, best.away_m == self.farthest_m))
+        Some((
+            Goal { x_m, y_m, heading_rad, either_way: false, tolerance_m: 0.0 },
+            best.away_m == self.farthest_m,
+        ))
     }
 }
 

@@ -291,7 +291,13 @@ fn turned(
     let joined = outward.best_of(ends.goals.iter().copied(), Some(homeward));
     let (state, _) = joined.ok_or(Error::NoWayBack { x_m, y_m })?;
     let [x_m, y_m] = lattice.terrain.grid.center_m(state.cell);
-    Ok(Some(Goal { x_m, y_m, heading_rad: Some(state.heading.angle_rad()), tolerance_m: 0.0 }))
+    Ok(Some(Goal {
+        x_m,
+        y_m,
+        heading_rad: Some(state.heading.angle_rad()),
+        either_way: false,
+        tolerance_m: 0.0,
+    }))
 }
 
 /// The question of the way back from where a plan ends to where it begins, in any heading.
@@ -302,7 +308,7 @@ fn homeward(query: &Query, out: &Plan) -> Query {
     let [home_x_m, home_y_m] = place(start);
     Query {
         start: Start { x_m, y_m, heading_rad },
-        goal: Goal { x_m: home_x_m, y_m: home_y_m, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: home_x_m, y_m: home_y_m, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         ..query.clone()
     }
 }

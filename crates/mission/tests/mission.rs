@@ -63,8 +63,15 @@ fn by_plans(planner: &Planner, places: &[[f64; 2]], back: bool) -> impl Fn(&[usi
     let energy = |from: usize, h: f64, to: usize, k: f64| {
         let query = Query {
             start: Start { x_m: places[from][0], y_m: places[from][1], heading_rad: Some(h) },
-            goal: Goal { x_m: places[to][0], y_m: places[to][1], heading_rad: Some(k), tolerance_m: 0.0 },
+            goal: Goal {
+                x_m: places[to][0],
+                y_m: places[to][1],
+                heading_rad: Some(k),
+                either_way: false,
+                tolerance_m: 0.0,
+            },
             settings: planner.lattice().settings,
+            other_goals: Vec::new(),
             snap_radius_m: Some(0.0),
             bound: 1.0,
             refine: false,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     ends::{Ends, asked_goal, asked_start},
-    error::Error,
+    error::{Error, Place},
     field::{FieldEnds, GoalField},
     fields::FieldKey,
     lattice::State,
@@ -18,7 +18,8 @@ impl Planner {
     /// Both ends of a question on the lattice: the nearest places where the robot can stand, or, where these are not
     /// connected and may be moved, the connected places within the snap radius that are moved least in sum.
     ///
-    /// An end may be moved where the query gives a snap radius, or where the robot cannot stand in its own cell. Connected
+    /// An end may be moved where the query gives a snap radius, or where the robot cannot stand in its own cell. Where there are
+    /// several goals each stays at the place nearest to it, and those where the robot cannot stand do not count. Connected
     /// is what chains of motions join whose headings need not.
     ///
     /// # Errors
@@ -26,7 +27,8 @@ impl Planner {
     pub fn ends(&self, query: &Query, objective: Objective) -> Result<Ends, Error> {
         let ends = Ends::find(self.lattice(), query)?;
         let may_move = |end: &Snapped| query.snap_radius_m.is_some() || !end.is_home;
-        let movable = [may_move(&ends.start), may_move(&ends.goal)];
+        let is_only = query.other_goals.is_empty();
+        let movable = [is_only && may_move(&ends.start), is_only && may_move(&ends.goal)];
         if movable == [false, false] || self.is_connected(&ends, query, objective)? {
             return Ok(ends);
         }
@@ -59,7 +61,11 @@ impl Planner {
             false => Offers::only(nearest.start.clone()),
         };
         let mut goals = match goal_may_move {
-            true => Offers::further(Candidates::new(lattice, asked_goal(lattice, query), &query.patience)?),
+            true => Offers::further(Candidates::new(
+                lattice,
+                asked_goal(lattice, query, (Place::Goal, &query.goal)),
+                &query.patience,
+            )?),
             false => Offers::only(nearest.goal.clone()),
         };
         let mut best: Option<(f64, Snapped, Snapped)> = None;

@@ -15,11 +15,14 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Ends {
     pub(crate) start: Snapped,
+    /// Of the first goal where the robot can stand.
     pub(crate) goal: Snapped,
     /// Poses that the robot may start in, all in one cell.
     pub starts: Vec<State>,
     /// Poses that it may end in.
     pub goals: Vec<State>,
+    /// Which goal each of them is of, by its position in the question.
+    pub(crate) goal_of: Vec<usize>,
 }
 
 impl Ends {
@@ -27,15 +30,59 @@ impl Ends {
     pub(crate) fn find(lattice: &Lattice, query: &Query) -> Result<Self, Error> {
         check(query)?;
         let start = snap(lattice, &asked_start(lattice, query), &query.patience)?;
-        let goal = snap(lattice, &asked_goal(lattice, query), &query.patience)?;
-        Self::of(lattice, query, start, goal)
+        let mut found: Option<Ends> = None;
+        let mut blocked = None;
+        for (index, goal) in query.goals().enumerate() {
+            let place =
+                if index == 0 { Place::Goal } else { Place::Listed { list: "goals", index: index - 1 } };
+            let asked = asked_goal(lattice, query, (place, goal));
+            let snapped = match snap(lattice, &asked, &query.patience) {
+                Ok(snapped) => snapped,
+                // Of several goals those count where the robot can stand.
+                Err(error @ Error::PlaceBlocked { .. }) => {
+                    blocked.get_or_insert(error);
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            let goals = goal_states(lattice, &snapped, goal, &query.patience)?;
+            match &mut found {
+                Some(ends) => ends.add(goals, index),
+                None => {
+                    let goal_of = vec![index; goals.len()];
+                    let starts = start.states().collect();
+                    found = Some(Ends { start: start.clone(), goal: snapped, starts, goals, goal_of });
+                }
+            }
+        }
+        match (found, blocked) {
+            (Some(ends), _) => Ok(ends),
+            (None, Some(error)) => Err(error),
+            (None, None) => unreachable!("a question has a goal"),
+        }
     }
 
-    /// The ends with chosen places.
+    /// Adds the poses of another goal.
+    fn add(&mut self, goals: Vec<State>, index: usize) {
+        for goal in goals {
+            if !self.goals.contains(&goal) {
+                self.goals.push(goal);
+                self.goal_of.push(index);
+            }
+        }
+    }
+
+    /// Which goal a pose is of, by its position in the question.
+    pub(crate) fn goal_at(&self, end: &State) -> usize {
+        self.goals.iter().zip(&self.goal_of).find(|(goal, _)| *goal == end).map_or(0, |(_, index)| *index)
+    }
+
+    /// The ends with chosen places, of a question with one goal.
     pub(crate) fn of(lattice: &Lattice, query: &Query, start: Snapped, goal: Snapped) -> Result<Self, Error> {
         let starts = start.states().collect();
         let goals = goal_states(lattice, &goal, &query.goal, &query.patience)?;
-        Ok(Ends { start, goal, starts, goals })
+        let goal_of = vec![0; goals.len()];
+        Ok(Ends { start, goal, starts, goals, goal_of })
     }
 
     /// Goals with what is to be added there: for energy, the height that the potential has left out.
@@ -80,18 +127,19 @@ pub(crate) fn asked_start(lattice: &Lattice, query: &Query) -> Asked {
         x_m: start.x_m,
         y_m: start.y_m,
         heading_rad: start.heading_rad,
+        either_way: false,
         snap_radius_m: snap_radius_m(lattice, query),
     }
 }
 
-/// The goal as it is to be snapped.
-pub(crate) fn asked_goal(lattice: &Lattice, query: &Query) -> Asked {
-    let goal = &query.goal;
+/// A goal as it is to be snapped.
+pub(crate) fn asked_goal(lattice: &Lattice, query: &Query, (place, goal): (Place, &Goal)) -> Asked {
     Asked {
-        place: Place::Goal,
+        place,
         x_m: goal.x_m,
         y_m: goal.y_m,
         heading_rad: goal.heading_rad,
+        either_way: goal.either_way,
         snap_radius_m: snap_radius_m(lattice, query).max(goal.tolerance_m),
     }
 }
@@ -108,7 +156,7 @@ fn goal_states(
     goal: &Goal,
     patience: &Patience,
 ) -> Result<Vec<State>, Error> {
-    let wanted = goal.heading_rad.map(Heading::nearest);
+    let wanted = goal.headings();
     let mut states: Vec<State> = snapped.states().collect();
     if goal.tolerance_m <= 0.0 {
         return Ok(states);
@@ -123,7 +171,7 @@ fn goal_states(
             if (x - goal.x_m).hypot(y - goal.y_m) > goal.tolerance_m {
                 continue;
             }
-            let headings = Heading::all().filter(|h| wanted.is_none_or(|w| w == *h));
+            let headings = Heading::all().filter(|h| wanted.as_ref().is_none_or(|wanted| wanted.contains(h)));
             states.extend(
                 headings.map(|heading| State { cell, heading }).filter(|s| lattice.stand(*s).is_ok()),
             );
@@ -140,15 +188,16 @@ pub(crate) fn check(query: &Query) -> Result<(), Error> {
     if let Some(snap_radius_m) = query.snap_radius_m {
         within("snap_radius_m", snap_radius_m, 0.0, 1000.0)?;
     }
-    let tolerance_m = query.goal.tolerance_m;
-    within("goal.tolerance_m", tolerance_m, 0.0, 10_000.0)?;
     within("bound", query.bound, 1.0, Query::LOOSEST_BOUND)?;
-    match query.snap_radius_m {
-        Some(snap_radius_m) if tolerance_m > 0.0 && snap_radius_m > tolerance_m => {
-            Err(Error::ConflictingTolerance { tolerance_m, snap_radius_m })
+    for Goal { tolerance_m, .. } in query.goals() {
+        within("goal.tolerance_m", *tolerance_m, 0.0, 10_000.0)?;
+        if let Some(snap_radius_m) = query.snap_radius_m.filter(|_| *tolerance_m > 0.0)
+            && snap_radius_m > *tolerance_m
+        {
+            return Err(Error::ConflictingTolerance { tolerance_m: *tolerance_m, snap_radius_m });
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 fn within(field: &'static str, value: f64, min: f64, max: f64) -> Result<(), Error> {

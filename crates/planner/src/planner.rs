@@ -1,6 +1,7 @@
 //! Everything that questions about one map, robot and way of driving can share.
 
 use std::{
+    f64::consts::{FRAC_PI_2, PI},
     sync::{Arc, Mutex, OnceLock, PoisonError},
     time::Instant,
 };
@@ -16,15 +17,16 @@ use crate::{
     exact::ExactField,
     field::GoalField,
     fields::{FieldCache, FieldKey},
+    heading::Heading,
     hindrance::Hindrance,
     labels::Workspace,
     lattice::{Lattice, Settings, State},
     objective::Objective,
     patience::{Patience, work},
-    query::{Comparison, Plan, Query, SearchReport, Snap},
+    query::{Comparison, Goal, Plan, Query, SearchReport, Snap},
     refine::refine,
     rings::{farthest_ring, ring},
-    route::Route,
+    route::{Pose, Route},
     table::CostTable,
     uncertainty::energy_interval_j,
 };
@@ -219,12 +221,17 @@ impl Planner {
     /// A path as the answer to a question, not refined.
     fn answer(&self, ends: &Ends, query: &Query, route: Route, search: SearchReport) -> Result<Plan, Error> {
         let lattice = &self.lattice;
+        let end = route.poses.last().and_then(|pose| state_of(lattice, pose));
+        let goal = end.map_or(0, |end| ends.goal_at(&end));
+        let asked = query.goals().nth(goal).unwrap_or(&query.goal);
         let energy_interval_j =
             energy_interval_j(&route, lattice, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
         Ok(Plan {
             energy_interval_j,
+            goal,
+            short_of_goal_m: None,
             start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
-            goal_snap: goal_snap(&route, ends, query),
+            goal_snap: goal_snap(&route, ends, asked),
             route,
             refined: None,
             search,
@@ -320,13 +327,23 @@ pub(crate) fn nearest_connected(
     }
 }
 
-fn goal_snap(route: &Route, ends: &Ends, query: &Query) -> Snap {
-    let end =
-        route.poses.last().map_or((query.goal.x_m, query.goal.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
+fn goal_snap(route: &Route, ends: &Ends, goal: &Goal) -> Snap {
+    let end = route.poses.last().map_or((goal.x_m, goal.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
+    let turn = |heading_rad: f64| {
+        let turn_rad = crate::heading::turn_rad(heading_rad, end.2);
+        let is_opposite = goal.either_way && turn_rad.abs() > FRAC_PI_2;
+        if is_opposite { crate::heading::turn_rad(heading_rad + PI, end.2) } else { turn_rad }
+    };
     Snap {
-        distance_m: (end.0 - query.goal.x_m).hypot(end.1 - query.goal.y_m),
-        turn_rad: query.goal.heading_rad.map_or(ends.goal.turn_rad, |h| crate::heading::turn_rad(h, end.2)),
+        distance_m: (end.0 - goal.x_m).hypot(end.1 - goal.y_m),
+        turn_rad: goal.heading_rad.map_or(ends.goal.turn_rad, turn),
     }
+}
+
+/// The lattice's pose that a pose at a cell's centre is.
+fn state_of(lattice: &Lattice, pose: &Pose) -> Option<State> {
+    let cell = lattice.terrain.grid.cell_at(pose.x_m, pose.y_m)?;
+    Some(State { cell, heading: Heading::nearest(pose.heading_rad) })
 }
 
 /// Names of the surfaces that steps index: the map's, then the robot's default.

@@ -3,7 +3,13 @@
 use std::time::Duration;
 
 use crate::{
-    astar::Found, edge::Edge, lattice::Settings, objective::Objective, patience::Patience, route::Route,
+    astar::Found,
+    edge::Edge,
+    heading::{HEADINGS, Heading},
+    lattice::Settings,
+    objective::Objective,
+    patience::Patience,
+    route::Route,
 };
 
 /// Where the robot stands.
@@ -26,8 +32,19 @@ pub struct Goal {
     pub y_m: f64,
     /// Counter-clockwise from east; `None` accepts any [rad].
     pub heading_rad: Option<f64>,
+    /// Whether the opposite heading will do as well.
+    pub either_way: bool,
     /// Any pose this close to the goal will do; 0 means the goal's cell [m].
     pub tolerance_m: f64,
+}
+
+impl Goal {
+    /// Headings that are accepted; `None` stands for all.
+    pub(crate) fn headings(&self) -> Option<Vec<Heading>> {
+        let wanted = Heading::nearest(self.heading_rad?);
+        let opposite = wanted.turned(HEADINGS as i32 / 2);
+        Some(if self.either_way { vec![wanted, opposite] } else { vec![wanted] })
+    }
 }
 
 /// A question to the planner.
@@ -37,6 +54,8 @@ pub struct Query {
     pub start: Start,
     /// Where it is to go.
     pub goal: Goal,
+    /// Other places that will do as well: the path leads to the one that is best to reach.
+    pub other_goals: Vec<Goal>,
     /// How it is driven.
     pub settings: Settings,
     /// How far a start or goal may be moved to ground where the robot can stand; `None` means one cell [m].
@@ -53,6 +72,11 @@ pub struct Query {
 }
 
 impl Query {
+    /// All places that will do.
+    pub(crate) fn goals(&self) -> impl Iterator<Item = &Goal> {
+        std::iter::once(&self.goal).chain(&self.other_goals)
+    }
+
     /// The loosest bound that can be asked for.
     pub const LOOSEST_BOUND: f64 = 10.0;
 }
@@ -120,6 +144,10 @@ pub struct Plan {
     pub start_snap: Snap,
     /// How far the goal was moved; the distance to where the path ends where a tolerance allowed it.
     pub goal_snap: Snap,
+    /// Which goal the path leads to: 0, or the position of another one from 1 on.
+    pub goal: usize,
+    /// How far from the goal the path ends where it leads only part of the way [m].
+    pub short_of_goal_m: Option<f64>,
     /// What the search did.
     pub search: SearchReport,
 }

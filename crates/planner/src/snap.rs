@@ -19,7 +19,18 @@ pub(crate) struct Asked {
     pub(crate) x_m: f64,
     pub(crate) y_m: f64,
     pub(crate) heading_rad: Option<f64>,
+    /// Whether the opposite heading will do as well.
+    pub(crate) either_way: bool,
     pub(crate) snap_radius_m: f64,
+}
+
+impl Asked {
+    /// Whether a heading was asked for.
+    fn wants(&self, heading: Heading) -> bool {
+        self.heading_rad.map(Heading::nearest).is_none_or(|wanted| {
+            wanted == heading || (self.either_way && wanted.turned(HEADINGS as i32 / 2) == heading)
+        })
+    }
 }
 
 /// The cell and headings that stand for it.
@@ -54,7 +65,7 @@ pub(crate) fn snap(lattice: &Lattice, asked: &Asked, patience: &Patience) -> Res
         return nearest;
     }
     // The home cell was among the candidates, so whatever heading was wanted is blocked there.
-    let heading = candidates.wanted.unwrap_or(Heading::new(0));
+    let heading = asked.heading_rad.map_or(Heading::new(0), Heading::nearest);
     let reason = lattice.stand(State { cell: candidates.home, heading }).err().unwrap_or(Blocked::Edge);
     let Asked { place, x_m, y_m, snap_radius_m, .. } = *asked;
     Err(Error::PlaceBlocked { place, x_m, y_m, snap_radius_m, reason })
@@ -70,7 +81,6 @@ pub(crate) struct Candidates<'l> {
     lattice: &'l Lattice,
     asked: Asked,
     home: Cell,
-    wanted: Option<Heading>,
     /// The next ring of cells about the home cell.
     ring: usize,
     last_ring: usize,
@@ -99,7 +109,6 @@ impl<'l> Candidates<'l> {
             lattice,
             asked,
             home,
-            wanted: asked.heading_rad.map(Heading::nearest),
             ring: 0,
             last_ring: within.saturating_add(1).min(farthest_ring(grid, home)),
             open: BinaryHeap::new(),
@@ -147,15 +156,17 @@ impl<'l> Candidates<'l> {
 
     /// A cell as a candidate, if the robot can stand there under a heading that was asked for.
     fn standing(&self, cell: Cell) -> Option<Snapped> {
-        let all = Heading::all().filter(|h| self.wanted.is_none_or(|w| w == *h));
+        let all = Heading::all().filter(|heading| self.asked.wants(*heading));
         let headings: Vec<Heading> =
             all.filter(|&heading| self.lattice.stand(State { cell, heading }).is_ok()).collect();
-        let first = headings.first()?.angle_rad();
+        let turn_to =
+            |heading: &Heading| self.asked.heading_rad.map_or(0.0, |h| turn_rad(h, heading.angle_rad()));
+        let turn_rad = headings.iter().map(turn_to).min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         Some(Snapped {
             cell,
             headings,
             distance_m: self.distance_m(cell),
-            turn_rad: self.asked.heading_rad.map_or(0.0, |h| turn_rad(h, first)),
+            turn_rad,
             is_home: cell == self.home,
         })
     }

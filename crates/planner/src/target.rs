@@ -38,7 +38,11 @@ impl Planner {
     ) -> Result<Vec<State>, Error> {
         let lattice = self.lattice();
         let snap_radius_m = snap_radius_m.unwrap_or(lattice.terrain.grid.cell_size_m);
-        let snapped = snap(lattice, &Asked { place, x_m, y_m, heading_rad, snap_radius_m }, patience)?;
+        let snapped = snap(
+            lattice,
+            &Asked { place, x_m, y_m, heading_rad, either_way: false, snap_radius_m },
+            patience,
+        )?;
         Ok(snapped.states().collect())
     }
 

@@ -23,7 +23,7 @@ fn across(terrain: &Terrain, patience: Patience, bound: f64) -> Query {
     let [gx, gy] = terrain.grid.at_fraction_m(0.9, 0.85);
     Query {
         start: planner::Start { x_m: 12.0, y_m: 15.0, heading_rad: None },
-        goal: planner::Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
+        goal: planner::Goal { x_m: gx, y_m: gy, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(&robot),
         snap_radius_m: None,
         bound,

@@ -43,8 +43,9 @@ fn planned(
 ) -> Result<Plan, Error> {
     let query = Query {
         start: Start { x_m: start[0], y_m: start[1], heading_rad: Some(0.0) },
-        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings,
+        other_goals: Vec::new(),
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine,

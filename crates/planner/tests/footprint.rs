@@ -180,9 +180,11 @@ fn query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot) -> Query {
             x_m: goal[0],
             y_m: goal[1],
             heading_rad: random.random_bool(0.5).then(|| random.random_range(-3.1..3.1)),
+            either_way: false,
             tolerance_m: 0.0,
         },
         settings: Settings { reverse: random.random_bool(0.5), ..Settings::of(robot) },
+        other_goals: Vec::new(),
         snap_radius_m: Some(3.0 * terrain.grid.cell_size_m),
         bound: 1.0,
         refine: true,
@@ -284,8 +286,15 @@ fn a_closed_diagonal_wall_has_no_gap_at_any_cell_size() {
         let place = |cells: f64| cells * cell_size_m;
         let query = Query {
             start: Start { x_m: place(2.5), y_m: place(2.5), heading_rad: None },
-            goal: Goal { x_m: place(9.5), y_m: place(9.5), heading_rad: None, tolerance_m: 0.0 },
+            goal: Goal {
+                x_m: place(9.5),
+                y_m: place(9.5),
+                heading_rad: None,
+                either_way: false,
+                tolerance_m: 0.0,
+            },
             settings: Settings::of(&robot),
+            other_goals: Vec::new(),
             snap_radius_m: None,
             bound: 1.0,
             refine: true,
@@ -311,8 +320,15 @@ fn a_robot_wider_than_long_does_not_turn_through_what_lies_beside_it() {
         let terrain = level.clone().with_obstacles(obstacle);
         let query = Query {
             start: Start { x_m: 1.875, y_m: 1.875, heading_rad: Some(0.0) },
-            goal: Goal { x_m: 1.875, y_m: 1.875, heading_rad: Some(to_rad), tolerance_m: 0.0 },
+            goal: Goal {
+                x_m: 1.875,
+                y_m: 1.875,
+                heading_rad: Some(to_rad),
+                either_way: false,
+                tolerance_m: 0.0,
+            },
             settings: Settings::of(&robot),
+            other_goals: Vec::new(),
             snap_radius_m: Some(0.0),
             bound: 1.0,
             refine: true,

@@ -35,8 +35,9 @@ fn slippery(skid: f64) -> Robot {
 fn between(robot: &Robot, start: [f64; 2], goal: [f64; 2], heading_rad: Option<f64>) -> Query {
     Query {
         start: Start { x_m: start[0], y_m: start[1], heading_rad },
-        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(robot),
+        other_goals: Vec::new(),
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,

@@ -24,8 +24,9 @@ fn across(terrain: &Terrain, robot: &model::Robot) -> Query {
     let [gx, gy] = terrain.grid.center_m(Cell { row: 2 * n / 3, column: n - n / 8 });
     Query {
         start: Start { x_m: sx, y_m: sy, heading_rad: Some(0.0) },
-        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
@@ -253,8 +254,15 @@ fn obstacles_are_kept_clear_of_and_reversing_helps_where_there_is_no_room_to_tur
     let robot = builtin::husky_a200();
     let mut query = Query {
         start: Start { x_m: 1.4, y_m: 2.6, heading_rad: Some(std::f64::consts::PI) },
-        goal: Goal { x_m: 8.0, y_m: 2.5, heading_rad: Some(std::f64::consts::PI), tolerance_m: 0.0 },
+        goal: Goal {
+            x_m: 8.0,
+            y_m: 2.5,
+            heading_rad: Some(std::f64::consts::PI),
+            either_way: false,
+            tolerance_m: 0.0,
+        },
         settings: Settings::of(&robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
@@ -281,8 +289,9 @@ fn on_the_real_map_the_energy_minimal_path_is_cheaper_on_nine_of_ten_pairs_and_n
         let (start, goal) = (place(0.05, 0.3), place(0.7, 0.95));
         let query = Query {
             start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
             settings: Settings::of(&robot),
+            other_goals: Vec::new(),
             snap_radius_m: None,
             bound: 1.0,
             refine: false,

@@ -63,8 +63,9 @@ fn across(terrain: &Terrain, patience: &Patience) -> Query {
     let [gx, gy] = terrain.grid.at_fraction_m(0.9, 0.95);
     Query {
         start: Start { x_m: sx, y_m: sy, heading_rad: None },
-        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: gx, y_m: gy, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(&robot),
+        other_goals: Vec::new(),
         snap_radius_m: Some(4.0),
         bound: 1.0,
         refine: false,

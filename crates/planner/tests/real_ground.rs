@@ -28,8 +28,9 @@ fn query(terrain: &Terrain, ends: [[f64; 2]; 2], settings: Settings) -> Query {
     let [start, goal] = ends.map(|[east, north]| terrain.grid.at_fraction_m(east, north));
     Query {
         start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings,
+        other_goals: Vec::new(),
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,

@@ -256,8 +256,15 @@ fn between_states(terrain: &Terrain, robot: &Robot, [from, to]: [State; 2]) -> Q
     let [gx, gy] = terrain.grid.center_m(to.cell);
     Query {
         start: planner::Start { x_m: sx, y_m: sy, heading_rad: Some(from.heading.angle_rad()) },
-        goal: planner::Goal { x_m: gx, y_m: gy, heading_rad: Some(to.heading.angle_rad()), tolerance_m: 0.0 },
+        goal: planner::Goal {
+            x_m: gx,
+            y_m: gy,
+            heading_rad: Some(to.heading.angle_rad()),
+            either_way: false,
+            tolerance_m: 0.0,
+        },
         settings: Settings::of(robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

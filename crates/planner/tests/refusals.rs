@@ -19,8 +19,9 @@ fn flat() -> Terrain {
 fn query(start: (f64, f64), goal: (f64, f64)) -> Query {
     Query {
         start: Start { x_m: start.0, y_m: start.1, heading_rad: None },
-        goal: Goal { x_m: goal.0, y_m: goal.1, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: goal.0, y_m: goal.1, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(&builtin::husky_a200()),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

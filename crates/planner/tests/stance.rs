@@ -27,8 +27,9 @@ fn ground_of(cell_size_m: f64, height_m: impl FnMut([f64; 2]) -> f64) -> Terrain
 fn along(terrain: &Terrain, robot: &Robot, y_m: f64) -> Result<Plan, Error> {
     let query = Query {
         start: Start { x_m: 1.0, y_m, heading_rad: Some(0.0) },
-        goal: Goal { x_m: 7.0, y_m, heading_rad: Some(0.0), tolerance_m: 0.0 },
+        goal: Goal { x_m: 7.0, y_m, heading_rad: Some(0.0), either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

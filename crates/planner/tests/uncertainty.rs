@@ -31,8 +31,9 @@ fn over(robot: &Robot, to_y_m: f64, height_m: impl Fn(f64, f64) -> f64) -> Plan 
     let terrain = Terrain::new(grid, &heights).unwrap();
     let query = Query {
         start: Start { x_m: 2.5, y_m: 2.5, heading_rad: Some(0.0) },
-        goal: Goal { x_m: 11.5, y_m: to_y_m, heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: 11.5, y_m: to_y_m, heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

@@ -24,8 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         [[0.08, 0.12], [0.9, 0.88]].map(|[east, north]| terrain.grid.at_fraction_m(east, north));
     let query = Query {
         start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: Settings::of(&robot),
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

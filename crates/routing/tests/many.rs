@@ -15,8 +15,15 @@ mod ground;
 fn query(planner: &Planner, from: &Waypoint, to: &Waypoint) -> Query {
     Query {
         start: Start { x_m: from.x_m, y_m: from.y_m, heading_rad: from.heading_rad },
-        goal: Goal { x_m: to.x_m, y_m: to.y_m, heading_rad: to.heading_rad, tolerance_m: 0.0 },
+        goal: Goal {
+            x_m: to.x_m,
+            y_m: to.y_m,
+            heading_rad: to.heading_rad,
+            either_way: false,
+            tolerance_m: 0.0,
+        },
         settings: planner.lattice().settings,
+        other_goals: Vec::new(),
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,

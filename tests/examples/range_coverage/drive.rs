@@ -78,8 +78,9 @@ impl Case {
             ends.find(|(s, g)| (20.0..70.0).contains(&(s[0] - g[0]).hypot(s[1] - g[1])))?;
         let query = Query {
             start: Start { x_m: sx, y_m: sy, heading_rad: None },
-            goal: Goal { x_m: gx, y_m: gy, heading_rad: None, tolerance_m: 0.0 },
+            goal: Goal { x_m: gx, y_m: gy, heading_rad: None, either_way: false, tolerance_m: 0.0 },
             settings: planner.lattice().settings,
+            other_goals: Vec::new(),
             snap_radius_m: None,
             bound: 1.0,
             refine: false,

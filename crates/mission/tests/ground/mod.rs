@@ -44,8 +44,9 @@ pub(crate) fn planner(terrain: &Terrain, robot: &Robot) -> Planner {
 pub(crate) fn query(planner: &Planner, from: [f64; 2], to: [f64; 2]) -> Query {
     Query {
         start: Start { x_m: from[0], y_m: from[1], heading_rad: Some(0.0) },
-        goal: Goal { x_m: to[0], y_m: to[1], heading_rad: None, tolerance_m: 0.0 },
+        goal: Goal { x_m: to[0], y_m: to[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
         settings: planner.lattice().settings,
+        other_goals: Vec::new(),
         snap_radius_m: None,
         bound: 1.0,
         refine: false,

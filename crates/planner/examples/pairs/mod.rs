@@ -22,8 +22,9 @@ pub(crate) fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: S
         }
         return Query {
             start: Start { x_m: start[0], y_m: start[1], heading_rad: None },
-            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, tolerance_m: 0.0 },
+            goal: Goal { x_m: goal[0], y_m: goal[1], heading_rad: None, either_way: false, tolerance_m: 0.0 },
             settings,
+            other_goals: Vec::new(),
             snap_radius_m: None,
             bound: 1.0,
             refine: false,

@@ -1,0 +1,179 @@
+//! Goals of several kinds, part of a way, room beside a path and what stops take.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use model::{Robot, builtin};
+use planner::{
+    Error, Footprint, Goal, Objective, Patience, Plan, Planner, Query, Settings, Start, least_room_m, stops,
+    stops_j,
+};
+use terrain::{Grid, Terrain};
+
+const GRID: Grid = Grid { rows: 60, columns: 60, cell_size_m: 0.5, origin_m: [0.0, 0.0] };
+
+/// Level ground, blocked where a function says so.
+fn level(is_blocked: impl Fn(f64, f64) -> bool) -> Terrain {
+    let blocked =
+        (0..GRID.cells()).map(|i| GRID.center_m(GRID.cell(i))).map(|[x, y]| is_blocked(x, y)).collect();
+    Terrain::new(GRID, &vec![0.0; GRID.cells()]).unwrap().with_obstacles(blocked)
+}
+
+fn husky() -> Robot {
+    Robot { hotel_power_w: 20.0, ..builtin::husky_a200() }
+}
+
+fn at(x_m: f64, y_m: f64, heading_rad: Option<f64>) -> Goal {
+    Goal { x_m, y_m, heading_rad, either_way: false, tolerance_m: 0.0 }
+}
+
+fn query(goal: Goal, settings: Settings) -> Query {
+    Query {
+        start: Start { x_m: 5.25, y_m: 5.25, heading_rad: Some(0.0) },
+        goal,
+        other_goals: Vec::new(),
+        settings,
+        snap_radius_m: Some(0.0),
+        bound: 1.0,
+        refine: false,
+        patience: Patience::default(),
+    }
+}
+
+fn planner(terrain: &Terrain) -> Planner {
+    Planner::new(terrain, &husky(), Settings::of(&husky())).unwrap()
+}
+
+fn energy_j(plan: &Plan) -> f64 {
+    plan.route.total.energy_j
+}
+
+#[test]
+fn either_way_takes_the_cheaper_of_both_headings() {
+    let planner = planner(&level(|_, _| false));
+    let settings = Settings::of(&husky());
+    for (heading_rad, goal) in [(PI, [15.25, 5.25]), (FRAC_PI_2, [15.25, 9.25]), (0.3, [9.25, 20.25])] {
+        let one = |heading_rad: f64, either_way: bool| {
+            let goal = Goal { either_way, ..at(goal[0], goal[1], Some(heading_rad)) };
+            planner.plan(&query(goal, settings), Objective::Energy).unwrap()
+        };
+        let (there, back) = (one(heading_rad, false), one(heading_rad + PI - 2.0 * PI, false));
+        let either = one(heading_rad, true);
+        let least_j = energy_j(&there).min(energy_j(&back));
+        assert!((energy_j(&either) - least_j).abs() < 1e-6 * least_j, "{} of {least_j}", energy_j(&either));
+        assert!(either.goal_snap.turn_rad.abs() < 0.25, "{:?}", either.goal_snap);
+    }
+}
+
+#[test]
+fn of_several_goals_the_cheapest_is_reached_and_named() {
+    let terrain = level(|x, y| (x - 15.0).abs() < 1.0 && (y - 5.0).abs() < 4.0);
+    let planner = planner(&terrain);
+    let goals = [at(25.25, 25.25, None), at(20.25, 5.25, None), at(5.25, 14.25, None), at(15.25, 5.25, None)];
+    let alone: Vec<f64> = goals[..3]
+        .iter()
+        .map(|goal| {
+            energy_j(&planner.plan(&query(*goal, Settings::of(&husky())), Objective::Energy).unwrap())
+        })
+        .collect();
+    let together = Query { other_goals: goals[1..].to_vec(), ..query(goals[0], Settings::of(&husky())) };
+    let plan = planner.plan(&together, Objective::Energy).unwrap();
+    let best = (0..3).min_by(|a, b| alone[*a].total_cmp(&alone[*b])).unwrap();
+    assert_eq!(plan.goal, best);
+    assert!((energy_j(&plan) - alone[best]).abs() < 1e-6 * alone[best]);
+    assert!(plan.goal_snap.distance_m < 1e-9 && plan.search.is_optimal());
+    let blocked = Query { other_goals: vec![goals[3]], ..query(goals[3], Settings::of(&husky())) };
+    assert!(matches!(planner.plan(&blocked, Objective::Energy), Err(Error::PlaceBlocked { .. })));
+}
+
+#[test]
+fn part_of_the_way_ends_nearest_to_the_goal_and_costs_least() {
+    // The goal lies behind a wall across the map.
+    let terrain = level(|x, _| (x - 20.25).abs() < 0.5);
+    let planner = planner(&terrain);
+    let asked = query(at(27.25, 10.25, Some(0.0)), Settings::of(&husky()));
+    assert!(matches!(planner.plan(&asked, Objective::Energy), Err(Error::NoPath { .. })));
+    let plan = planner.plan_partly(&asked, Objective::Energy).unwrap();
+    let end = plan.route.poses.last().unwrap();
+    let away_m = (end.x_m - 27.25).hypot(end.y_m - 10.25);
+    assert!((plan.short_of_goal_m.unwrap() - away_m).abs() < 1e-9);
+    // The nearest that the robot can stand to the wall is half its length or width away.
+    let outline = Footprint::of(&husky());
+    let nearest_m = 20.0 - outline.length_m.min(outline.width_m) / 2.0;
+    assert!(end.x_m > nearest_m - 0.8 && end.x_m < nearest_m, "{end:?}");
+    let whole = planner
+        .plan_partly(&query(at(10.25, 10.25, None), Settings::of(&husky())), Objective::Energy)
+        .unwrap();
+    assert_eq!(whole.short_of_goal_m, None);
+}
+
+#[test]
+fn the_room_beside_a_path_is_what_a_look_at_all_obstacles_finds() {
+    let terrain = level(|x, y| (x - 12.0).hypot(y - 6.0) < 1.0 || (x - 20.0).abs() < 0.6 && y < 9.0);
+    let planner = planner(&terrain);
+    for goal in [at(25.25, 12.25, None), at(16.25, 4.25, None), at(5.25, 25.25, None)] {
+        let plan = planner.plan(&query(goal, Settings::of(&husky())), Objective::Energy).unwrap();
+        let found_m = least_room_m(planner.lattice(), &plan.route, &Patience::default()).unwrap();
+        // Points all over the outline and all over every blocked cell.
+        let outline = Footprint::of(&husky());
+        let steps = |n: i32| (0..=n).map(move |i| f64::from(i) / f64::from(n) - 0.5);
+        let mut least_m = f64::INFINITY;
+        for pose in &plan.route.poses {
+            let (sin, cos) = pose.heading_rad.sin_cos();
+            for (ahead, aside) in steps(16).flat_map(|a| steps(16).map(move |b| (a, b))) {
+                let (ahead, aside) = (ahead * outline.length_m, aside * outline.width_m);
+                let [x, y] = [pose.x_m + ahead * cos - aside * sin, pose.y_m + ahead * sin + aside * cos];
+                let cells = (0..GRID.cells()).map(|i| GRID.cell(i)).filter(|c| terrain.is_blocked(*c));
+                for cell in cells {
+                    let [cx, cy] = GRID.center_m(cell);
+                    let beyond = |d: f64| (d.abs() - 0.25).max(0.0);
+                    least_m = least_m.min(beyond(x - cx).hypot(beyond(y - cy)));
+                }
+                least_m = least_m.min(x.min(y).min(30.0 - x).min(30.0 - y));
+            }
+        }
+        assert!(found_m <= least_m + 1e-9 && least_m - found_m < 0.04, "{found_m}, by points {least_m}");
+    }
+}
+
+#[test]
+fn a_stop_takes_the_kinetic_energy_that_does_not_come_back() {
+    // 470 kg at 3 m/s through gears without loss that give nothing back: ½ m v² = 2115 J, once down and once up.
+    let mut robot = Robot { mass_kg: 470.0, max_wheel_speed_mps: 6.0, yaw_inertia_kgm2: 1e-9, ..husky() };
+    robot.limits.max_side_force_n = None;
+    (robot.motors.left.k2, robot.motors.right.k2, robot.motors.regeneration) = (1.0, 1.0, 0.0);
+    let settings = Settings { reverse: true, spin: false, ..Settings::of(&robot) };
+    assert_eq!(settings.speed_mps, 3.0);
+    let planner = Planner::new(&level(|_, _| false), &robot, settings).unwrap();
+    let mut asked = query(at(5.25, 9.25, Some(PI)), settings);
+    asked.start.heading_rad = Some(0.0);
+    let plan = planner.plan(&asked, Objective::Distance).unwrap();
+    let reversals = plan
+        .route
+        .steps
+        .windows(2)
+        .filter(|pair| pair[0].motion.speed_mps * pair[1].motion.speed_mps < 0.0)
+        .count();
+    assert_eq!(stops(&plan.route), reversals);
+    let straight = planner.plan(&query(at(20.25, 5.25, Some(0.0)), settings), Objective::Energy).unwrap();
+    assert_eq!((stops(&straight.route), stops_j(&robot, &straight.route)), (0, 0.0));
+    let spinning = Settings { reverse: false, ..Settings::of(&robot) };
+    let planner = Planner::new(&level(|_, _| false), &robot, spinning).unwrap();
+    let at_end = planner.plan(&query(at(20.25, 5.25, Some(PI)), spinning), Objective::Distance).unwrap();
+    assert_eq!(
+        (stops(&at_end.route), stops_j(&robot, &at_end.route)),
+        (0, 0.0),
+        "a turn where it stops anyway"
+    );
+    // An L of lanes too narrow for its arcs.
+    robot.slip_track_m = 4.0;
+    let lanes = level(|x, y| !((y - 5.25).abs() < 0.8 && x < 16.0 || (x - 15.25).abs() < 0.8 && y > 4.5));
+    let planner = Planner::new(&lanes, &robot, spinning).unwrap();
+    let turned = planner.plan(&query(at(15.25, 20.25, None), spinning), Objective::Distance).unwrap();
+    let (count, found_j) = (stops(&turned.route), stops_j(&robot, &turned.route));
+    let expected_j = count as f64 * 470.0 * 9.0 / 2.0;
+    assert!(count >= 1 && (found_j - expected_j).abs() < 0.02 * expected_j, "{found_j} for {count} stops");
+    let whole = Robot { motors: model::robot::Motors { regeneration: 1.0, ..robot.motors }, ..robot.clone() };
+    assert_eq!(stops_j(&whole, &turned.route), 0.0, "all of it comes back");
+}
