@@ -4,6 +4,7 @@ use model::Manoeuvre;
 use terrain::Cell;
 
 use crate::{
+    changes::Changes,
     connection::{Connection, Waypoint, is_nothing},
     edge::Edge,
     footprint::Footprint,
@@ -25,11 +26,16 @@ pub(crate) struct FreeGround<'l> {
     pub(crate) lattice: &'l Lattice,
     pub(crate) weights: Weights,
     outline: Footprint,
+    /// What a turn on the spot weighs besides what it takes, for the stop.
+    stop: f64,
 }
 
 impl<'l> FreeGround<'l> {
     pub(crate) fn new(lattice: &'l Lattice, objective: Objective) -> Self {
-        FreeGround { lattice, weights: lattice.weights(objective), outline: Footprint::of(&lattice.robot) }
+        let weights = lattice.weights(objective);
+        let changes = Changes::of(lattice, objective);
+        let stop = changes.map_or(0.0, |changes| weights.of_surcharge(&changes.price(true, false)));
+        FreeGround { lattice, weights, outline: Footprint::of(&lattice.robot), stop }
     }
 
     /// Visits every step of driving pieces; `None`, possibly after some visits, where ground or limits forbid it.
@@ -67,7 +73,8 @@ impl<'l> FreeGround<'l> {
         let mut total = Edge::default();
         let pieces = connection.pieces(from, to)?;
         self.drive(&pieces, connection.reverse, |step| total.add(step))?;
-        Some(self.weighed(&total))
+        let spins = pieces.iter().filter(|piece| piece.length_m == 0.0 && !is_nothing(piece)).count();
+        Some(self.weighed(&total) + spins as f64 * self.stop)
     }
 
     /// Totals in the objective's own unit, lifting included: between the same ends it is the same for every path.

@@ -11,6 +11,8 @@ mod along;
 mod astar;
 
 mod blocked;
+mod changes;
+mod changing;
 mod clearance;
 mod connected;
 mod connection;

@@ -12,6 +12,8 @@ use terrain::{Cell, CellRange, Terrain};
 
 use crate::{
     astar::{Found, Outcome, Search, search},
+    changes::Changes,
+    changing::search_changing,
     ends::Ends,
     error::Error,
     exact::ExactField,
@@ -167,7 +169,10 @@ impl Planner {
         objective: Objective,
         began: Instant,
     ) -> Result<Plan, Error> {
-        let found = match self.walk(ends, objective, &query.patience)? {
+        let changes = Changes::of(&self.lattice, objective);
+        // A goal that is held knows nothing of changes.
+        let walked = if changes.is_none() { self.walk(ends, objective, &query.patience)? } else { None };
+        let found = match walked {
             Some(found) => found,
             None => self.search(ends, query, objective)?,
         };
@@ -176,7 +181,10 @@ impl Planner {
         }
         let duration = began.elapsed();
         let path = (found.start, &found.motions[..]);
-        let route = Route::drive(&self.lattice, objective, path, &query.patience)?;
+        let mut route = Route::drive(&self.lattice, objective, path, &query.patience)?;
+        if let Some(changes) = &changes {
+            changes.charge(&mut route);
+        }
         let search = SearchReport::proven(&found, objective, &route.total, duration);
         let mut plan = self.answer(ends, query, route, search)?;
         // Last: it takes all the time that is left, and an answer that is there must not be lost to it.
@@ -261,7 +269,11 @@ impl Planner {
             bound: query.bound,
             patience: &query.patience,
         };
-        match self.with_workspace(|workspace| search(table, &field, &question, workspace)) {
+        let outcome = match Changes::of(&self.lattice, objective) {
+            Some(changes) => search_changing(table, &field, &question, &changes),
+            None => self.with_workspace(|workspace| search(table, &field, &question, workspace)),
+        };
+        match outcome {
             Outcome::Found(found) => Ok(found),
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
             Outcome::Untraceable => Err(Error::Untraceable),

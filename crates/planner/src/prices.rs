@@ -14,6 +14,12 @@ pub struct Prices {
     pub spin_j_per_rad: f64,
     /// Of turning on the spot [s/rad].
     pub spin_s_per_rad: f64,
+    /// Of changing between driving ahead and backing up, with a turn on the spot between them or not [J].
+    pub direction_change_j: f64,
+    /// The same [s].
+    pub direction_change_s: f64,
+    /// Whether stops on the way weigh what they take by [`crate::stops_j`], at the speed asked for.
+    pub stops: bool,
 }
 
 impl Prices {
@@ -21,12 +27,14 @@ impl Prices {
     pub const LARGEST: f64 = 1e5;
 
     /// The prices with their names.
-    pub fn named(&self) -> [(&'static str, f64); 4] {
+    pub fn named(&self) -> [(&'static str, f64); 6] {
         [
             ("prices.reverse_j_per_m", self.reverse_j_per_m),
             ("prices.reverse_s_per_m", self.reverse_s_per_m),
             ("prices.spin_j_per_rad", self.spin_j_per_rad),
             ("prices.spin_s_per_rad", self.spin_s_per_rad),
+            ("prices.direction_change_j", self.direction_change_j),
+            ("prices.direction_change_s", self.direction_change_s),
         ]
     }
 

@@ -1,6 +1,7 @@
 //! From the lattice's best path to a smooth one near it.
 
 use crate::{
+    changes::Changes,
     course::Course,
     free::FreeGround,
     lattice::Lattice,
@@ -34,6 +35,7 @@ pub fn refine(lattice: &Lattice, objective: Objective, route: &Route, patience: 
         return Refined { route: route.clone(), finished: false };
     }
     let ground = FreeGround::new(lattice, objective);
+    let changes = Changes::of(lattice, objective);
     let rates = LevelRates::new(&ground);
     let given = Course::of(&ground, route);
     let direct = direct(&ground, &rates, &given);
@@ -45,6 +47,12 @@ pub fn refine(lattice: &Lattice, objective: Objective, route: &Route, patience: 
     let better = courses
         .iter()
         .filter_map(|course| course.drive(&ground, route))
+        .map(|mut refined| {
+            if let Some(changes) = &changes {
+                changes.charge(&mut refined);
+            }
+            refined
+        })
         .filter(|refined| ground.weighed(&refined.total) < ground.weighed(&route.total))
         .min_by(|a, b| ground.weighed(&a.total).total_cmp(&ground.weighed(&b.total)));
     Refined { route: better.unwrap_or_else(|| route.clone()), finished: !patience.is_over() }

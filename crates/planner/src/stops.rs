@@ -33,6 +33,12 @@ fn under_way(route: &Route) -> &[Step] {
     route.steps.get(first..end).unwrap_or_default()
 }
 
+/// Energy that a stop takes between stretches at a speed [J].
+pub(crate) fn stop_j(robot: &Robot, speed_mps: f64) -> f64 {
+    let (driving, standing) = (Motion::of_body(robot, speed_mps, 0.0), Motion::of_body(robot, 0.0, 0.0));
+    2.0 * change_j(robot, [&driving, &standing])
+}
+
 /// Energy that a change from one motion to another takes [J].
 pub(crate) fn change_j(robot: &Robot, [before, after]: [&Motion; 2]) -> f64 {
     let motors = &robot.motors;

@@ -6,10 +6,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use model::{Robot, builtin};
 use planner::{
-    Error, Footprint, Goal, Objective, Patience, Plan, Planner, Query, Settings, Start, least_room_m, stops,
-    stops_j,
+    Error, Footprint, Goal, Objective, Patience, Plan, Planner, Prices, Query, Settings, Start, least_room_m,
+    stops, stops_j,
 };
+use rand::RngExt;
 use terrain::{Grid, Terrain};
+
+mod ground;
 
 const GRID: Grid = Grid { rows: 60, columns: 60, cell_size_m: 0.5, origin_m: [0.0, 0.0] };
 
@@ -176,4 +179,88 @@ fn a_stop_takes_the_kinetic_energy_that_does_not_come_back() {
     assert!(count >= 1 && (found_j - expected_j).abs() < 0.02 * expected_j, "{found_j} for {count} stops");
     let whole = Robot { motors: model::robot::Motors { regeneration: 1.0, ..robot.motors }, ..robot.clone() };
     assert_eq!(stops_j(&whole, &turned.route), 0.0, "all of it comes back");
+}
+
+/// Least cost with the prices of changes by brute force: Dijkstra over poses and what the robot did last, on the table's own costs.
+fn least_with_changes(planner: &Planner, asked: &Query, [stop_j, back_j]: [f64; 2]) -> Option<f64> {
+    let (lattice, table) = (planner.lattice(), planner.table(Objective::Energy));
+    let ends = planner.ends(asked, Objective::Energy).ok()?;
+    // What was done last: nothing, ahead, astern; and whether the robot has turned on the spot since.
+    let node = |state: planner::State, last: usize, spun: usize| (lattice.index(state) * 3 + last) * 2 + spun;
+    let mut least = vec![f64::INFINITY; lattice.states() * 6];
+    let mut open: std::collections::BTreeSet<(u64, usize, usize, usize)> = Default::default();
+    for start in &ends.starts {
+        least[node(*start, 0, 0)] = 0.0;
+        open.insert((0, lattice.index(*start), 0, 0));
+    }
+    let mut best: Option<f64> = None;
+    while let Some((bits, index, last, spun)) = open.pop_first() {
+        let (cost, state) = (f64::from_bits(bits), lattice.state(index));
+        if cost > least[node(state, last, spun)] {
+            continue;
+        }
+        if ends.goals.contains(&state) {
+            let lifted_j = lattice.potential_j(state.cell) - lattice.potential_j(ends.starts[0].cell);
+            best = Some(best.map_or(cost + lifted_j, |best: f64| best.min(cost + lifted_j)));
+        }
+        for (motion, kind) in lattice.motions[state.heading.index()].iter().enumerate() {
+            let taken = table.cost(state, motion);
+            let Some(next) = lattice.successor(state, motion).filter(|_| taken.is_finite()) else { continue };
+            let spins = matches!(kind.kind, planner::Kind::PointTurn { .. });
+            let way = if kind.reverse { 2 } else { 1 };
+            let (now, price) = match (spins, last) {
+                (true, _) => ((last, usize::from(last > 0)), 0.0),
+                (false, 0) => ((way, 0), 0.0),
+                (false, last) if last == way => ((way, 0), if spun == 1 { stop_j } else { 0.0 }),
+                (false, _) => ((way, 0), stop_j + back_j),
+            };
+            let total = cost + taken + price;
+            if total < least[node(next, now.0, now.1)] {
+                least[node(next, now.0, now.1)] = total;
+                open.insert((total.to_bits(), lattice.index(next), now.0, now.1));
+            }
+        }
+    }
+    best
+}
+
+#[test]
+fn with_prices_of_changes_the_best_path_is_that_of_brute_force() {
+    let mut random = ground::random(24);
+    let (mut compared, mut differs) = (0, 0);
+    while compared < 60 {
+        let terrain = ground::small_terrain(&mut random, 9);
+        let robot = ground::some_robot(&mut random, [0.0, 1.0][compared % 2]);
+        let mut asked = ground::some_query(&mut random, &terrain, &robot);
+        let (stops, back_j) = (random.random_bool(0.7), random.random_range(0.0..300.0));
+        let prices = Prices { direction_change_j: back_j, stops, ..Prices::default() };
+        let settings = Settings { reverse: true, ..Settings::of(&robot) };
+        asked.settings = Settings { prices, ..settings };
+        let free = Planner::new(&terrain, &robot, settings).unwrap();
+        let priced = Planner::new(&terrain, &robot, asked.settings).unwrap();
+        let Ok(plan) = priced.plan(&asked, Objective::Energy) else { continue };
+        compared += 1;
+        let k2 = (robot.motors.left.k2 + robot.motors.right.k2) / 2.0;
+        let kinetic_j = robot.mass_kg / 2.0 * settings.speed_mps.powi(2);
+        let stop_j = if stops { (k2 - robot.motors.regeneration / k2) * kinetic_j } else { 0.0 };
+        let best_j = least_with_changes(&free, &asked, [stop_j, back_j]).unwrap();
+        let total = &plan.route.total;
+        let found_j = total.energy_j + total.surcharge.j;
+        assert!((found_j - best_j).abs() < 1e-3 * best_j.abs() + 0.2, "{found_j}, but the best is {best_j}");
+        assert!(
+            plan.search.is_optimal() && plan.search.excess < 0.02 * best_j.abs() + 1.0,
+            "{:?}",
+            plan.search
+        );
+        let plain = free.plan(&Query { settings, ..asked.clone() }, Objective::Energy).unwrap();
+        differs += usize::from(plain.route.poses != plan.route.poses);
+        let loose = priced.plan(&Query { bound: 1.5, ..asked.clone() }, Objective::Energy).unwrap();
+        let bound = loose.search.bound.unwrap_or(f64::INFINITY);
+        let loose_j = loose.route.total.energy_j + loose.route.total.surcharge.j;
+        assert!(
+            best_j <= 0.0 || loose_j <= bound * best_j * (1.0 + 1e-3) + 0.2,
+            "{loose_j} for {best_j} within {bound}"
+        );
+    }
+    assert!(differs > 10, "prices changed {differs} of {compared} paths");
 }

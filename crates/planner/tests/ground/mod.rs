@@ -95,6 +95,7 @@ pub(crate) fn with_preferences(random: &mut impl Rng, settings: Settings) -> Set
         reverse_s_per_m: random.random_range(0.0..5.0),
         spin_j_per_rad: random.random_range(0.0..200.0),
         spin_s_per_rad: random.random_range(0.0..5.0),
+        ..Prices::default()
     };
     Settings {
         prices: if random.random_bool(0.7) { prices } else { Prices::default() },
