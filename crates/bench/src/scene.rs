@@ -88,6 +88,7 @@ impl Scene {
             snap_radius_m: Some(10.0 * self.terrain.grid.cell_size_m),
             bound: 1.0,
             refine: false,
+            exact_ends: false,
             patience: Patience::default(),
         }
     }

@@ -75,6 +75,7 @@ fn by_plans(planner: &Planner, places: &[[f64; 2]], back: bool) -> impl Fn(&[usi
             snap_radius_m: Some(0.0),
             bound: 1.0,
             refine: false,
+            exact_ends: false,
             patience: Patience::default(),
         };
         planner.plan(&query, Objective::Energy).map_or(f64::INFINITY, |plan| plan.route.total.energy_j)

@@ -40,6 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     };
     for what in ["plan", "again"] {

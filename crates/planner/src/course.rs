@@ -6,7 +6,8 @@ use crate::{
     connection::{Connection, Waypoint},
     edge::Edge,
     free::FreeGround,
-    heading::turn_rad,
+    heading::{Heading, turn_rad},
+    lattice::State,
     route::{Pose, Route},
     step::Step,
 };
@@ -57,7 +58,7 @@ impl Course {
     /// Drives the course; `given` is the route that its given links are of. `None` where it cannot be driven.
     pub(crate) fn drive(&self, ground: &FreeGround<'_>, given: &Route) -> Option<Route> {
         let [west_m, south_m] = first_center_m(ground);
-        let first = *given.poses.first()?;
+        let first = self.first_pose(ground, given)?;
         let mut route =
             Route { total: Edge::default(), poses: vec![first], steps: Vec::new(), edges: Vec::new() };
         for (link, ends) in self.links.iter().zip(self.waypoints.windows(2)) {
@@ -84,15 +85,46 @@ impl Course {
             route.edges.push(edge);
         }
         // Curves close to rounding; the answer ends in the very pose that it was asked to end in.
-        let (end, wanted) = (route.poses.last_mut()?, given.poses.last()?);
-        debug_assert!((end.x_m - wanted.x_m).hypot(end.y_m - wanted.y_m) < 1e-6);
+        let (end, wanted) = (route.poses.last_mut()?, self.waypoints.last()?);
+        let [x_m, y_m] = [west_m + wanted.x_m, south_m + wanted.y_m];
+        debug_assert!((end.x_m - x_m).hypot(end.y_m - y_m) < 1e-6);
         debug_assert!(turn_rad(end.heading_rad, wanted.heading_rad).abs() < 1e-6);
-        (end.x_m, end.y_m, end.heading_rad) = (wanted.x_m, wanted.y_m, wanted.heading_rad);
+        (end.x_m, end.y_m) = (x_m, y_m);
+        end.heading_rad = turn_rad(0.0, wanted.heading_rad);
         Some(route)
+    }
+
+    /// The pose in which the course begins: that of the route, or one beside it.
+    fn first_pose(&self, ground: &FreeGround<'_>, given: &Route) -> Option<Pose> {
+        let ([west_m, south_m], from, first) =
+            (first_center_m(ground), self.waypoints.first()?, given.poses.first()?);
+        let [x_m, y_m] = [west_m + from.x_m, south_m + from.y_m];
+        let given_m = [first.x_m - west_m, first.y_m - south_m];
+        let given = Waypoint { x_m: given_m[0], y_m: given_m[1], heading_rad: first.heading_rad };
+        if is_same(&given, from) {
+            return Some(*first);
+        }
+        let lattice = ground.lattice;
+        let heading = Heading::nearest(from.heading_rad);
+        let cell = lattice.terrain.grid.cell_at(x_m, y_m)?;
+        let (pitch_rad, roll_rad) = lattice.tilt_rad(State { cell, heading });
+        let z_m = lattice.terrain.base_m() + f64::from(ground.height_at_m([from.x_m, from.y_m])?);
+        let heading_rad = turn_rad(0.0, from.heading_rad);
+        Some(Pose { x_m, y_m, z_m, heading_rad, pitch_rad, roll_rad, ..*first })
     }
 }
 
+/// Whether two waypoints are one, to rounding.
+pub(crate) fn is_same(a: &Waypoint, b: &Waypoint) -> bool {
+    (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < SAME_M && turn_rad(a.heading_rad, b.heading_rad).abs() < SAME_RAD
+}
+
+/// Places that are nearer to each other are the same [m].
+const SAME_M: f64 = 1e-9;
+/// Headings that are nearer to each other are the same [rad].
+const SAME_RAD: f64 = 1e-9;
+
 /// Centre of cell (0, 0), from which waypoints count [m].
-fn first_center_m(ground: &FreeGround<'_>) -> [f64; 2] {
+pub(crate) fn first_center_m(ground: &FreeGround<'_>) -> [f64; 2] {
     ground.lattice.terrain.grid.center_m(terrain::Cell { row: 0, column: 0 })
 }

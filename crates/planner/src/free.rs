@@ -130,6 +130,11 @@ impl<'l> FreeGround<'l> {
         [step.middle, step.end.corner, step.end.far_corner()].iter().all(|&cell| self.index(cell).is_some())
     }
 
+    /// Height of the robot at a place, from the centre of cell (0, 0), above the map's lowest ground [m].
+    pub(crate) fn height_at_m(&self, place_m: [f64; 2]) -> Option<f32> {
+        self.height_m(&Sample::at(place_m, self.lattice.terrain.grid.cell_size_m))
+    }
+
     fn height_m(&self, sample: &Sample) -> Option<f32> {
         let corner = self.index(sample.corner)?;
         self.index(sample.far_corner())?;

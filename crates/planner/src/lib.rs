@@ -24,6 +24,7 @@ mod edge;
 mod ends;
 mod error;
 mod exact;
+mod exact_ends;
 mod field;
 mod fields;
 mod footprint;

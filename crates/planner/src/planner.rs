@@ -25,7 +25,7 @@ use crate::{
     lattice::{Lattice, Settings, State},
     objective::Objective,
     patience::{Patience, work},
-    query::{Comparison, Goal, Plan, Query, SearchReport, Snap},
+    query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
     refine::refine,
     rings::{farthest_ring, ring},
     route::{Pose, Route},
@@ -186,7 +186,7 @@ impl Planner {
             changes.charge(&mut route);
         }
         let search = SearchReport::proven(&found, objective, &route.total, duration);
-        let mut plan = self.answer(ends, query, route, search)?;
+        let mut plan = self.answer(ends, (query, objective), route, search)?;
         // Last: it takes all the time that is left, and an answer that is there must not be lost to it.
         plan.refined =
             query.refine.then(|| refine(&self.lattice, objective, &plan.route, &query.patience).route);
@@ -223,22 +223,32 @@ impl Planner {
     ) -> Result<Plan, Error> {
         let ways = ways.iter().map(|&(motion, variant)| (motion, Some(variant)));
         let route = Route::drive_by(&self.lattice, start, ways, |_, _| None, &query.patience)?;
-        self.answer(ends, query, route, search)
+        self.answer(ends, (query, Objective::Energy), route, search)
     }
 
-    /// A path as the answer to a question, not refined.
-    fn answer(&self, ends: &Ends, query: &Query, route: Route, search: SearchReport) -> Result<Plan, Error> {
+    /// A path of the lattice as the answer to a question under an objective, with exact ends if it asks for them, not refined.
+    fn answer(
+        &self,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        route: Route,
+        search: SearchReport,
+    ) -> Result<Plan, Error> {
         let lattice = &self.lattice;
         let end = route.poses.last().and_then(|pose| state_of(lattice, pose));
         let goal = end.map_or(0, |end| ends.goal_at(&end));
         let asked = query.goals().nth(goal).unwrap_or(&query.goal);
+        let route = match query.exact_ends {
+            true => self.with_exact_ends(route, (ends, asked), query, objective),
+            false => route,
+        };
         let energy_interval_j =
             energy_interval_j(&route, lattice, &query.patience).ok_or(Error::Timeout { expanded: 0 })?;
         Ok(Plan {
             energy_interval_j,
             goal,
             short_of_goal_m: None,
-            start_snap: Snap { distance_m: ends.start.distance_m, turn_rad: ends.start.turn_rad },
+            start_snap: start_snap(&route, &query.start),
             goal_snap: goal_snap(&route, ends, asked),
             route,
             refined: None,
@@ -336,6 +346,14 @@ pub(crate) fn nearest_connected(
     match gap_m == 0.0 {
         true => Error::NoRoomToTurn { x_m, y_m },
         false => Error::NoPath { gap_m, x_m, y_m, hindrance: Hindrance::Unexplained },
+    }
+}
+
+fn start_snap(route: &Route, start: &Start) -> Snap {
+    let first = route.poses.first().map_or((start.x_m, start.y_m, 0.0), |p| (p.x_m, p.y_m, p.heading_rad));
+    Snap {
+        distance_m: (first.0 - start.x_m).hypot(first.1 - start.y_m),
+        turn_rad: start.heading_rad.map_or(0.0, |h| crate::heading::turn_rad(h, first.2)),
     }
 }
 

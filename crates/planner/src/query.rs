@@ -67,6 +67,9 @@ pub struct Query {
     pub bound: f64,
     /// Whether to refine the path off the lattice too.
     pub refine: bool,
+    /// Whether the path is to begin and end exactly where it is asked to, by curves to and from the lattice's path, where ground and
+    /// obstacles allow them; else it does so at the centres of cells and under one of sixteen headings.
+    pub exact_ends: bool,
     /// When to give up: the best path so far is the answer then, with the bound proven of it.
     pub patience: Patience,
 }
@@ -134,13 +137,13 @@ impl SearchReport {
 /// A least-cost path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Totals, poses and steps of the lattice's path.
+    /// Totals, poses and steps of the lattice's path, with the curves to its ends where these are to be exact.
     pub route: Route,
     /// The same way with shortcuts and freely placed arcs, never worse than `route`, where it was asked for.
     pub refined: Option<Route>,
     /// Central 95 % interval of the energy, from the robot's parameter uncertainty [J].
     pub energy_interval_j: [f64; 2],
-    /// How far the start was moved.
+    /// How far the start was moved; nothing where the path begins exactly where it was asked to.
     pub start_snap: Snap,
     /// How far the goal was moved; the distance to where the path ends where a tolerance allowed it.
     pub goal_snap: Snap,

@@ -49,6 +49,7 @@ fn planned(
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine,
+        exact_ends: false,
         patience: Patience::default(),
     };
     plan(terrain, &husky(), &query, Objective::Energy)

@@ -188,6 +188,7 @@ fn query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot) -> Query {
         snap_radius_m: Some(3.0 * terrain.grid.cell_size_m),
         bound: 1.0,
         refine: true,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }
@@ -298,6 +299,7 @@ fn a_closed_diagonal_wall_has_no_gap_at_any_cell_size() {
             snap_radius_m: None,
             bound: 1.0,
             refine: true,
+            exact_ends: false,
             patience: Patience::default(),
         };
         let error = plan(&terrain, &robot, &query, Objective::Energy).unwrap_err();
@@ -332,6 +334,7 @@ fn a_robot_wider_than_long_does_not_turn_through_what_lies_beside_it() {
             snap_radius_m: Some(0.0),
             bound: 1.0,
             refine: true,
+            exact_ends: false,
             patience: Patience::default(),
         };
         match plan(&terrain, &robot, &query, Objective::Energy) {

@@ -41,6 +41,7 @@ fn between(robot: &Robot, start: [f64; 2], goal: [f64; 2], heading_rad: Option<f
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

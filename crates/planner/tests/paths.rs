@@ -30,6 +30,7 @@ fn across(terrain: &Terrain, robot: &model::Robot) -> Query {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }
@@ -266,6 +267,7 @@ fn obstacles_are_kept_clear_of_and_reversing_helps_where_there_is_no_room_to_tur
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     };
     let error = plan(&terrain, &robot, &query, Objective::Energy).unwrap_err();
@@ -295,6 +297,7 @@ fn on_the_real_map_the_energy_minimal_path_is_cheaper_on_nine_of_ten_pairs_and_n
             snap_radius_m: None,
             bound: 1.0,
             refine: false,
+            exact_ends: false,
             patience: Patience::default(),
         };
         let both = compare(&terrain, &robot, &query).unwrap();

@@ -69,6 +69,7 @@ fn across(terrain: &Terrain, patience: &Patience) -> Query {
         snap_radius_m: Some(4.0),
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: patience.clone(),
     }
 }

@@ -34,6 +34,7 @@ fn query(terrain: &Terrain, ends: [[f64; 2]; 2], settings: Settings) -> Query {
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

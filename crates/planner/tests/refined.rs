@@ -268,6 +268,7 @@ fn between_states(terrain: &Terrain, robot: &Robot, [from, to]: [State; 2]) -> Q
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

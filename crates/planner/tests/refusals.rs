@@ -25,6 +25,7 @@ fn query(start: (f64, f64), goal: (f64, f64)) -> Query {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

@@ -33,6 +33,7 @@ fn along(terrain: &Terrain, robot: &Robot, y_m: f64) -> Result<Plan, Error> {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     };
     plan(terrain, robot, &query, Objective::Energy)

@@ -40,6 +40,7 @@ fn query(goal: Goal, settings: Settings) -> Query {
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }
@@ -263,4 +264,54 @@ fn with_prices_of_changes_the_best_path_is_that_of_brute_force() {
         );
     }
     assert!(differs > 10, "prices changed {differs} of {compared} paths");
+}
+
+#[test]
+fn exact_ends_are_where_they_were_asked_for_and_the_way_between_is_driven_and_clear() {
+    let mut random = ground::random(25);
+    let (mut compared, mut exact) = (0, 0);
+    while compared < 60 {
+        let terrain = ground::small_terrain(&mut random, 12);
+        let robot = ground::some_robot(&mut random, 1.0);
+        let mut asked = ground::some_query(&mut random, &terrain, &robot);
+        asked.goal.tolerance_m = 0.0;
+        asked.refine = compared % 2 == 0;
+        let planner = Planner::new(&terrain, &robot, asked.settings).unwrap();
+        let Ok(snapped) = planner.plan(&asked, Objective::Energy) else { continue };
+        let plan = planner.plan(&Query { exact_ends: true, ..asked.clone() }, Objective::Energy).unwrap();
+        compared += 1;
+        let (first, last) = (plan.route.poses.first().unwrap(), plan.route.poses.last().unwrap());
+        let [start_m, goal_m] = [plan.start_snap.distance_m, plan.goal_snap.distance_m];
+        assert!(start_m < 1e-9 || start_m == snapped.start_snap.distance_m, "{start_m}");
+        assert!(goal_m < 1e-9 || (goal_m - snapped.goal_snap.distance_m).abs() < 1e-12, "{goal_m}");
+        if start_m < 1e-9 && goal_m < 1e-9 {
+            exact += 1;
+            assert!((first.x_m - asked.start.x_m).hypot(first.y_m - asked.start.y_m) < 1e-9);
+            assert!((last.x_m - asked.goal.x_m).hypot(last.y_m - asked.goal.y_m) < 1e-9);
+            for (wanted, pose) in [(asked.start.heading_rad, first), (asked.goal.heading_rad, last)] {
+                let off = wanted.map_or(0.0, |wanted| (wanted - pose.heading_rad).sin());
+                assert!(off.abs() < 1e-9, "{wanted:?} and {pose:?}");
+            }
+        }
+        for route in std::iter::once(&plan.route).chain(&plan.refined) {
+            // Poses follow from the steps, and none stands on blocked ground.
+            let drawn_j: f64 = route.steps.iter().map(|s| s.bus_w * s.duration_s).sum();
+            assert!((drawn_j - route.total.energy_j).abs() < 1e-6 * (1.0 + drawn_j.abs()));
+            for pair in route.poses.windows(2) {
+                assert!((pair[1].x_m - pair[0].x_m).hypot(pair[1].y_m - pair[0].y_m) < 1.3, "{pair:?}");
+            }
+            let room_m = least_room_m(planner.lattice(), route, &Patience::default()).unwrap();
+            assert!(room_m >= 0.0);
+            for pose in &route.poses {
+                let cell = terrain.grid.cell_at(pose.x_m, pose.y_m).unwrap();
+                assert!(!terrain.is_blocked(cell), "{pose:?}");
+            }
+        }
+        if let Some(refined) = &plan.refined {
+            let end = refined.poses.last().unwrap();
+            assert!((end.x_m - last.x_m).hypot(end.y_m - last.y_m) < 1e-9);
+            assert!(refined.total.energy_j <= plan.route.total.energy_j + 1e-9);
+        }
+    }
+    assert!(exact > 20, "{exact} of {compared} had both ends exact");
 }

@@ -37,6 +37,7 @@ fn over(robot: &Robot, to_y_m: f64, height_m: impl Fn(f64, f64) -> f64) -> Plan 
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     };
     plan(&terrain, robot, &query, Objective::Energy).unwrap()

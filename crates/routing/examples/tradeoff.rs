@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     };
     let [slow, fast] = [Objective::Energy, Objective::Time]

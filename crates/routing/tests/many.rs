@@ -27,6 +27,7 @@ fn query(planner: &Planner, from: &Waypoint, to: &Waypoint) -> Query {
         snap_radius_m: Some(0.0),
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

@@ -68,6 +68,7 @@ fn query(planner: &Planner, from: &Waypoint, to: &Waypoint, patience: &Patience)
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: patience.clone(),
     }
 }

@@ -84,6 +84,7 @@ impl Case {
             snap_radius_m: None,
             bound: 1.0,
             refine: false,
+            exact_ends: false,
             patience: Patience::default(),
         };
         Some(Case { planner, query, heights_m, grid, scatter, seed, random })

@@ -50,6 +50,7 @@ pub(crate) fn query(planner: &Planner, from: [f64; 2], to: [f64; 2]) -> Query {
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

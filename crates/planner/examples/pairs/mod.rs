@@ -28,6 +28,7 @@ pub(crate) fn random_query(random: &mut Pcg64Mcg, terrain: &Terrain, settings: S
             snap_radius_m: None,
             bound: 1.0,
             refine: false,
+            exact_ends: false,
             patience: Patience::default(),
         };
     }

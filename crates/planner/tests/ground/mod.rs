@@ -138,6 +138,7 @@ pub(crate) fn some_query(random: &mut impl Rng, terrain: &Terrain, robot: &Robot
         snap_radius_m: None,
         bound: 1.0,
         refine: false,
+        exact_ends: false,
         patience: Patience::default(),
     }
 }

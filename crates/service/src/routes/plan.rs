@@ -442,6 +442,7 @@ impl PlanRequest {
             snap_radius_m: self.snap_radius_m,
             bound: self.bound,
             refine: self.refine,
+            exact_ends: false,
             patience: patience.clone(),
         }
     }
