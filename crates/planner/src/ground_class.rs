@@ -64,7 +64,10 @@ impl GroundClass {
         let reversed_m = if reverse { length_m } else { 0.0 };
         let spun_rad = if step.horizontal_m == 0.0 { step.turn_rad.abs() } else { 0.0 };
         Surcharge {
-            j: more * unlifted_j + prices.reverse_j_per_m * reversed_m + prices.spin_j_per_rad * spun_rad,
+            j: more * unlifted_j
+                + self.rule.risk_j_per_m * length_m
+                + prices.reverse_j_per_m * reversed_m
+                + prices.spin_j_per_rad * spun_rad,
             m: more * length_m,
             s: more * duration_s + prices.reverse_s_per_m * reversed_m + prices.spin_s_per_rad * spun_rad,
         }
@@ -170,6 +173,11 @@ impl GroundClasses {
             }
             _ => surface,
         }
+    }
+
+    /// Largest risk of any [J/m].
+    pub(crate) fn largest_risk_j_per_m(&self) -> f64 {
+        self.list.iter().map(|class| class.rule.risk_j_per_m).fold(0.0, f64::max)
     }
 
     /// Least and largest cost factor of any.

@@ -303,7 +303,8 @@ fn dearest(lattice: &Lattice, weights: &Weights, level_cost: f64) -> f64 {
     let step = lattice.level_step();
     let Prices { reverse_j_per_m, reverse_s_per_m, spin_j_per_rad, spin_s_per_rad, .. } =
         lattice.settings.prices;
-    let reverse = Surcharge { j: reverse_j_per_m, m: 0.0, s: reverse_s_per_m };
+    let risk_j_per_m = lattice.classes.largest_risk_j_per_m();
+    let reverse = Surcharge { j: reverse_j_per_m + risk_j_per_m, m: 0.0, s: reverse_s_per_m };
     let spin = Surcharge { j: spin_j_per_rad, m: 0.0, s: spin_s_per_rad };
     let priced = weights.of_surcharge(&reverse) * step.length_m + weights.of_surcharge(&spin);
     factor + priced / level_cost

@@ -6,12 +6,14 @@ mod parse;
 mod placing;
 mod raster;
 mod shape;
+mod unknown_ground;
 mod zones;
 
 use self::shape::Shape;
 pub use self::{
     effect::Effect,
     error::AreaError,
+    unknown_ground::UnknownGround,
     zones::{Rule, Zones},
 };
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     Cell, Error, Grid, Warning,
-    areas::{Areas, Zones},
+    areas::{Areas, UnknownGround, Zones},
     crs::{Earth, EarthError},
     fill_value,
     samples::Survey,
@@ -26,6 +26,8 @@ pub struct Terrain {
     pub(crate) filled: Option<Arc<Vec<bool>>>,
     pub(crate) warnings: Arc<Vec<Warning>>,
     pub(crate) areas: Option<Arc<Areas>>,
+    /// What unknown ground is taken for where the robot may drive on it.
+    pub(crate) unknown_ground: Option<Arc<UnknownGround>>,
     /// What the areas come to, where they have been laid over the ground.
     pub(crate) zones: Option<Arc<Zones>>,
     /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
@@ -121,6 +123,7 @@ impl Terrain {
             filled: None,
             warnings: Arc::default(),
             areas: None,
+            unknown_ground: None,
             zones: None,
             crs: None,
         }

@@ -58,6 +58,8 @@ pub enum WarningKind {
     MovedEnds,
     /// The path leads over ground that was filled in.
     FilledGround,
+    /// Unknown ground is open to the robot.
+    UnknownGround,
     /// How the areas' coordinates were read, or what of them means nothing here.
     Areas,
 }

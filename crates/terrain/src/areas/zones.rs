@@ -12,6 +12,8 @@ pub struct Rule {
     pub max_speed_mps: f64,
     /// What driving there weighs in comparison, 1 where nothing is said.
     pub cost_factor: f64,
+    /// What a metre weighs besides what it takes, for ground that is not known [J/m].
+    pub risk_j_per_m: f64,
     /// The direction from which the way may differ by a quarter turn at most, counter-clockwise from east [rad].
     pub one_way_rad: Option<f64>,
 }
@@ -29,19 +31,23 @@ pub struct Zones {
 
 impl Rule {
     /// No rule.
-    pub const FREE: Rule = Rule { max_speed_mps: f64::INFINITY, cost_factor: 1.0, one_way_rad: None };
+    pub const FREE: Rule =
+        Rule { max_speed_mps: f64::INFINITY, cost_factor: 1.0, risk_j_per_m: 0.0, one_way_rad: None };
 
     /// This rule with an area's effect over it: the lower speed, both factors, and the later direction.
     fn under(self, effect: &Effect) -> Self {
         Rule {
             max_speed_mps: self.max_speed_mps.min(effect.max_speed_mps.unwrap_or(f64::INFINITY)),
             cost_factor: self.cost_factor * effect.cost_factor.unwrap_or(1.0),
+            risk_j_per_m: self.risk_j_per_m,
             one_way_rad: effect.one_way_rad.or(self.one_way_rad),
         }
     }
 }
 
 impl Zones {
+    /// Largest product of cost factors, and one over the least.
+    const LARGEST_FACTOR: f64 = 1000.0;
     /// Rules beyond the first that areas may come to.
     const MOST_RULES: usize = 255;
 
@@ -49,8 +55,24 @@ impl Zones {
         Zones { rules: vec![Rule::FREE], rule: vec![0; cells], keep_out: vec![false; cells] }
     }
 
+    /// Position of the rule of unknown ground, of zones that have no other rules yet.
+    pub(super) fn risky(&mut self, risk_j_per_m: f64) -> u8 {
+        if risk_j_per_m == 0.0 {
+            return 0;
+        }
+        self.rules.push(Rule { risk_j_per_m, ..Rule::FREE });
+        (self.rules.len() - 1) as u8
+    }
+
     /// Position of a rule, which is added if it is new.
     fn place_of(&mut self, rule: Rule, feature: usize) -> Result<u8, AreaError> {
+        let (factor, most) = (rule.cost_factor, Self::LARGEST_FACTOR);
+        if !(1.0 / most..=most).contains(&factor) {
+            let what = format!(
+                "is where cost factors that lie over each other come to {factor}, but at most {most} is weighed: make it a keep-out"
+            );
+            return Err(AreaError::new(&format!("features[{feature}]"), what));
+        }
         let place = self.rules.iter().position(|other| *other == rule).unwrap_or_else(|| {
             self.rules.push(rule);
             self.rules.len() - 1
@@ -97,12 +119,15 @@ impl Terrain {
     /// # Errors
     /// Too many surfaces or rules, or [`Error::OutOfTime`] as soon as `is_over` says so, which is asked row by row.
     pub fn as_driven(&self, is_over: &dyn Fn() -> bool) -> Result<Self, Error> {
-        let Some(areas) = self.areas.as_ref().filter(|_| self.zones.is_none()) else {
+        if self.zones.is_some() || (self.areas.is_none() && self.unknown_ground.is_none()) {
             return Ok(self.clone());
-        };
+        }
         let mut terrain = self.clone();
         let mut zones = Zones::free(self.grid.cells());
-        for area in &areas.areas {
+        if let Some(unknown) = &self.unknown_ground {
+            terrain.open_unknown(unknown, &mut zones, is_over)?;
+        }
+        for area in self.areas.iter().flat_map(|areas| &areas.areas) {
             terrain.lay(area, &mut zones, is_over)?;
         }
         if zones.keep_out.contains(&true) {
