@@ -7,13 +7,21 @@ use model::{PowerModel, robot::RobotFile};
 use service::{
     Limits, Patience,
     routes::{
-        plan::{GoalPose, ObjectiveName, PlanRequest, StartPose},
+        plan::{GoalHeading, GoalPose, ObjectiveName, PlanRequest, StartPose},
         robots::RobotChoice,
     },
 };
-use terrain::{Terrain, Warning, io};
+use terrain::{
+    Terrain, Warning,
+    areas::{Areas, UnknownGround},
+    io,
+};
 
-use crate::{failure::BadInput, output};
+use crate::{
+    failure::{BadInput, Refused},
+    output,
+    steering::Steering,
+};
 
 /// A place on the map with a heading if one is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,6 +151,16 @@ pub(crate) struct MapArguments {
     map: PathBuf,
     #[command(flatten)]
     reading: MapReading,
+    /// Areas over the map, in place of those that it has: a GeoJSON file of polygons and lines whose properties may be surface,
+    /// keep_out, max_speed_mps, cost_factor and one_way_rad
+    #[arg(long, value_name = "FILE")]
+    areas: Option<PathBuf>,
+    /// Open unknown ground to the robot, as this surface of it
+    #[arg(long, value_name = "SURFACE", num_args = 0..=1, default_missing_value = "")]
+    unknown_ground: Option<String>,
+    /// What a metre of unknown ground weighs besides what it takes [J/m]
+    #[arg(long, default_value_t = 0.0, requires = "unknown_ground")]
+    risk_j_per_m: f64,
 }
 
 /// How a map is to be read.
@@ -171,7 +189,27 @@ impl MapArguments {
             let named = message.contains(&path.display().to_string());
             BadInput(if named { message } else { format!("{}: {message}", path.display()) })
         })?;
+        let terrain = self.with_areas(terrain)?;
         warn(terrain.warnings());
+        Ok(terrain)
+    }
+
+    /// The map with the areas of a file over it, and unknown ground opened if that is asked for.
+    fn with_areas(&self, mut terrain: Terrain) -> anyhow::Result<Terrain> {
+        if let Some(path) = &self.areas {
+            let named = |why: &dyn std::fmt::Display| BadInput(format!("{}: {why}", path.display()));
+            let text = fs::read_to_string(path).map_err(|error| named(&error))?;
+            let document = serde_json::from_str(&text).map_err(|error| named(&error))?;
+            let areas = Areas::of(&document, &terrain).map_err(|error| named(&error))?;
+            terrain = terrain.with_areas(areas);
+        }
+        if let Some(surface) = &self.unknown_ground {
+            let surface = (!surface.is_empty()).then(|| surface.clone());
+            let unknown = UnknownGround { surface, risk_j_per_m: self.risk_j_per_m };
+            terrain = terrain
+                .with_unknown_ground(unknown)
+                .map_err(|error| BadInput(format!("--risk-j-per-m {}", error.what)))?;
+        }
         Ok(terrain)
     }
 }
@@ -262,8 +300,12 @@ pub(crate) struct Question {
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
     /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
-    #[arg(long, allow_hyphen_values = true)]
-    goal: Place,
+    ///
+    /// Given several times, the path leads to the place that is best to reach
+    #[arg(long, allow_hyphen_values = true, required = true)]
+    goal: Vec<Place>,
+    #[command(flatten)]
+    steering: Steering,
     /// Any pose this close to the goal will do [m]
     #[arg(long, default_value_t = 0.0)]
     tolerance_m: f64,
@@ -284,32 +326,46 @@ fn power_model(text: &str) -> Result<PowerModel, String> {
 }
 
 impl Question {
+    /// Refuses steering and several goals for a command that has no use for them.
+    pub(crate) fn refuse_steering(&self, command: &str) -> anyhow::Result<()> {
+        if self.steering.is_any() || self.goal.len() > 1 {
+            let why = format!(
+                "{command} weigh what paths take between one start and one goal: leave out --price, --forbid, --least-radius-m, --either-way, --partial, --snapped-ends and further --goal, or ask plan"
+            );
+            return Err(BadInput(why).into());
+        }
+        Ok(())
+    }
+
     /// Reads the files and puts the question as the service takes it.
     pub(crate) fn read(&self, objective: ObjectiveName) -> anyhow::Result<(Terrain, PlanRequest)> {
         let driving = &self.driving;
         let (terrain, robot) = driving.read()?;
-        let goal = GoalPose::in_metres(self.goal.on(&terrain)?, self.goal.heading_rad());
+        let goal = |place: &Place| -> anyhow::Result<GoalPose> {
+            let goal = GoalPose::in_metres(place.on(&terrain)?, place.heading_rad());
+            let heading = self.steering.either_way.then_some(GoalHeading::Either);
+            Ok(GoalPose { tolerance_m: self.tolerance_m, heading, ..goal })
+        };
+        let goals: Vec<GoalPose> = self.goal.iter().map(goal).collect::<anyhow::Result<_>>()?;
+        let is_one = goals.len() == 1;
         let request = PlanRequest {
-            map: None,
-            map_id: None,
-            robot,
-            start: self.start.pose_on(&terrain)?,
-            goal: GoalPose { tolerance_m: self.tolerance_m, ..goal },
+            goals: (!is_one).then(|| goals.clone()),
             objective,
             speed_mps: driving.speed_mps,
             power_model: driving.power_model,
             reverse: driving.reverse,
-            other_goals: Vec::new(),
             snap_radius_m: driving.snap_radius_m,
             bound: self.bound,
             timeout_s: driving.timeout_s,
-            hold_goal: false,
             refine: !self.no_refinement,
-            max_time_s: None,
-            max_energy_j: None,
-            max_distance_m: None,
-            max_slope_rad: None,
+            ..PlanRequest::of(
+                robot,
+                self.start.pose_on(&terrain)?,
+                if is_one { goals[0] } else { GoalPose::absent() },
+            )
         };
+        let request = self.steering.on(request);
+        request.check_steering().map_err(Refused)?;
         Ok((terrain, request))
     }
 }

@@ -16,6 +16,7 @@ mod reach_picture;
 mod real_scored;
 mod recorded;
 mod scored;
+mod steering;
 mod table;
 
 use std::process::ExitCode;

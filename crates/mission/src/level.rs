@@ -1,7 +1,7 @@
 //! How far a charge carries on level ground.
 
 use model::Grade;
-use planner::{Lattice, Patience, Step as PlannedStep, body_motion};
+use planner::{Lattice, Patience, Step as PlannedStep, Surcharge, body_motion};
 use rayon::prelude::*;
 
 use crate::{
@@ -68,6 +68,7 @@ impl LevelDrive {
             stance_pitch_rad: 0.0,
             surface: 0,
             bus_w: 0.0,
+            surcharge: Surcharge::default(),
         };
         let mut journey = Journey::new(settings.power_model);
         journey.drive(robot, &[step], std::slice::from_ref(&robot.default_surface))?;

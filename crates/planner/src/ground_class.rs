@@ -119,7 +119,7 @@ impl GroundClasses {
     ///
     /// # Errors
     /// A surface that the robot does not know, or more kinds than a byte tells apart.
-    pub(crate) fn of(terrain: &Terrain, robot: &Robot) -> Result<Self, Error> {
+    pub(crate) fn of(terrain: &Terrain, robot: &Robot, settings: &Settings) -> Result<Self, Error> {
         let names = terrain.surfaces().map_or(&[][..], |surfaces| &surfaces.names);
         let names = names.iter().map(String::as_str).chain([robot.default_surface.as_str()]);
         let surfaces = names.map(|name| {
@@ -130,7 +130,13 @@ impl GroundClasses {
         });
         let surfaces: Vec<Surface> = surfaces.collect::<Result<_, Error>>()?;
         match terrain.zones() {
-            Some(zones) if zones.rules.len() > 1 => Self::with_rules(terrain, surfaces, zones),
+            Some(zones) if zones.rules.len() > 1 => {
+                let mut classes = Self::with_rules(terrain, surfaces, zones)?;
+                if !settings.heed_preferences {
+                    classes.forget_preferences();
+                }
+                Ok(classes)
+            }
             _ => {
                 let plain = |(name, surface)| GroundClass { surface, name, rule: Rule::FREE };
                 let list = surfaces.into_iter().enumerate().map(plain).collect();
@@ -160,6 +166,13 @@ impl GroundClasses {
             list.push(GroundClass { surface: surfaces[name].clone(), name, rule: zones.rules[pair % rules] });
         }
         Ok(GroundClasses { list, by_rule: Some(by_rule), rules })
+    }
+
+    /// Leaves out what counts in comparisons only.
+    fn forget_preferences(&mut self) {
+        for class in &mut self.list {
+            (class.rule.cost_factor, class.rule.risk_j_per_m) = (1.0, 0.0);
+        }
     }
 
     /// Position of a cell's kind.

@@ -42,6 +42,8 @@ pub struct Settings {
     pub spin: bool,
     /// No turn is tighter; above 0 the robot does not turn on the spot [m].
     pub least_radius_m: f64,
+    /// Whether cost factors of areas and risks of unknown ground count in comparisons.
+    pub heed_preferences: bool,
 }
 
 impl Settings {
@@ -57,6 +59,7 @@ impl Settings {
             prices: Prices::default(),
             spin: true,
             least_radius_m: 0.0,
+            heed_preferences: true,
         }
     }
 
@@ -123,7 +126,7 @@ impl Lattice {
         check_speed(robot, settings.speed_mps)?;
         settings.prices.check()?;
         let terrain = &as_driven(terrain, patience)?;
-        let classes = GroundClasses::of(terrain, robot)?;
+        let classes = GroundClasses::of(terrain, robot, &settings)?;
         let cell_size_m = terrain.grid.cell_size_m;
         let (rows, columns) = (terrain.grid.rows, terrain.grid.columns);
         let layout = Layout::new(&terrain.grid).ok_or(Error::TooManyStates { rows, columns })?;
@@ -155,7 +158,9 @@ impl Lattice {
     /// As [`Lattice::prepare`].
     pub fn over(&self, terrain: &Terrain, patience: &Patience) -> Result<Arc<Self>, Error> {
         let terrain = &as_driven(terrain, patience)?;
-        if terrain.grid != self.terrain.grid || GroundClasses::of(terrain, &self.robot)? != self.classes {
+        if terrain.grid != self.terrain.grid
+            || GroundClasses::of(terrain, &self.robot, &self.settings)? != self.classes
+        {
             return Self::prepare(terrain, &self.robot, self.settings, patience);
         }
         Ok(Arc::new(Lattice {
@@ -171,6 +176,13 @@ impl Lattice {
             classes: self.classes.clone(),
             stand: self.stand.clone(),
         }))
+    }
+
+    /// Whether anything counts in comparisons besides what paths take: cost factors, risks or prices.
+    pub fn has_preferences(&self) -> bool {
+        let rules = self.classes.list.iter().map(|class| class.rule);
+        self.settings.prices != Prices::default()
+            || rules.into_iter().any(|rule| rule.cost_factor != 1.0 || rule.risk_j_per_m != 0.0)
     }
 
     /// Number of states.

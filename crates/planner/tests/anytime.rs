@@ -28,6 +28,8 @@ fn across(terrain: &Terrain, patience: Patience, bound: f64) -> Query {
         snap_radius_m: None,
         bound,
         refine: false,
+        exact_ends: false,
+        other_goals: Vec::new(),
         patience,
     }
 }

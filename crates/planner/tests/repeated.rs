@@ -88,6 +88,7 @@ fn a_patched_map_plans_as_if_it_had_been_made_so() {
         let held = before.table(Objective::Energy).tiles_held();
         let (rows, columns) = (random.random_range(1..12), random.random_range(1..12));
         let patch = Patch {
+            areas: None,
             row: random.random_range(0..150 - rows as u64),
             column: random.random_range(0..150 - columns as u64),
             elevation_m: Some(vec![vec![Some(random.random_range(0.0..2.0)); columns]; rows]),

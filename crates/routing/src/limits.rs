@@ -1,6 +1,6 @@
 //! Hard limits on a path, and the three quantities that they are on.
 
-use planner::{Edge, Objective, Weights};
+use planner::{Edge, Objective, Surcharge, Weights};
 
 /// What a path may take at most; what is `None` is not limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,5 +53,5 @@ pub(crate) fn only(at: usize) -> Amounts {
 
 /// Weights as the planner's tables take them.
 pub(crate) fn weights([per_j, per_m, per_s]: Amounts) -> Weights {
-    Weights { per_j, per_m, per_s }
+    Weights { per_j, per_m, per_s, of_surcharge: Surcharge::default() }
 }

@@ -32,6 +32,8 @@ pub fn plan_within(
         let refined = free.refined.filter(|route| limits.hold(&route.total));
         return Ok(Plan { refined, ..free });
     }
+    // Curves to exact ends could break a limit that the lattice's path just keeps.
+    let query = &Query { exact_ends: false, ..query.clone() };
     let mut plan = best_within(planner, query, objective, limits)?;
     if query.refine {
         let refined = refine(planner.lattice(), objective, &plan.route, &query.patience).route;

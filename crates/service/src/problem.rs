@@ -135,6 +135,11 @@ impl Problem {
         }
     }
 
+    /// Areas or a risk of unknown ground, of a request's own, that cannot be.
+    pub fn invalid_areas(error: &terrain::areas::AreaError) -> Self {
+        Problem::new(ProblemType::InvalidRequest, error.to_string()).at(pointer(&error.at))
+    }
+
     /// A robot that cannot be used; `under` is where it stands in the request.
     pub fn invalid_robot(error: &model::Error, under: &str) -> Self {
         let kind = match error {

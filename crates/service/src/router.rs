@@ -52,6 +52,7 @@ fn guarded() -> OpenApiRouter<Engine> {
         .routes(routes!(mission::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
+        .routes(routes!(maps::read_areas))
         .routes(routes!(robots::create, robots::list))
         .routes(routes!(robots::read, robots::remove))
         .routes(routes!(recordings::create, recordings::list))

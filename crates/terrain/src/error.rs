@@ -141,7 +141,7 @@ pub enum Error {
         limit: usize,
     },
     /// A patch that changes nothing.
-    #[error("the patch has no cells: give rows of elevation_m, surface or obstacle")]
+    #[error("the patch has no cells: give rows of elevation_m, surface or obstacle, or areas")]
     EmptyPatch,
     /// A patch that reaches beyond the map.
     #[error(

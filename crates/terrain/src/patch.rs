@@ -4,16 +4,18 @@ use std::{ops::Range, sync::Arc};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Cell, Error, Surfaces, Terrain};
+use crate::{Cell, Error, Surfaces, Terrain, areas::Areas};
 
-/// New values for a rectangle of cells; layers that are left out stay as they are.
+/// New values for a rectangle of cells, or other areas over the map; what is left out stays as it is.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Patch {
-    /// Row of the rectangle's southernmost cells.
+    /// Row of the rectangle's southernmost cells. Default: 0.
+    #[serde(default)]
     pub row: u64,
-    /// Column of its westernmost cells.
+    /// Column of its westernmost cells. Default: 0.
+    #[serde(default)]
     pub column: u64,
     /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,6 +26,10 @@ pub struct Patch {
     /// Obstacles by row and column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<Vec<Vec<bool>>>,
+    /// Areas over the map in place of those that it has: a GeoJSON feature collection, of which one without features takes them away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Object>))]
+    pub areas: Option<serde_json::Value>,
 }
 
 /// A rectangle of cells.
@@ -47,7 +53,11 @@ impl Terrain {
     /// # Errors
     /// A patch without any layer, layers of different shapes, cells off the map, or an absurd elevation.
     pub fn patched(&self, patch: &Patch) -> Result<(Terrain, CellRange), Error> {
-        let changed = self.range_of(patch)?;
+        let has_layers = patch.elevation_m.is_some() || patch.surface.is_some() || patch.obstacle.is_some();
+        let changed = match &patch.areas {
+            Some(_) if !has_layers => CellRange { rows: 0..self.grid.rows, columns: 0..self.grid.columns },
+            _ => self.range_of(patch)?,
+        };
         let mut terrain = self.clone();
         if let Some(rows) = &patch.elevation_m {
             let relative_m = Arc::make_mut(&mut terrain.relative_m);
@@ -76,6 +86,10 @@ impl Terrain {
         }
         if let Some(rows) = &patch.surface {
             terrain.name_surfaces(&changed, rows.iter().flatten().map(Option::as_deref))?;
+        }
+        if let Some(areas) = &patch.areas {
+            let areas = Areas::of(areas, &terrain)?;
+            terrain = terrain.with_areas(areas);
         }
         Ok((terrain, changed))
     }
@@ -150,6 +164,7 @@ mod tests {
             elevation_m: Some(vec![vec![Some(7.5), None], vec![Some(-1.0), Some(2.0)]]),
             obstacle: Some(vec![vec![false, false], vec![true, false]]),
             surface: Some(vec![vec![Some("mud".into()), None], vec![None, Some("mud".into())]]),
+            areas: None,
         };
         let (after, changed) = before.patched(&patch).unwrap();
         assert_eq!((changed.rows, changed.columns), (4..6, 1..3));

@@ -58,6 +58,8 @@ pub enum WarningKind {
     MovedEnds,
     /// The path leads over ground that was filled in.
     FilledGround,
+    /// Stops on the way matter to the energy, which leaves them out.
+    Stops,
     /// Unknown ground is open to the robot.
     UnknownGround,
     /// How the areas' coordinates were read, or what of them means nothing here.

@@ -37,6 +37,7 @@ enum Against {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    arguments.question.refuse_steering("alternatives")?;
     let (terrain, plan) = arguments.question.read(ObjectiveName::Energy)?;
     let plan = arguments.limits.on(plan);
     let mut request = AlternativesRequest {
@@ -59,6 +60,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         reverse: plan.reverse,
         snap_radius_m: plan.snap_radius_m,
         timeout_s: plan.timeout_s,
+        areas: None,
+        unknown_ground: None,
     };
     let plan = request.plan().map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;

@@ -32,6 +32,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         places.iter().map(|place| place.pose_on(&terrain)).collect::<anyhow::Result<Vec<_>>>()
     };
     let mut request = MatrixRequest {
+        areas: None,
+        unknown_ground: None,
         map: None,
         map_id: None,
         robot,

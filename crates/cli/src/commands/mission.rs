@@ -91,6 +91,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         anyhow::Ok(ChargerRequest { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad, power_w, level })
     };
     let mut request = MissionRequest {
+        areas: None,
+        unknown_ground: None,
         map: None,
         map_id: None,
         robot: read_robot(&arguments.robot)?,

@@ -69,6 +69,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let terrain = arguments.map.read()?;
     let goal = |goal: Place| anyhow::Ok(GoalPose::in_metres(goal.on(&terrain)?, goal.heading_rad()));
     let mut request = RangeRequest {
+        areas: None,
+        unknown_ground: None,
         map: None,
         map_id: None,
         robot: read_robot(&arguments.robot)?,

@@ -51,6 +51,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let start = arguments.start.pose_on(&terrain)?;
     let some = |list: &[f64]| (!list.is_empty()).then(|| list.to_vec());
     let mut request = ReachableRequest {
+        areas: None,
+        unknown_ground: None,
         map: None,
         map_id: None,
         robot,

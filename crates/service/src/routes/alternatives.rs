@@ -7,7 +7,7 @@ use terrain::MapFile;
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanAnswer, PlanRequest, StartPose, with_planner},
+    plan::{GoalPose, PlanAnswer, PlanRequest, StartPose, UnknownGroundRequest, with_planner},
     robots::RobotChoice,
 };
 use crate::{
@@ -61,6 +61,12 @@ pub struct AlternativesRequest {
     pub reverse: bool,
     /// How far a start or goal may be moved to ground where the robot can stand. Default: one cell [m].
     pub snap_radius_m: Option<f64>,
+    /// Areas over the map, in place of those that it has, as `/v1/plan` takes them; their cost factors are left out. Default: the
+    /// map's own.
+    #[schema(value_type = Option<Object>)]
+    pub areas: Option<serde_json::Value>,
+    /// Opens unknown ground to the robot; its risk is left out. Default: it is impassable.
+    pub unknown_ground: Option<UnknownGroundRequest>,
     /// Time for the answer; paths that are not proven by then are left out. Default: the service's limit [s].
     #[schema(exclusive_minimum = 0.0)]
     pub timeout_s: Option<f64>,
@@ -154,6 +160,8 @@ impl AlternativesRequest {
             reverse: self.reverse,
             timeout_s: self.timeout_s,
             snap_radius_m: self.snap_radius_m,
+            areas: self.areas.clone(),
+            unknown_ground: self.unknown_ground.clone(),
             ..PlanRequest::plain(self.robot.clone(), self.start, self.goal)
         })
     }
@@ -177,9 +185,9 @@ pub fn answer(
     };
     let found = routing::alternatives(planner, &query, against, &plan.limits()?, request.count)
         .map_err(|error| plan.no_routing(planner, &error))?;
-    let path = |found| PlanAnswer::from(found).warned(planner, plan);
+    let path = |found| PlanAnswer::of(found, planner, plan, patience);
     Ok(AlternativesAnswer {
-        alternatives: found.plans.iter().map(path).collect(),
+        alternatives: found.plans.iter().map(path).collect::<Result<_, Problem>>()?,
         complete: found.complete,
         epsilon: request.epsilon,
         timed_out: found.timed_out,

@@ -5,8 +5,13 @@ use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::plan::{PlanAnswer, PlanRequest, with_planner};
-use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
+use super::plan::{ObjectiveName, PlanAnswer, PlanRequest, with_planner};
+use crate::{
+    Engine, Tenant,
+    answer::Json,
+    body::JsonBody,
+    problem::{Problem, ProblemType},
+};
 
 /// Three paths between the same ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -58,13 +63,19 @@ pub fn answer(
     patience: &Patience,
 ) -> Result<CompareAnswer, Problem> {
     let request = &request.settled(&planner.lattice().terrain)?;
+    if request.partial {
+        let detail = "partial is true, but paths are compared to a goal that all of them reach: ask /v1/plan";
+        return Err(Problem::new(ProblemType::InvalidRequest, detail).at("/partial"));
+    }
     let query = request.query(planner, patience);
     let found = planner.compare(&query).map_err(|error| request.no_plan(planner, &error))?;
-    let path = |plan: &planner::Plan| PlanAnswer::from(plan).warned(planner, request);
+    let path = |plan: &planner::Plan, objective| {
+        PlanAnswer::of(plan, planner, &PlanRequest { objective, ..request.clone() }, patience)
+    };
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
-        energy: path(&found.energy),
-        distance: path(&found.distance),
-        time: path(&found.time),
+        energy: path(&found.energy, ObjectiveName::Energy)?,
+        distance: path(&found.distance, ObjectiveName::Distance)?,
+        time: path(&found.time, ObjectiveName::Time)?,
     })
 }

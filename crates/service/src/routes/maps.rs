@@ -8,7 +8,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use terrain::{MapFile, Patch, Terrain, Warning, io, io::json::JsonText};
+use terrain::{MapFile, Patch, Terrain, Warning, areas::Areas, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
 
 use crate::{
@@ -49,6 +49,9 @@ pub struct MapSummary {
     pub passable_fraction: f64,
     /// Surfaces that the map names.
     pub surfaces: Vec<String>,
+    /// Number of areas over the map.
+    #[serde(default)]
+    pub areas: usize,
     /// Doubts about the map, and what was done to it.
     #[serde(default)]
     pub warnings: Vec<Warning>,
@@ -77,6 +80,7 @@ impl MapSummary {
             elevation_range_m: [terrain.base_m(), terrain.base_m() + f64::from(highest_m)],
             passable_fraction: passable as f64 / grid.cells() as f64,
             surfaces: terrain.surfaces().map_or(Vec::new(), |s| s.names.clone()),
+            areas: terrain.areas().map_or(0, Areas::len),
             warnings: terrain.warnings().to_vec(),
         }
     }
@@ -240,7 +244,28 @@ fn unreadable_query(why: &str) -> Problem {
     Problem::new(ProblemType::InvalidRequest, format!("the query cannot be read: {why}"))
 }
 
-/// Change a rectangle of a map's cells. The changed map is stored beside the other, under its own id; what has been worked
+/// The areas over a map, as they were given.
+#[utoipa::path(
+    get, path = "/v1/maps/{id}/areas", tag = "maps",
+    params(("id" = String, Path, description = "Content hash of the map")),
+    responses(
+        (status = 200, description = "The areas; a feature collection without features where there are none", body = Object, content_type = "application/geo+json"),
+        (status = 404, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn read_areas(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    Id(id): Id,
+) -> Result<Response, Problem> {
+    const NONE: &str = r#"{"type":"FeatureCollection","features":[]}"#;
+    let map = engine.maps().get(&tenant, &id).await?;
+    let text = map.areas().map_or_else(|| NONE.to_owned(), |areas| areas.text().to_owned());
+    Ok(([(header::CONTENT_TYPE, "application/geo+json")], text).into_response())
+}
+
+/// Change a rectangle of a map's cells, or the areas over it. The changed map is stored beside the other, under its own id; what has been worked
 /// out for plans over the other is kept where the change does not touch it.
 #[utoipa::path(
     patch, path = "/v1/maps/{id}", tag = "maps",

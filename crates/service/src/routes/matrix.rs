@@ -9,7 +9,7 @@ use terrain::MapFile;
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, ObjectiveName, PlanRequest, StartPose, with_planner},
+    plan::{GoalPose, ObjectiveName, PlanRequest, StartPose, UnknownGroundRequest, with_planner},
     robots::RobotChoice,
 };
 use crate::{
@@ -48,6 +48,12 @@ pub struct MatrixRequest {
     pub reverse: bool,
     /// How far a place may be moved to ground where the robot can stand. Default: one cell [m].
     pub snap_radius_m: Option<f64>,
+    /// Areas over the map, in place of those that it has, as `/v1/plan` takes them; their cost factors are left out. Default: the
+    /// map's own.
+    #[schema(value_type = Option<Object>)]
+    pub areas: Option<serde_json::Value>,
+    /// Opens unknown ground to the robot; its risk is left out. Default: it is impassable.
+    pub unknown_ground: Option<UnknownGroundRequest>,
     /// Time for the whole matrix. Default: the service's limit [s].
     #[schema(exclusive_minimum = 0.0)]
     pub timeout_s: Option<f64>,
@@ -127,6 +133,8 @@ impl MatrixRequest {
             reverse: self.reverse,
             timeout_s: self.timeout_s,
             snap_radius_m: self.snap_radius_m,
+            areas: self.areas.clone(),
+            unknown_ground: self.unknown_ground.clone(),
             ..PlanRequest::plain(self.robot.clone(), start, GoalPose::at(start))
         })
     }

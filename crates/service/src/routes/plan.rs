@@ -1,6 +1,7 @@
 //! `POST /v1/plan`: one path.
 
 mod document;
+mod steering;
 mod unknown_ground;
 mod warnings;
 mod work;
@@ -26,13 +27,14 @@ use crate::{
     body::JsonBody,
     geojson,
     metrics::CacheLabels,
-    place::{Place, absent},
+    place::{Place, absent, settle_all},
     problem::{Problem, ProblemType},
     route_file,
 };
 
 pub(crate) use document::place_all;
 pub use document::{PlanAnswer, PoseAnswer, RefinedAnswer, SearchAnswer, SnapAnswer, Snapped};
+pub use steering::{ForbidName, GoalHeading, PricesRequest, UnknownGroundRequest};
 pub(crate) use unknown_ground::no_plan_over;
 pub(crate) use work::with_planner;
 
@@ -48,8 +50,14 @@ pub struct PlanRequest {
     pub robot: RobotChoice,
     /// Where the robot stands.
     pub start: StartPose,
-    /// Where it is to go.
+    /// Where it is to go; give this or `goals`.
+    #[serde(default = "GoalPose::absent")]
+    #[schema(required)]
     pub goal: GoalPose,
+    /// Several places of which any will do, at most 64: the path leads to the one that is best to reach (`reached_goal` of the
+    /// answer). Those where the robot cannot stand do not count.
+    #[schema(min_items = 1, max_items = 64)]
+    pub goals: Option<Vec<GoalPose>>,
     /// What the path is to have least of. Default: `energy`.
     #[serde(default)]
     pub objective: ObjectiveName,
@@ -89,6 +97,33 @@ pub struct PlanRequest {
     /// Steepest climb, descent or sideways tilt on the way, up to 1.571, which is π/2. Default: the robot's limits [rad].
     #[schema(exclusive_minimum = 0.0, maximum = 1.571)]
     pub max_slope_rad: Option<f64>,
+    /// Areas over the map, in place of those that it has: a GeoJSON feature collection of polygons and lines, in longitude and latitude
+    /// where the map has a `crs`, else in its metres. Their properties may be `surface`, `keep_out`, `max_speed_mps`, `cost_factor`
+    /// and `one_way_rad`. Default: the map's own.
+    #[schema(value_type = Option<Object>)]
+    pub areas: Option<serde_json::Value>,
+    /// Opens unknown ground to the robot. Default: it is impassable.
+    pub unknown_ground: Option<UnknownGroundRequest>,
+    /// What manoeuvres weigh in comparisons besides what they take. Default: nothing.
+    pub prices: Option<PricesRequest>,
+    /// What the robot is not to do. Default: nothing.
+    #[serde(default)]
+    pub forbid: Vec<ForbidName>,
+    /// No turn is tighter; above 0 the robot does not turn on the spot. Default: half its slip track for arcs [m].
+    #[schema(minimum = 0.0)]
+    pub least_radius_m: Option<f64>,
+    /// Whether the best part of the way is the answer where no path leads to the goal: to the place nearest to it that can be reached
+    /// (`short_of_goal_m` of the answer). Default: false.
+    #[serde(default)]
+    pub partial: bool,
+    /// Whether the path begins and ends exactly where it is asked to, by curves to and from the lattice's path, where ground and
+    /// obstacles allow them; else at centres of cells. Default: true.
+    #[serde(default = "yes")]
+    pub exact_ends: bool,
+    /// Whether cost factors and risks count; amounts of other questions leave them out.
+    #[serde(skip, default = "yes")]
+    #[schema(ignore)]
+    pub preferences: bool,
 }
 
 /// Where the robot stands.
@@ -135,6 +170,9 @@ pub struct GoalPose {
     /// Counter-clockwise from east; turned to the nearest of sixteen. Default: any; −6.3 to 6.3 [rad].
     #[schema(minimum = -6.3, maximum = 6.3)]
     pub heading_rad: Option<f64>,
+    /// `either`: the opposite of `heading_rad` will do as well.
+    #[serde(default)]
+    pub heading: Option<GoalHeading>,
     /// Any pose this close will do. Default: 0, the goal's own cell [m].
     #[serde(default)]
     pub tolerance_m: f64,
@@ -214,13 +252,18 @@ pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> 
     let query = request.query(planner, patience);
     let objective = request.objective.into();
     let limits = request.limits()?;
+    request.check_limits(planner.lattice().has_preferences())?;
     if request.hold_goal {
         planner.hold_goal(&query, objective).map_err(|e| request.no_plan(planner, &e))?;
     }
-    let found = routing::plan_within(planner, &query, objective, &limits)
+    let found = match request.partial {
+        true => planner.plan_partly(&query, objective).map_err(routing::Error::Planner),
+        false => routing::plan_within(planner, &query, objective, &limits),
+    };
+    let found = found
         .map_err(|error| request.no_routing(planner, &error))
         .map_err(|problem| request.too_steep(planner, problem, patience))?;
-    Ok(PlanAnswer::from(&found).warned(planner, request))
+    PlanAnswer::of(&found, planner, request, patience)
 }
 
 /// A time that a request allows; `None` where no clock counts that far, which is no limit.
@@ -258,18 +301,23 @@ impl StartPose {
 impl GoalPose {
     /// A goal in the map's metres.
     pub fn in_metres([x_m, y_m]: [f64; 2], heading_rad: Option<f64>) -> Self {
-        GoalPose { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad, tolerance_m: 0.0 }
+        GoalPose { x_m, y_m, lon_deg: None, lat_deg: None, heading_rad, heading: None, tolerance_m: 0.0 }
     }
 
     /// Where a start is, under any heading.
     pub(crate) fn at(start: StartPose) -> Self {
         let StartPose { x_m, y_m, lon_deg, lat_deg, .. } = start;
-        GoalPose { x_m, y_m, lon_deg, lat_deg, heading_rad: None, tolerance_m: 0.0 }
+        GoalPose { x_m, y_m, lon_deg, lat_deg, heading_rad: None, heading: None, tolerance_m: 0.0 }
     }
 }
 
 impl PlanRequest {
-    /// A request with nothing but defaults, not to be refined.
+    /// A request with nothing but defaults.
+    pub fn of(robot: RobotChoice, start: StartPose, goal: GoalPose) -> Self {
+        PlanRequest { refine: true, exact_ends: true, preferences: true, ..Self::plain(robot, start, goal) }
+    }
+
+    /// A request for amounts, which leaves out what only comparisons weigh; the path is not refined and has its ends on the lattice.
     pub(crate) fn plain(robot: RobotChoice, start: StartPose, goal: GoalPose) -> Self {
         PlanRequest {
             map: None,
@@ -277,6 +325,7 @@ impl PlanRequest {
             robot,
             start,
             goal,
+            goals: None,
             objective: ObjectiveName::Energy,
             speed_mps: None,
             power_model: PowerModel::default(),
@@ -290,6 +339,14 @@ impl PlanRequest {
             max_energy_j: None,
             max_distance_m: None,
             max_slope_rad: None,
+            areas: None,
+            unknown_ground: None,
+            prices: None,
+            forbid: Vec::new(),
+            least_radius_m: None,
+            partial: false,
+            exact_ends: false,
+            preferences: false,
         }
     }
 
@@ -299,8 +356,15 @@ impl PlanRequest {
     /// An end that is not given, or in degrees that the map cannot place.
     pub(crate) fn settled(&self, terrain: &Terrain) -> Result<Self, Problem> {
         let mut settled = PlanRequest { map: None, ..self.clone() };
+        settled.check_steering()?;
         settled.start.settle(terrain, "/start")?;
-        settled.goal.settle(terrain, "/goal")?;
+        match &mut settled.goals {
+            None => settled.goal.settle(terrain, "/goal")?,
+            Some(goals) => {
+                settle_all(goals, terrain, "/goals")?;
+                settled.goal = goals[0];
+            }
+        }
         Ok(settled)
     }
 
@@ -380,7 +444,9 @@ impl PlanRequest {
     /// An unusable robot, one that does not suit the ground, or patience that ended.
     pub fn planner(&self, terrain: &Terrain, patience: &Patience) -> Result<Planner, Problem> {
         let robot = self.limited_robot()?;
-        let planner = Planner::prepare(terrain, &robot, self.settings(&robot), patience);
+        let own = self.ground(terrain)?;
+        let planner =
+            Planner::prepare(own.as_ref().unwrap_or(terrain), &robot, self.settings(&robot), patience);
         planner.map_err(|e| Problem::no_plan(&e))
     }
 
@@ -392,7 +458,12 @@ impl PlanRequest {
         patience: &Patience,
     ) -> Result<Arc<Planner>, Problem> {
         let robot = self.limited_robot()?;
-        let planner = engine.planners().get(map_id, terrain, &robot, self.settings(&robot), patience);
+        let own = self.ground(terrain)?;
+        let (key, terrain) = match &own {
+            Some(own) => (self.ground_key(map_id), own),
+            None => (map_id.to_owned(), terrain),
+        };
+        let planner = engine.planners().get(&key, terrain, &robot, self.settings(&robot), patience);
         let (planner, at_hand) = planner.map_err(|e| Problem::no_plan(&e))?;
         let outcome = if at_hand { "hit" } else { "miss" };
         engine.metrics().planners.get_or_create(&CacheLabels { outcome }).inc();
@@ -405,7 +476,7 @@ impl PlanRequest {
             speed_mps: self.speed_mps.unwrap_or(usual.speed_mps),
             power_model: self.power_model,
             reverse: self.reverse,
-            ..usual
+            ..self.steered(usual)
         }
     }
 
@@ -430,19 +501,13 @@ impl PlanRequest {
     pub(crate) fn query(&self, planner: &Planner, patience: &Patience) -> Query {
         Query {
             start: Start { x_m: self.start.x_m, y_m: self.start.y_m, heading_rad: self.start.heading_rad },
-            goal: Goal {
-                x_m: self.goal.x_m,
-                y_m: self.goal.y_m,
-                heading_rad: self.goal.heading_rad,
-                either_way: false,
-                tolerance_m: self.goal.tolerance_m,
-            },
+            goal: Goal::from(&self.goal),
             settings: planner.lattice().settings,
-            other_goals: Vec::new(),
+            other_goals: self.goals.iter().flat_map(|goals| goals.iter().skip(1)).map(Goal::from).collect(),
             snap_radius_m: self.snap_radius_m,
             bound: self.bound,
             refine: self.refine,
-            exact_ends: false,
+            exact_ends: self.exact_ends,
             patience: patience.clone(),
         }
     }

@@ -2,10 +2,13 @@
 
 use std::time::Duration;
 
-use planner::{Plan, Pose, Snap};
+use planner::{Objective, Patience, Plan, Planner, Pose, Snap};
 use serde::{Deserialize, Serialize};
 use terrain::{Terrain, Warning};
 use utoipa::ToSchema;
+
+use super::PlanRequest;
+use crate::problem::Problem;
 
 /// A path with its predicted energy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -41,6 +44,25 @@ pub struct PlanAnswer {
     /// Coordinate reference system of the map, `EPSG:` and a code or WKT; absent where it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
+    /// Energy that stops and changes of speed on the way take besides, which `energy_j` leaves out: kinetic energy that the motors do
+    /// not give back. Speeding up at the start and stopping at the end are not among them [J].
+    #[serde(default)]
+    pub stops_j: f64,
+    /// Number of stops on the way: reversals, and turns on the spot between driving and driving on.
+    #[serde(default)]
+    pub stops: usize,
+    /// Least room on the way between the robot's outline and what it must not touch; at most 31 cells less half its diagonal [m].
+    #[serde(default)]
+    pub clearance_m: f64,
+    /// What preferences add in comparisons, in the objective's unit: cost factors of areas, risks and prices; absent where none count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preferences: Option<f64>,
+    /// Which of `goals` the path leads to, from 0; absent where the request has one goal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reached_goal: Option<usize>,
+    /// How far from the goal, in a straight line, a partial path ends; absent where the path leads to the goal [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub short_of_goal_m: Option<f64>,
     /// Doubts about the map and about the path over it.
     #[serde(default)]
     pub warnings: Vec<Warning>,
@@ -144,8 +166,41 @@ impl From<&Plan> for PlanAnswer {
                 timed_out: plan.search.timed_out,
             },
             crs: None,
+            stops_j: 0.0,
+            stops: planner::stops(&plan.route),
+            clearance_m: 0.0,
+            preferences: None,
+            reached_goal: None,
+            short_of_goal_m: plan.short_of_goal_m,
             warnings: Vec::new(),
         }
+    }
+}
+
+impl PlanAnswer {
+    /// The answer to a request: a path with its place on earth, what lies beside it, and doubts about it and its map.
+    ///
+    /// # Errors
+    /// Time that ran out.
+    pub(crate) fn of(
+        plan: &Plan,
+        planner: &Planner,
+        request: &PlanRequest,
+        patience: &Patience,
+    ) -> Result<Self, Problem> {
+        let lattice = planner.lattice();
+        let late = || Problem::no_plan(&planner::Error::Timeout { expanded: plan.search.expanded });
+        let objective: Objective = request.objective.into();
+        let total = &plan.route.total;
+        let added = objective.compared(total) - objective.amount(total);
+        let answer = PlanAnswer {
+            stops_j: planner::stops_j(&lattice.robot, &plan.route),
+            clearance_m: planner::least_room_m(lattice, &plan.route, patience).ok_or_else(late)?,
+            preferences: lattice.has_preferences().then_some(added),
+            reached_goal: request.goals.as_ref().map(|_| plan.goal),
+            ..PlanAnswer::from(plan)
+        };
+        Ok(answer.warned(planner, request))
     }
 }
 

@@ -19,6 +19,7 @@ impl PlanAnswer {
             coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m),
             moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
             filled_ground(&lattice.terrain, &answer.poses),
+            stops(&answer, request),
         ];
         answer.warnings.extend(own.into_iter().flatten());
         answer
@@ -56,6 +57,22 @@ fn moved_ends(answer: &PlanAnswer, request: &PlanRequest, cell_size_m: f64) -> O
         let detail =
             format!("{moves}, which matters more to the energy than the uncertainty that is stated of it");
         Warning::new(WarningKind::MovedEnds, detail)
+    })
+}
+
+/// A warning where the stops on the way, which the energy leaves out, take more than the uncertainty that is stated of it.
+fn stops(answer: &PlanAnswer, request: &PlanRequest) -> Option<Warning> {
+    let [low_j, high_j] = answer.energy_interval_j;
+    (answer.stops_j > (high_j - low_j) / 2.0).then(|| {
+        let (stops_j, count) = (answer.stops_j, answer.stops);
+        let cure = match request.prices.is_some_and(|prices| prices.stops) {
+            true => "add stops_j to it",
+            false => "add stops_j to it, and weigh stops with prices.stops",
+        };
+        let detail = format!(
+            "{count} stops and changes of speed on the way take some {stops_j:.0} J, which energy_j leaves out: {cure}"
+        );
+        Warning::new(WarningKind::Stops, detail)
     })
 }
 

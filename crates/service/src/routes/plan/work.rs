@@ -25,6 +25,7 @@ pub(crate) async fn with_planner<T: Send + 'static>(
 ) -> Result<T, Problem> {
     // The time that a request gives itself begins when it has been read.
     let deadline = request.deadline()?;
+    request.check_steering()?;
     request.robot.look_up(engine.robots(), tenant).await?;
     let stored = choose_map(engine, tenant, request).await?;
     let (inline, request) = (request.map.take(), request.clone());
