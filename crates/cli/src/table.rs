@@ -12,12 +12,44 @@ pub(crate) fn plan(answer: &PlanAnswer, objective: ObjectiveName) -> String {
     let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
     let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
-        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nsearch     {} states in {:.0} ms, {}{refined}",
+        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nclearance  {:.2} m{}\nsearch     {} states in {:.0} ms, {}{refined}",
         answer.descent_m,
+        answer.clearance_m,
+        steered(answer, objective),
         answer.search.expanded,
         answer.search.duration_ms,
         quality(answer, objective),
     )
+}
+
+/// What stops take, what preferences weigh, and where the path leads if that was open, a line each.
+fn steered(answer: &PlanAnswer, objective: ObjectiveName) -> String {
+    let mut text = String::new();
+    if answer.stops > 0 {
+        let word = if answer.stops == 1 { "stop" } else { "stops" };
+        text.push_str(&format!(
+            "\nstops      {} {word} on the way, {} beside the energy",
+            answer.stops,
+            energy(answer.stops_j)
+        ));
+    }
+    if let Some(added) = answer.preferences {
+        let added = match objective {
+            ObjectiveName::Energy => energy(added),
+            ObjectiveName::Distance => format!("{added:.1} m"),
+            ObjectiveName::Time => format!("{added:.1} s"),
+        };
+        text.push_str(&format!("\nweighed    {added} more by prices, cost factors and risks"));
+    }
+    if let Some(goal) = answer.reached_goal {
+        text.push_str(&format!("\ngoal       number {} of those given", goal + 1));
+    }
+    if let Some(short_m) = answer.short_of_goal_m {
+        text.push_str(&format!(
+            "\npartial    no path leads to the goal; this one ends {short_m:.1} m from it"
+        ));
+    }
+    text
 }
 
 /// The path off the lattice, if there is one.

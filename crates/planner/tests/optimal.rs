@@ -8,11 +8,12 @@ use petgraph::{
     graph::NodeIndex,
 };
 use planner::{
-    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Query,
-    Search, Settings, State, Workspace, plan, search,
+    CostTable, Error, FieldEnds, GoalField, HEADINGS, Heading, Lattice, Objective, Outcome, Patience, Prices,
+    Query, Search, Settings, State, Workspace, plan, search,
 };
-use rand::RngExt;
-use terrain::{Cell, Grid, Terrain};
+use rand::{Rng, RngExt};
+use serde_json::json;
+use terrain::{Cell, Grid, Terrain, areas::Areas};
 
 mod ground;
 
@@ -76,16 +77,60 @@ fn the_best_path_is_so_too_where_cells_are_small_and_the_body_may_touch_the_grou
     assert!(reached > 8 && reached < compared, "{reached} of {compared} maps had a path");
 }
 
+/// Ground with a few areas over it: rectangles and lines of every effect.
+fn with_areas(random: &mut impl Rng, terrain: Terrain) -> Terrain {
+    let features: Vec<_> = (0..random.random_range(1..5))
+        .map(|_| {
+            let mut place = || {
+                terrain.grid.at_fraction_m(random.random_range(0.0..1.0), random.random_range(0.0..1.0))
+            };
+            let ([ax, ay], [bx, by]) = (place(), place());
+            let geometry = match random.random_bool(0.7) {
+                true => json!({"type": "Polygon", "coordinates": [[[ax, ay], [bx, ay], [bx, by], [ax, by], [ax, ay]]]}),
+                false => json!({"type": "LineString", "coordinates": [[ax, ay], [bx, by]]}),
+            };
+            let properties = match random.random_range(0..6) {
+                0 => json!({"surface": "sandy_loam"}),
+                1 => json!({"max_speed_mps": random.random_range(0.1..0.6)}),
+                2 => json!({"cost_factor": random.random_range(0.1..8.0)}),
+                3 => json!({"cost_factor": 2.5, "surface": "sandy_loam", "max_speed_mps": 0.3}),
+                4 => json!({"one_way_rad": random.random_range(-3.1..3.1)}),
+                _ => json!({"keep_out": ax + ay > bx + by, "cost_factor": 1.5}),
+            };
+            json!({"type": "Feature", "geometry": geometry, "properties": properties})
+        })
+        .collect();
+    let areas = Areas::of(&json!({"type": "FeatureCollection", "features": features}), &terrain).unwrap();
+    terrain.with_areas(areas)
+}
+
+/// Settings with some prices and bans.
+fn with_preferences(random: &mut impl Rng, settings: Settings) -> Settings {
+    let prices = Prices {
+        reverse_j_per_m: random.random_range(0.0..200.0),
+        reverse_s_per_m: random.random_range(0.0..5.0),
+        spin_j_per_rad: random.random_range(0.0..200.0),
+        spin_s_per_rad: random.random_range(0.0..5.0),
+        ..Prices::default()
+    };
+    Settings {
+        prices: if random.random_bool(0.7) { prices } else { Prices::default() },
+        spin: random.random_bool(0.7),
+        least_radius_m: if random.random_bool(0.2) { 1.2 } else { 0.0 },
+        ..settings
+    }
+}
+
 #[test]
 fn the_best_path_is_so_too_with_areas_prices_and_bans() {
     let mut random = ground::random(23);
     let (mut compared, mut reached) = (0, 0);
     while compared < 240 {
         let terrain = ground::small_terrain(&mut random, 9);
-        let terrain = ground::with_areas(&mut random, terrain);
+        let terrain = with_areas(&mut random, terrain);
         let robot = ground::some_robot(&mut random, [0.0, 1.0][compared % 2]);
         let mut query = ground::some_query(&mut random, &terrain, &robot);
-        query.settings = ground::with_preferences(&mut random, query.settings);
+        query.settings = with_preferences(&mut random, query.settings);
         let objective =
             [Objective::Energy, Objective::Energy, Objective::Distance, Objective::Time][compared % 4];
         let Some(is_reached) = is_best(&terrain, &robot, &query, objective) else { continue };

@@ -4,11 +4,10 @@
 
 use model::{Robot, builtin};
 use petgraph::graph::{DiGraph, NodeIndex};
-use planner::{CostTable, Goal, Lattice, Objective, Patience, Prices, Query, Settings, Start};
+use planner::{CostTable, Goal, Lattice, Objective, Patience, Query, Settings, Start};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use serde_json::json;
-use terrain::{Cell, Grid, Surfaces, Terrain, areas::Areas, synthetic};
+use terrain::{Cell, Grid, Surfaces, Terrain, synthetic};
 
 pub(crate) fn random(seed: u64) -> Pcg64Mcg {
     Pcg64Mcg::seed_from_u64(seed)
@@ -59,50 +58,6 @@ pub(crate) fn rough_terrain(random: &mut impl Rng, side: usize) -> Terrain {
         z[random.random_range(0..side * side)] = f64::NAN;
     }
     Terrain::new(grid, &z).unwrap()
-}
-
-/// Ground with a few areas over it: rectangles and lines of every effect.
-pub(crate) fn with_areas(random: &mut impl Rng, terrain: Terrain) -> Terrain {
-    let features: Vec<_> = (0..random.random_range(1..5))
-        .map(|_| {
-            let mut place = || {
-                terrain.grid.at_fraction_m(random.random_range(0.0..1.0), random.random_range(0.0..1.0))
-            };
-            let ([ax, ay], [bx, by]) = (place(), place());
-            let geometry = match random.random_bool(0.7) {
-                true => json!({"type": "Polygon", "coordinates": [[[ax, ay], [bx, ay], [bx, by], [ax, by], [ax, ay]]]}),
-                false => json!({"type": "LineString", "coordinates": [[ax, ay], [bx, by]]}),
-            };
-            let properties = match random.random_range(0..6) {
-                0 => json!({"surface": "sandy_loam"}),
-                1 => json!({"max_speed_mps": random.random_range(0.1..0.6)}),
-                2 => json!({"cost_factor": random.random_range(0.1..8.0)}),
-                3 => json!({"cost_factor": 2.5, "surface": "sandy_loam", "max_speed_mps": 0.3}),
-                4 => json!({"one_way_rad": random.random_range(-3.1..3.1)}),
-                _ => json!({"keep_out": ax + ay > bx + by, "cost_factor": 1.5}),
-            };
-            json!({"type": "Feature", "geometry": geometry, "properties": properties})
-        })
-        .collect();
-    let areas = Areas::of(&json!({"type": "FeatureCollection", "features": features}), &terrain).unwrap();
-    terrain.with_areas(areas)
-}
-
-/// Settings with some prices and bans.
-pub(crate) fn with_preferences(random: &mut impl Rng, settings: Settings) -> Settings {
-    let prices = Prices {
-        reverse_j_per_m: random.random_range(0.0..200.0),
-        reverse_s_per_m: random.random_range(0.0..5.0),
-        spin_j_per_rad: random.random_range(0.0..200.0),
-        spin_s_per_rad: random.random_range(0.0..5.0),
-        ..Prices::default()
-    };
-    Settings {
-        prices: if random.random_bool(0.7) { prices } else { Prices::default() },
-        spin: random.random_bool(0.7),
-        least_radius_m: if random.random_bool(0.2) { 1.2 } else { 0.0 },
-        ..settings
-    }
 }
 
 /// A Husky with its own whims: regeneration, hotel load, slip track, centre of mass.
