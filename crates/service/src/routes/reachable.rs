@@ -350,7 +350,7 @@ impl Found {
     /// A raster that cannot be written.
     pub fn raster(&self) -> Result<Vec<u8>, Problem> {
         let energy_j: Vec<f32> = self.reach.energy_j.iter().map(|energy_j| *energy_j as f32).collect();
-        geotiff::write(&self.reach.grid, &energy_j)
+        geotiff::write(&self.reach.grid, &energy_j, self.crs.as_deref())
             .map_err(|error| Problem::new(ProblemType::Internal, format!("the raster: {error}")))
     }
 }
