@@ -17,7 +17,7 @@ use terrain::{MapFile, Warning, crs::Earth, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, no_plan_over, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, map_warnings, no_plan_over, with_planner},
     robots::RobotChoice,
 };
 use crate::{
@@ -269,7 +269,7 @@ impl Found {
                     other => Problem::no_routing(other),
                 }
             })?;
-        let (warnings, crs) = (terrain.warnings().to_vec(), terrain.crs.clone());
+        let (warnings, crs) = (map_warnings(planner), terrain.crs.clone());
         Ok(Found { reach, kind: request.kind, energies_j, warnings, earth: terrain.earth().ok(), crs })
     }
 
