@@ -43,6 +43,7 @@ pub mod routes;
 mod serve;
 mod store;
 mod tenant;
+mod tiles;
 mod turns;
 
 pub use access::{Access, TokenError, Tokens};
@@ -56,3 +57,4 @@ pub use router::{openapi, router};
 pub use serve::{Running, serve, start};
 pub use store::StoreError;
 pub use tenant::{InvalidTenant, Tenant};
+pub use tiles::{Tiles, TilesError};

@@ -52,6 +52,8 @@ pub enum WarningKind {
     Warped,
     /// Parts of the file that were never written hold zero.
     UnwrittenBlocks,
+    /// A file beside the map contradicts it, or could not be used.
+    BesideFile,
     /// Cells far larger than the robot.
     CoarseCells,
     /// Moving the ends to the centres of cells matters to the energy.

@@ -6,11 +6,11 @@ use mission::{
 };
 use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Terrain};
+use terrain::{MapFile, Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, UnknownGroundRequest, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, with_planner},
     robots::RobotChoice,
 };
 use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
@@ -132,6 +132,9 @@ pub struct RangeAnswer {
     pub replanned: Option<ReplannedAnswer>,
     /// How far the charge carries; null where a goal was given.
     pub carries: Option<CarriesAnswer>,
+    /// Doubts about the map.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// One drive of everything as the files say.
@@ -310,7 +313,8 @@ pub fn answer(
         seed: request.seed,
     };
     let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
-    Ok(RangeAnswer::from(&found).placed(&planner.lattice().terrain))
+    let answer = RangeAnswer { warnings: map_warnings(planner), ..RangeAnswer::from(&found) };
+    Ok(answer.placed(&planner.lattice().terrain))
 }
 
 impl From<&Range> for RangeAnswer {
@@ -340,6 +344,7 @@ impl From<&Range> for RangeAnswer {
             best_speed: (&found.best_speed).into(),
             replanned: found.replanned.as_ref().map(ReplannedAnswer::from),
             carries: found.carries.as_ref().map(CarriesAnswer::from),
+            warnings: Vec::new(),
         }
     }
 }

@@ -9,14 +9,20 @@ use super::{PlanAnswer, PlanRequest, PoseAnswer};
 /// stands for ground that the robot climbs and descends many times over.
 const COARSE_WHEELBASES: f64 = 10.0;
 
+/// Doubts about a planner's map that hold for every path over it.
+pub(crate) fn map_warnings(planner: &Planner) -> Vec<Warning> {
+    let lattice = planner.lattice();
+    let coarse = coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m);
+    lattice.terrain.warnings().iter().cloned().chain(coarse).collect()
+}
+
 impl PlanAnswer {
     /// The answer with its place on earth and doubts about the map and about this path over it.
     pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest) -> Self {
         let lattice = planner.lattice();
         let mut answer = self.placed(&lattice.terrain);
-        answer.warnings = lattice.terrain.warnings().to_vec();
+        answer.warnings = map_warnings(planner);
         let own = [
-            coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m),
             moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
             filled_ground(&lattice.terrain, &answer.poses),
             stops(&answer, request),
