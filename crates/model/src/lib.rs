@@ -8,7 +8,6 @@
 //! side up, yaw rate positive turning left; power positive when drawn from the battery.
 
 mod balance;
-mod battery;
 pub mod builtin;
 mod error;
 pub mod fit;
@@ -26,7 +25,6 @@ mod motor;
 pub mod paper;
 mod power;
 pub mod robot;
-mod robot_limits;
 pub mod rolling;
 mod sides;
 pub mod skid;

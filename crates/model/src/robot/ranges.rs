@@ -3,7 +3,8 @@
 //! They are wide enough for anything from a desk toy to a mining loader and narrow enough that a
 //! value in the wrong unit (millimetres, degrees, per cent) falls outside.
 
-use crate::{Error, Robot, battery::Battery, knowledge, known_limits};
+use super::{Battery, Robot};
+use crate::{Error, knowledge, known_limits};
 
 const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 
