@@ -9,6 +9,7 @@
 
 mod balance;
 pub mod builtin;
+pub mod data_sheet;
 mod error;
 pub mod fit;
 mod gravity;
@@ -29,6 +30,7 @@ pub mod rolling;
 mod sides;
 pub mod skid;
 pub mod thermal;
+pub mod worth;
 
 pub use balance::{Friction, FrictionShape};
 pub use error::Error;

@@ -20,7 +20,7 @@ pub use self::{
     limits::Limits,
     motors::{Motor, Motors},
     surface::{PaperSurface, SpeedFriction, Surface},
-    uncertainty::Uncertainty,
+    uncertainty::{NORMAL_95, Uncertain, Uncertainty, interval},
 };
 use crate::{
     Error, Sides,

@@ -25,6 +25,20 @@ pub struct Motors {
     pub regeneration: f64,
 }
 
+impl Motors {
+    /// The same motor on both sides, of copper and ferrite.
+    pub fn alike(motor: Motor) -> Self {
+        Motors {
+            left: motor,
+            right: motor,
+            reference_temperature_c: reference_temperature_c(),
+            resistance_per_k: resistance_per_k(),
+            motor_constant_per_k: motor_constant_per_k(),
+            regeneration: regeneration(),
+        }
+    }
+}
+
 /// Equivalent motor constants of one side (eq. 2, Table I).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]

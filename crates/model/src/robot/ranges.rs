@@ -30,6 +30,7 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
         ("uncertainty.k1", u.k1),
         ("uncertainty.k2", u.k2),
         ("uncertainty.mass_kg", u.mass_kg),
+        ("uncertainty.hotel_power_w", u.hotel_power_w),
     ] {
         within(field, value, 0.0, 1.0, "give a relative sigma, 0.1 for 10 %")?;
     }
