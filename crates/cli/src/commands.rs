@@ -14,5 +14,6 @@ pub(crate) mod predict;
 pub(crate) mod prove;
 pub(crate) mod range;
 pub(crate) mod reachable;
+pub(crate) mod robot;
 pub(crate) mod serve;
 pub(crate) mod simulate;

@@ -298,6 +298,12 @@ pub fn example_robot() -> RobotFile {
         ]),
         default_surface: "marble".into(),
         uncertainty: Uncertainty::default(),
+        ground_clearance_m: None,
+        source: serde_json::Value::Null,
+        provenance: serde_json::Value::Null,
+        posterior: serde_json::Value::Null,
+        model_error: serde_json::Value::Null,
+        noise: serde_json::Value::Null,
     }
 }
 
