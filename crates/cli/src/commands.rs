@@ -15,5 +15,6 @@ pub(crate) mod prove;
 pub(crate) mod range;
 pub(crate) mod reachable;
 pub(crate) mod robot;
+pub(crate) mod schema;
 pub(crate) mod serve;
 pub(crate) mod simulate;

@@ -135,9 +135,9 @@ pub struct Description {
 const SLIP_TRACK_RATIO: f64 = 1.5;
 /// Electronics over mass [W/kg]; an assumption: capacity over standby time in Clearpath's manuals gives 1.1 for a Husky A300, 1.2 for
 /// an A200 and 2.0 for a Jackal, whose computers are small for none.
-const HOTEL_W_PER_KG: f64 = 1.0;
-/// Relative one-sigma uncertainty of a hotel power from it [-].
-const HOTEL_SIGMA: f64 = 0.35;
+const HOTEL_W_PER_KG: f64 = 1.2;
+/// Relative one-sigma uncertainty of a hotel power from it [-]: 95 % are 0.7 to 2.2 W/kg.
+const HOTEL_SIGMA: f64 = 0.30;
 /// Relative one-sigma uncertainty of a mass from a data sheet, which is that of an empty robot [-].
 const MASS_SIGMA: f64 = 0.07;
 /// Relative one-sigma uncertainty of a mass from a balance [-].
@@ -253,7 +253,7 @@ impl DataSheet {
                 "W",
                 Some(HOTEL_SIGMA),
                 Provenance::Borrowed,
-                "1 W for each kilogram, as robots of Clearpath stand by with; read it off while it stands",
+                "1.2 W for each kilogram, as robots of Clearpath stand by with; read it off while it stands",
             ),
         });
         found.push(match self.regeneration {
@@ -451,7 +451,7 @@ mod tests {
             assert_eq!(constant.provenance, Provenance::Borrowed, "{constant:?}");
             assert!(found.robot.source.as_ref().unwrap().contains(&constant.because));
         }
-        assert_eq!(found.robot.uncertainty.k1, 1.0);
+        assert_eq!(found.robot.uncertainty.k1, 0.80);
         assert_eq!(found.robot.provenance_of("motors.left.k2"), Some(Provenance::Borrowed));
         assert_eq!(Robot::from_json(&serde_json::to_string(&found.robot).unwrap()).unwrap(), found.robot);
     }

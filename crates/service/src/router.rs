@@ -20,6 +20,7 @@ use crate::{
         alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, metrics, mission, page, plan,
         range, reachable, recordings, robots, status,
     },
+    schemas,
 };
 
 #[derive(OpenApi)]
@@ -99,6 +100,7 @@ pub fn router(engine: Engine, access: &Access) -> Router {
     let reference = SwaggerUi::new("/docs").config(Config::from("/openapi.json"));
     let routes = routes
         .merge(page::routes())
+        .merge(schemas::routes())
         .merge(reference)
         .route(
             "/openapi.json",

@@ -58,6 +58,8 @@ pub enum WarningKind {
     MovedEnds,
     /// The path leads over ground that was filled in.
     FilledGround,
+    /// Constants of the robot are borrowed from other robots.
+    BorrowedConstants,
 }
 
 impl WarningKind {

@@ -31,8 +31,11 @@ const RESISTANCE_SIGMA: f64 = 0.25;
 const COPPER_SHARE: f64 = 0.25;
 /// Relative one-sigma uncertainty of a k1 from it [-]: 95 % lie within a factor of 4.
 const COPPER_SHARE_SIGMA: f64 = 0.70;
-/// Relative one-sigma uncertainty of a k1 that is a Husky's, brought to another mass and speed [-]: within a factor of 7.
-const BORROWED_K1_SIGMA: f64 = 1.0;
+/// Rated power of a side over mass and top speed where nothing is known of the motors [W s/(kg m)]; an assumption: between 1.4, of
+/// which [`COPPER_SHARE`] makes the k1 of a Husky A200, and 7.4 of a Jackal of 17 kg and 2 m/s, whose two motors have 500 W.
+const SPECIFIC_POWER: f64 = 3.2;
+/// Relative one-sigma uncertainty of a k1 from it, which puts both of them one sigma off [-].
+const SPECIFIC_POWER_SIGMA: f64 = 0.80;
 
 /// Motor constants of a side with their uncertainty and reasons.
 pub(super) struct DriveConstants {
@@ -52,7 +55,6 @@ pub(super) struct Load {
 pub(super) fn constants(drive: &Drive, load: Load) -> Result<DriveConstants, Error> {
     check(drive)?;
     let husky = builtin::husky_a200().motors;
-    let husky_k1 = (husky.left.k1_w_per_n2 + husky.right.k1_w_per_n2) / 2.0;
     let husky_k2 = (husky.left.k2 + husky.right.k2) / 2.0;
     let (n, r_m) = (f64::from(drive.motors_per_side), load.wheel_radius_m);
     let mut k2 = match drive.gear_efficiency {
@@ -151,10 +153,13 @@ pub(super) fn constants(drive: &Drive, load: Load) -> Result<DriveConstants, Err
             (constant("k1", k1, K1_UNIT, COPPER_SHARE_SIGMA, Provenance::Borrowed, because), None)
         }
         MotorSheet::Unknown => {
-            let size = load.mass_kg / builtin::HUSKY_KG;
-            let k1 = husky_k1 * load.max_wheel_speed_mps / builtin::HUSKY_TOP_MPS / size;
-            let because = "a Husky A200's (Dogru & Marques 2018, Table I), with the top speed over the mass: motors whose heat is the same share of their power".into();
-            (constant("k1", k1, K1_UNIT, BORROWED_K1_SIGMA, Provenance::Borrowed, because), None)
+            let power_w = SPECIFIC_POWER * load.mass_kg * load.max_wheel_speed_mps;
+            let k1 = COPPER_SHARE * load.max_wheel_speed_mps.powi(2) / power_w;
+            let because = format!(
+                "c u² / P, a side's P = {power_w:.0} W at top speed u = {} m/s taken from mass and speed, of which c = {COPPER_SHARE} heats the winding (assumed): give the motors' data sheet",
+                load.max_wheel_speed_mps
+            );
+            (constant("k1", k1, K1_UNIT, SPECIFIC_POWER_SIGMA, Provenance::Borrowed, because), None)
         }
     };
     let force_n_per_a = torque_nm_per_a.map(|torque| torque / r_m);

@@ -2,7 +2,7 @@
 
 mod document;
 mod unknown_ground;
-mod warnings;
+pub(crate) mod warnings;
 mod work;
 
 use std::{

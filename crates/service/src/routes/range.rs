@@ -6,11 +6,11 @@ use mission::{
 };
 use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Terrain};
+use terrain::{MapFile, Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, with_planner},
+    plan::{GoalPose, PlanRequest, StartPose, warnings::borrowed_constants, with_planner},
     robots::RobotChoice,
 };
 use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
@@ -126,6 +126,9 @@ pub struct RangeAnswer {
     pub replanned: Option<ReplannedAnswer>,
     /// How far the charge carries; null where a goal was given.
     pub carries: Option<CarriesAnswer>,
+    /// Doubts about the map and about the robot.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// One drive of everything as the files say.
@@ -302,7 +305,9 @@ pub fn answer(
         seed: request.seed,
     };
     let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
-    Ok(RangeAnswer::from(&found).placed(&planner.lattice().terrain))
+    let terrain = &planner.lattice().terrain;
+    let warnings = terrain.warnings().iter().cloned().chain(borrowed_constants(robot)).collect();
+    Ok(RangeAnswer { warnings, ..RangeAnswer::from(&found).placed(terrain) })
 }
 
 impl From<&Range> for RangeAnswer {
@@ -332,6 +337,7 @@ impl From<&Range> for RangeAnswer {
             best_speed: (&found.best_speed).into(),
             replanned: found.replanned.as_ref().map(ReplannedAnswer::from),
             carries: found.carries.as_ref().map(CarriesAnswer::from),
+            warnings: Vec::new(),
         }
     }
 }
