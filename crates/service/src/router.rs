@@ -20,6 +20,7 @@ use crate::{
         alternatives, calibrate, compare, diagnose, earth, health, jobs, maps, matrix, metrics, mission,
         page, plan, range, reachable, recordings, robots, status,
     },
+    schemas,
 };
 
 #[derive(OpenApi)]
@@ -102,6 +103,7 @@ pub fn router(engine: Engine, access: &Access) -> Router {
     let routes = routes
         .merge(page::routes(access))
         .merge(page::settings(access).route_layer(from_fn_with_state(access.tokens.clone(), needs_token)))
+        .merge(schemas::routes())
         .merge(reference)
         .route(
             "/openapi.json",

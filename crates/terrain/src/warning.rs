@@ -66,6 +66,8 @@ pub enum WarningKind {
     UnknownGround,
     /// How the areas' coordinates were read, or what of them means nothing here.
     Areas,
+    /// Constants of the robot are borrowed from other robots.
+    BorrowedConstants,
 }
 
 impl WarningKind {

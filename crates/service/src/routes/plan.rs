@@ -3,7 +3,7 @@
 mod document;
 mod steering;
 mod unknown_ground;
-mod warnings;
+pub(crate) mod warnings;
 mod work;
 
 use std::{

@@ -10,7 +10,10 @@ use terrain::{MapFile, Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, with_planner},
+    plan::{
+        GoalPose, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, warnings::borrowed_constants,
+        with_planner,
+    },
     robots::RobotChoice,
 };
 use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
@@ -132,7 +135,7 @@ pub struct RangeAnswer {
     pub replanned: Option<ReplannedAnswer>,
     /// How far the charge carries; null where a goal was given.
     pub carries: Option<CarriesAnswer>,
-    /// Doubts about the map.
+    /// Doubts about the map and about the robot.
     #[serde(default)]
     pub warnings: Vec<Warning>,
 }
@@ -313,8 +316,8 @@ pub fn answer(
         seed: request.seed,
     };
     let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
-    let answer = RangeAnswer { warnings: map_warnings(planner), ..RangeAnswer::from(&found) };
-    Ok(answer.placed(&planner.lattice().terrain))
+    let warnings = map_warnings(planner).into_iter().chain(borrowed_constants(robot)).collect();
+    Ok(RangeAnswer { warnings, ..RangeAnswer::from(&found) }.placed(&planner.lattice().terrain))
 }
 
 impl From<&Range> for RangeAnswer {
