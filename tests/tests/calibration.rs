@@ -102,7 +102,7 @@ fn wrong_requests_are_refused_at_once_with_the_pointer_to_the_field() {
         ("recordings", json!(["../../etc/passwd"]), 404, "unknown-recording", "/recordings/0"),
         ("recordings", json!([]), 400, "invalid-request", "/recordings"),
         ("recordings", json!(7), 400, "invalid-request", "/recordings"),
-        ("robot", json!("jackal"), 404, "unknown-robot", "/robot"),
+        ("robot", json!("r2d2"), 404, "unknown-robot", "/robot"),
         ("robot", json!({ "name": "x" }), 400, "invalid-request", "/robot/mass_kg"),
         ("method", json!("guess"), 400, "invalid-request", "/method"),
         ("map", json!("rover"), 400, "invalid-request", "/map"),

@@ -116,7 +116,7 @@ fn wrong_input_ends_with_2_and_one_line_that_says_what_where_and_how_to_mend_it(
         ),
         ("predict --recording drive.csv none.csv", ["none.csv: ", "No such file"]),
         ("predict --recording drive.dat", ["drive.dat: `.dat`", ".parquet, .mcap, .db3, .bag or .ulg"]),
-        ("predict --recording drive.csv --robot jackal", ["jackal", "husky-a200"]),
+        ("predict --recording drive.csv --robot r2d2", ["r2d2", "husky-a200"]),
         ("predict --recording drive.csv --robot robot.json", ["robot.json: ", "mass_kg"]),
         ("predict --recording drive.csv --map map.json", ["map.json: map, sources[0].unit: `A`", "W, kW"]),
         ("predict --recording drive.csv --map rover", ["--map rover", "husky, clearpath-a200"]),

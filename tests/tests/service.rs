@@ -163,7 +163,7 @@ fn robots_are_listed_and_read_by_name_and_one_of_them_may_be_posted_back() {
     let by_name = server.post_json("/v1/plan", &question()).json();
     let in_full = server.post_json("/v1/plan", &question_with("/robot", husky)).json();
     assert_eq!(in_full["energy_j"], by_name["energy_j"]);
-    assert_problem(&server.get("/v1/robots/jackal"), 404, "unknown-robot");
+    assert_problem(&server.get("/v1/robots/r2d2"), 404, "unknown-robot");
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn wrong_requests_are_refused_with_the_pointer_to_the_field() {
         ("/map/rows", json!(4_000_000_000u64), 413, "too-large", "/map/rows"),
         ("/map", Value::Null, 400, "invalid-request", "/map"),
         ("/map_id", json!("abc"), 400, "invalid-request", "/map_id"),
-        ("/robot", json!("jackal"), 404, "unknown-robot", "/robot"),
+        ("/robot", json!("r2d2"), 404, "unknown-robot", "/robot"),
         ("/robot", json!(7), 400, "invalid-request", "/robot"),
         ("/robot", husky_with("/wheelbase_m", json!(5400)), 400, "invalid-robot", "/robot/wheelbase_m"),
         (

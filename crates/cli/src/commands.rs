@@ -14,5 +14,7 @@ pub(crate) mod predict;
 pub(crate) mod prove;
 pub(crate) mod range;
 pub(crate) mod reachable;
+pub(crate) mod robot;
+pub(crate) mod schema;
 pub(crate) mod serve;
 pub(crate) mod simulate;

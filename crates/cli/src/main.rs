@@ -61,6 +61,10 @@ enum Command {
     Prove(commands::prove::Arguments),
     /// Print what plans take, beside general-purpose searches on the same graphs
     Bench(commands::bench::Arguments),
+    /// List robots, describe one from its data sheet, and tell what plans with it are worth
+    Robot(commands::robot::Arguments),
+    /// Print the JSON Schema of a robot, map, recording map or world file
+    Schema(commands::schema::Arguments),
     /// Serve the HTTP API
     Serve(commands::serve::Arguments),
     /// Start the service, compare paths over real terrain, and draw them
@@ -95,6 +99,8 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Simulate(arguments) => commands::simulate::run(arguments),
         Command::Prove(arguments) => commands::prove::run(arguments),
         Command::Bench(arguments) => commands::bench::run(arguments),
+        Command::Robot(arguments) => commands::robot::run(arguments),
+        Command::Schema(arguments) => commands::schema::run(arguments),
         Command::Serve(arguments) => commands::serve::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments),
     }

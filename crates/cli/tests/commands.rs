@@ -73,7 +73,7 @@ fn wrong_input_ends_with_2_and_one_line_that_says_what_and_where() {
         (vec!["plan", "--map", "maps/yard.json", "--start", "-4,8", "--goal", "20,12"], "outside the map"),
         (vec!["plan", "--map", "maps/yard.json", "--start", "4;8", "--goal", "20,12"], "X,Y"),
         (
-            vec!["plan", "--map", "maps/yard.json", "--start", "4,8", "--goal", "20,12", "--robot", "jackal"],
+            vec!["plan", "--map", "maps/yard.json", "--start", "4,8", "--goal", "20,12", "--robot", "r2d2"],
             "husky-a200",
         ),
         (

@@ -135,6 +135,9 @@ impl Drawn<'_> {
             motor.k2 = (motor.k2 * k2).max(1.0);
         }
         changed.mass_kg *= factor(u.mass_kg);
+        if u.hotel_power_w > 0.0 {
+            changed.hotel_power_w *= factor(u.hotel_power_w);
+        }
         let pack = Pack::new(battery, factor(battery.capacity_sigma));
         let charge = (charge + battery.charge_sigma * normal()).clamp(0.0, 1.0);
         let model_error = doubt.model_mean + doubt.model_sigma * normal();

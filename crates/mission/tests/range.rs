@@ -20,7 +20,8 @@ fn level_w(speed_mps: f64) -> f64 {
 
 /// A robot about which there is no doubt at all.
 fn certain(mut robot: Robot) -> Robot {
-    robot.uncertainty = Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0 };
+    robot.uncertainty =
+        Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0, hotel_power_w: 0.0 };
     let battery = robot.battery.as_mut().unwrap();
     (battery.capacity_sigma, battery.charge_sigma) = (0.0, 0.0);
     robot

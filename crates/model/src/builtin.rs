@@ -1,15 +1,34 @@
 //! Robots that are available by name.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 use crate::{
     Error, Robot,
     robot::{Battery, CenterOfMass, Limits, Motor, Motors, PaperSurface, Surface, Uncertainty},
 };
 
-/// Every built-in robot: the Husky A200 and the paper's configurations A to D (§IV, Fig. 6).
+/// Robot files that the program carries; `robots/` has where their numbers come from.
+const FILES: [&str; 9] = [
+    include_str!("../robots/husky-a200-field.json"),
+    include_str!("../robots/husky-a300.json"),
+    include_str!("../robots/jackal.json"),
+    include_str!("../robots/warthog.json"),
+    include_str!("../robots/scout-2.json"),
+    include_str!("../robots/scout-mini.json"),
+    include_str!("../robots/bunker.json"),
+    include_str!("../robots/leo-rover.json"),
+    include_str!("../robots/rover-pro.json"),
+];
+
+static ALL: LazyLock<Vec<Robot>> = LazyLock::new(|| {
+    let paper = [husky_a200(), configuration_a(), configuration_b(), configuration_c(), configuration_d()]
+        .into_iter();
+    paper.chain(FILES.iter().filter_map(|text| Robot::from_json(text).ok())).collect()
+});
+
+/// Every built-in robot: the Husky A200, the paper's configurations A to D (§IV, Fig. 6), and robots by their data sheets.
 pub fn all() -> Vec<Robot> {
-    vec![husky_a200(), configuration_a(), configuration_b(), configuration_c(), configuration_d()]
+    ALL.clone()
 }
 
 /// A built-in robot by its name.
@@ -17,9 +36,9 @@ pub fn all() -> Vec<Robot> {
 /// # Errors
 /// [`Error::UnknownRobot`], which lists the names that exist.
 pub fn by_name(name: &str) -> Result<Robot, Error> {
-    all().into_iter().find(|robot| robot.name == name).ok_or_else(|| Error::UnknownRobot {
+    ALL.iter().find(|robot| robot.name == name).cloned().ok_or_else(|| Error::UnknownRobot {
         name: name.to_owned(),
-        known: all().into_iter().map(|robot| robot.name).collect(),
+        known: ALL.iter().map(|robot| robot.name.clone()).collect(),
     })
 }
 
@@ -125,6 +144,7 @@ fn configuration(name: &str, mass_kg: f64, forward_m: f64, left_m: f64) -> Robot
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::worth::Moment;
 
     #[test]
     fn every_built_in_robot_is_valid_and_found_by_its_name() {
@@ -132,6 +152,63 @@ mod tests {
             robot.validate().unwrap();
             assert_eq!(by_name(&robot.name).unwrap(), robot);
         }
-        assert!(by_name("jackal").unwrap_err().to_string().contains("husky-a200"));
+        assert!(by_name("r2d2").unwrap_err().to_string().contains("husky-a200"));
+    }
+
+    #[test]
+    fn every_file_is_read_and_says_where_its_numbers_come_from() {
+        for text in FILES {
+            let robot = Robot::from_json(text).unwrap();
+            assert!(robot.source.as_ref().unwrap().len() > 100, "{}", robot.name);
+            for field in ["mass_kg", "motors.left.k1_w_per_n2", "motors.right.k2", "hotel_power_w"] {
+                assert!(robot.provenance_of(field).is_some(), "{}: {field}", robot.name);
+            }
+            for name in robot.surfaces.keys() {
+                let field = format!("surfaces.{name}.mu_roll");
+                assert!(robot.provenance_of(&field).is_some(), "{}: {field}", robot.name);
+            }
+        }
+        assert_eq!(all().len(), 5 + FILES.len());
+    }
+
+    #[test]
+    fn every_robot_draws_power_to_drive_and_more_to_climb() {
+        for robot in all() {
+            let [level, climb, descent, arc, spin] =
+                Moment::ALL.map(|moment| moment.power_w(&robot).unwrap());
+            let name = &robot.name;
+            assert!(0.0 < level && level < climb && descent < level && arc > 0.0 && spin > 0.0, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_borrowed_constant_is_never_stated_as_well_known() {
+        for robot in FILES.map(|text| Robot::from_json(text).unwrap()) {
+            for parameter in robot.uncertain() {
+                let is_borrowed = robot.borrowed().contains(&parameter.name);
+                assert!(!is_borrowed || parameter.sigma >= 0.07, "{}: {}", robot.name, parameter.name);
+            }
+        }
+    }
+
+    /// The manual of the Husky A300 tells how long two batteries last, on average and on standby: on average a third of the time is
+    /// driven, at 2 m/s with 50 kg on level ground.
+    #[test]
+    fn a_husky_a300_draws_what_its_manual_says_within_its_interval() {
+        let mut robot = by_name("husky-a300").unwrap();
+        let (battery_wh, standby_w) = (1024.0, 1024.0 / 12.0);
+        let driving_w = (battery_wh / 4.0 - 0.67 * standby_w) / 0.33;
+        robot.mass_kg += 50.0;
+        robot.max_wheel_speed_mps *= 2.0;
+        let [low_w, high_w] = Moment::Level.worth(&robot).unwrap().interval_w;
+        assert!(low_w < driving_w && driving_w < high_w, "{low_w} to {high_w} for {driving_w} W");
+    }
+
+    #[test]
+    fn the_husky_in_the_field_is_the_husky_but_for_ground_electronics_and_drivers() {
+        let (paper, field) = (husky_a200(), by_name("husky-a200-field").unwrap());
+        assert_eq!((field.mass_kg, field.motors.left), (paper.mass_kg, paper.motors.left));
+        assert_eq!((field.surfaces, field.default_surface.as_str()), (paper.surfaces, "sandy_loam"));
+        assert_eq!((field.hotel_power_w, field.motors.regeneration), (60.0, 0.5));
     }
 }

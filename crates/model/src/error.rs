@@ -41,6 +41,16 @@ pub enum Error {
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A ground is named whose friction is not known of any robot.
+    #[error(
+        "no robot was measured on `{name}`; known are {}: name one of them, or give its friction", known.join(", ")
+    )]
+    UnknownGround {
+        /// The name asked for.
+        name: String,
+        /// The names that exist.
+        known: Vec<String>,
+    },
     /// A mechanism that the robot or its ground cannot have.
     #[error("{field}: {message}")]
     Mechanism {
@@ -95,6 +105,7 @@ impl Error {
             | Error::Knowledge { field, .. }
             | Error::Name { field, .. } => Some(field),
             Error::UnknownSurface { .. } => Some("default_surface"),
+            Error::UnknownGround { .. } => Some("surface"),
             _ => None,
         }
     }

@@ -8,8 +8,8 @@
 //! side up, yaw rate positive turning left; power positive when drawn from the battery.
 
 mod balance;
-mod battery;
 pub mod builtin;
+pub mod data_sheet;
 mod error;
 pub mod fit;
 mod gravity;
@@ -26,11 +26,11 @@ mod motor;
 pub mod paper;
 mod power;
 pub mod robot;
-mod robot_limits;
 pub mod rolling;
 mod sides;
 pub mod skid;
 pub mod thermal;
+pub mod worth;
 
 pub use balance::{Friction, FrictionShape};
 pub use error::Error;

@@ -1,17 +1,33 @@
 //! The robot: its masses, geometry, motors and the friction of the ground it knows.
 
+mod battery;
+mod center_of_mass;
+mod file;
+mod limits;
+mod motors;
+mod ranges;
+mod surface;
+mod uncertainty;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::{
+    battery::Battery,
+    center_of_mass::CenterOfMass,
+    file::RobotFile,
+    limits::Limits,
+    motors::{Motor, Motors},
+    surface::{PaperSurface, SpeedFriction, Surface},
+    uncertainty::{NORMAL_95, Uncertain, Uncertainty, interval},
+};
 use crate::{
     Error, Sides,
     builtin::{HUSKY_KG, HUSKY_TOP_MPS},
     knowledge::{ModelError, Posterior, PowerNoise, Sources},
     known::KnownMechanism,
-    robot_limits,
 };
-pub use crate::{battery::Battery, knowledge::Uncertainty};
 
 /// A skid-steered robot with one motor a side.
 ///
@@ -82,146 +98,6 @@ pub struct Robot {
     pub mechanisms: Vec<KnownMechanism>,
 }
 
-/// Where the centre of mass lies relative to the geometric centre.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct CenterOfMass {
-    /// Towards the front axle [m].
-    pub forward_m: f64,
-    /// Towards the left wheels [m].
-    pub left_m: f64,
-    /// Above the ground [m]. Slopes, turns and accelerations shift load by it (eq. 14); 0, as where it is not known, shifts none.
-    pub height_m: f64,
-}
-
-/// Both sides' motors and what they share.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Motors {
-    /// The left side's constants.
-    pub left: Motor,
-    /// The right side's constants.
-    pub right: Motor,
-    /// T0: temperature at which k1 and k2 hold [°C]. Default 20.
-    #[serde(default = "reference_temperature_c")]
-    pub reference_temperature_c: f64,
-    /// α_R of eq. 7 [1/K]. Default 0.0039 (copper).
-    #[serde(default = "resistance_per_k")]
-    pub resistance_per_k: f64,
-    /// α_M of eq. 8 [1/K]. Default −0.0012 (ferrite magnets lose torque when hot).
-    #[serde(default = "motor_constant_per_k")]
-    pub motor_constant_per_k: f64,
-    /// Fraction of the back-driven power `u F / k2` that reaches the bus, 0 to 1. Default 1.
-    #[serde(default = "regeneration")]
-    pub regeneration: f64,
-}
-
-/// Equivalent motor constants of one side (eq. 2, Table I).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Motor {
-    /// k1: copper loss per squared wheel force [W/N²].
-    pub k1_w_per_n2: f64,
-    /// k2: electrical per mechanical power, at least 1 (gears and belts only lose) [-].
-    pub k2: f64,
-    /// Wheel force per motor current [N/A]; needed only for recordings of motor current.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub force_n_per_a: Option<f64>,
-    /// Motor current that is read while the robot stands, of recordings of motor current [A]. Default 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub idle_current_a: Option<f64>,
-}
-
-/// What the robot must not be asked to do.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct Limits {
-    /// Largest force a side may be asked for [N]. Default: no limit but the pitch's.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_side_force_n: Option<f64>,
-    /// Steepest climb or descent [rad]. Default 0.52 (30°).
-    pub max_pitch_rad: f64,
-    /// Steepest sideways tilt [rad]. Default 0.45 (26°).
-    pub max_roll_rad: f64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Limits { max_side_force_n: None, max_pitch_rad: 0.52, max_roll_rad: 0.45 }
-    }
-}
-
-/// Friction of one kind of ground.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Surface {
-    /// μ_R: rolling resistance over normal load [-].
-    pub mu_roll: f64,
-    /// μ_S: lateral skid resistance over normal load [-].
-    pub mu_skid: f64,
-    /// α_s: slip angle over which skid resistance saturates [rad]; 0 is the paper's Coulomb skid. Default 0.30.
-    #[serde(default = "slip_angle_scale_rad")]
-    pub slip_angle_scale_rad: f64,
-    /// What only the paper's printed form needs. Default: derived from the values above.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dogru_marques: Option<PaperSurface>,
-    /// What acts on this ground alone and changes its friction. Default: none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
-    pub mechanisms: Vec<KnownMechanism>,
-}
-
-/// The paper's own description of a surface: constants per speed and a constant inner friction.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct PaperSurface {
-    /// Friction of the inner side for R ≤ R_c (Table II) [-]. Default: half of eq. 16 at R_0 = 0 plus half μ_R.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub inner_friction: Option<f64>,
-    /// (μ_R, μ_S) at increasing speeds (Fig. 13); between them they are interpolated. Default: none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub by_speed: Vec<SpeedFriction>,
-}
-
-/// The coefficients of eq. 16 as fitted at one speed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-pub struct SpeedFriction {
-    /// Translational speed of the fit [m/s].
-    pub speed_mps: f64,
-    /// μ_R fitted there [-].
-    pub mu_roll: f64,
-    /// μ_S fitted there [-].
-    pub mu_skid: f64,
-}
-
-impl Surface {
-    /// The same ground with rolling and skid resistance multiplied.
-    ///
-    /// In the printed form's opposite sides mostly skid counts, so its inner friction goes with μ_S.
-    #[must_use]
-    pub fn scaled(&self, roll: f64, skid: f64) -> Surface {
-        let mut scaled = self.clone();
-        scaled.mu_roll *= roll;
-        scaled.mu_skid *= skid;
-        if let Some(paper) = &mut scaled.dogru_marques {
-            paper.inner_friction = paper.inner_friction.map(|friction| friction * skid);
-            for row in &mut paper.by_speed {
-                row.mu_roll *= roll;
-                row.mu_skid *= skid;
-            }
-        }
-        scaled
-    }
-}
-
 impl Robot {
     /// Its mass over that of a Husky A200, as which its motors, and what it may carry and pull, are taken to grow.
     pub fn size(&self) -> f64 {
@@ -285,140 +161,8 @@ impl Robot {
     /// # Errors
     /// [`Error::OutOfRange`] or [`Error::UnknownSurface`] for the first field that cannot be right.
     pub fn validate(&self) -> Result<(), Error> {
-        robot_limits::check(self)
+        ranges::check(self)
     }
-}
-
-/// A robot as its file has it: unchecked, with the optional fields still open. [`Robot::try_from`] checks it.
-///
-/// The fields are those of [`Robot`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
-#[serde(deny_unknown_fields)]
-#[allow(missing_docs)]
-pub struct RobotFile {
-    pub name: String,
-    pub mass_kg: f64,
-    pub wheelbase_m: f64,
-    pub track_m: f64,
-    pub slip_track_m: Option<f64>,
-    pub wheel_radius_m: f64,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ground_clearance_m: Option<f64>,
-    #[serde(default)]
-    pub center_of_mass: CenterOfMass,
-    pub yaw_inertia_kgm2: Option<f64>,
-    pub max_wheel_speed_mps: f64,
-    pub motors: Motors,
-    #[serde(default)]
-    pub hotel_power_w: f64,
-    #[serde(default)]
-    pub drive_electronics_w: f64,
-    pub battery: Option<Battery>,
-    #[serde(default)]
-    pub limits: Limits,
-    #[cfg_attr(feature = "openapi", schema(value_type = std::collections::HashMap<String, Surface>))]
-    pub surfaces: BTreeMap<String, Surface>,
-    pub default_surface: String,
-    #[serde(default)]
-    pub uncertainty: Uncertainty,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[cfg_attr(feature = "openapi", schema(value_type = std::collections::HashMap<String, crate::knowledge::Provenance>))]
-    pub provenance: Sources,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub posterior: Option<Posterior>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model_error: Option<ModelError>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub noise: Option<PowerNoise>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "openapi", schema(value_type = Vec<crate::KnownMechanismFile>))]
-    pub mechanisms: Vec<KnownMechanism>,
-}
-
-impl From<Robot> for RobotFile {
-    fn from(robot: Robot) -> Self {
-        RobotFile {
-            name: robot.name,
-            mass_kg: robot.mass_kg,
-            wheelbase_m: robot.wheelbase_m,
-            track_m: robot.track_m,
-            slip_track_m: Some(robot.slip_track_m),
-            wheel_radius_m: robot.wheel_radius_m,
-            ground_clearance_m: robot.ground_clearance_m,
-            center_of_mass: robot.center_of_mass,
-            yaw_inertia_kgm2: Some(robot.yaw_inertia_kgm2),
-            max_wheel_speed_mps: robot.max_wheel_speed_mps,
-            motors: robot.motors,
-            hotel_power_w: robot.hotel_power_w,
-            drive_electronics_w: robot.drive_electronics_w,
-            battery: robot.battery,
-            limits: robot.limits,
-            surfaces: robot.surfaces,
-            default_surface: robot.default_surface,
-            uncertainty: robot.uncertainty,
-            source: robot.source,
-            provenance: robot.provenance,
-            posterior: robot.posterior,
-            model_error: robot.model_error,
-            noise: robot.noise,
-            mechanisms: robot.mechanisms,
-        }
-    }
-}
-
-impl TryFrom<RobotFile> for Robot {
-    type Error = Error;
-
-    fn try_from(file: RobotFile) -> Result<Self, Error> {
-        let box_inertia_kgm2 = file.mass_kg * (file.wheelbase_m.powi(2) + file.track_m.powi(2)) / 12.0;
-        let robot = Robot {
-            name: file.name,
-            mass_kg: file.mass_kg,
-            wheelbase_m: file.wheelbase_m,
-            track_m: file.track_m,
-            slip_track_m: file.slip_track_m.unwrap_or(file.track_m),
-            wheel_radius_m: file.wheel_radius_m,
-            ground_clearance_m: file.ground_clearance_m,
-            center_of_mass: file.center_of_mass,
-            yaw_inertia_kgm2: file.yaw_inertia_kgm2.unwrap_or(box_inertia_kgm2),
-            max_wheel_speed_mps: file.max_wheel_speed_mps,
-            motors: file.motors,
-            hotel_power_w: file.hotel_power_w,
-            drive_electronics_w: file.drive_electronics_w,
-            battery: file.battery,
-            limits: file.limits,
-            surfaces: file.surfaces,
-            default_surface: file.default_surface,
-            uncertainty: file.uncertainty,
-            source: file.source,
-            provenance: file.provenance,
-            posterior: file.posterior,
-            model_error: file.model_error,
-            noise: file.noise,
-            mechanisms: file.mechanisms,
-        };
-        robot.validate()?;
-        Ok(robot)
-    }
-}
-
-fn reference_temperature_c() -> f64 {
-    20.0
-}
-fn resistance_per_k() -> f64 {
-    0.0039
-}
-fn motor_constant_per_k() -> f64 {
-    -0.0012
-}
-fn regeneration() -> f64 {
-    1.0
-}
-fn slip_angle_scale_rad() -> f64 {
-    0.30
 }
 
 #[cfg(test)]

@@ -2,7 +2,10 @@
 
 use std::collections::{HashMap, hash_map::Entry};
 
-use model::{Acceleration, Grade, Manoeuvre, Motion, PowerModel, Robot, Sides};
+use model::{
+    Acceleration, Grade, Manoeuvre, Motion, PowerModel, Robot, Sides,
+    robot::{NORMAL_95, interval},
+};
 
 use crate::{
     lattice::Lattice,
@@ -11,71 +14,27 @@ use crate::{
     route::Route,
 };
 
-/// Half width of the central 95 % of a normal distribution, in standard deviations.
-const NORMAL_95: f64 = 1.959_964;
-
 /// Steps whose interval is worked out whether patience is over or not, so that an answer that is there is not lost.
 const STEPS_AT_LEAST: usize = 1 << 14;
 
-/// A relative sigma and what it scales.
-type Parameter = (f64, fn(&mut Robot, f64));
-
-/// Parameters that energy depends on, each with the uncertainty that the robot's file states.
-fn parameters(robot: &Robot) -> [Parameter; 5] {
-    let u = &robot.uncertainty;
-    [
-        (u.mu_roll, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(factor, 1.0))),
-        (u.mu_skid, |r, factor| r.surfaces.values_mut().for_each(|s| *s = s.scaled(1.0, factor))),
-        (u.k1, |r, factor| {
-            r.motors.left.k1_w_per_n2 *= factor;
-            r.motors.right.k1_w_per_n2 *= factor;
-        }),
-        (u.k2, |r, factor| {
-            r.motors.left.k2 = (r.motors.left.k2 * factor).max(1.0);
-            r.motors.right.k2 = (r.motors.right.k2 * factor).max(1.0);
-        }),
-        (u.mass_kg, |r, factor| r.mass_kg *= factor),
-    ]
-}
-
 /// Central 95 % interval of a path's energy [J]; `None` where patience ends first on a long path.
 ///
-/// Parameters are positive, and so log-normal and independent. The energy E is computed anew with each at both ends of its own
-/// interval, at the factors e^(±1.96 σ), which gives a highest E⁺ and a lowest E⁻. With the least L that the path can take
-/// ([`Replay::least_j`]),
-///
-/// ```text
-/// high = E + √(Σ (E⁺ − E)²)
-/// low  = L + (E − L) exp(−√(Σ ln² ((E⁻ − L)/(E − L))))
-/// ```
-///
-/// so that one parameter alone gives the energies at its own quantiles, small ones add up as variances do, and no doubt makes the
-/// energy less than it can be: where nothing is gained, no less than 0.
+/// Parameters are independent. The energy is computed anew with each at both ends of its own interval; [`interval`] puts them
+/// together with the least that the path can take ([`Replay::least_j`]), so that no doubt makes it less: where nothing is gained,
+/// no less than 0.
 pub(crate) fn energy_interval_j(route: &Route, lattice: &Lattice, patience: &Patience) -> Option<[f64; 2]> {
     let robot = &lattice.robot;
     let forever = Patience::default();
     let patience = if route.steps.len() <= STEPS_AT_LEAST { &forever } else { patience };
     let replay = Replay::new(route, lattice, patience);
     let energy_j = route.total.energy_j;
-    let least_j = replay.least_j(robot)?.min(energy_j);
-    let (mut above_j2, mut below_ln2) = (0.0, 0.0);
-    for (sigma, scale) in parameters(robot).into_iter().filter(|(sigma, _)| *sigma > 0.0) {
-        let at = |factor: f64| {
-            let mut changed = robot.clone();
-            scale(&mut changed, factor);
-            replay.energy_j(&changed)
-        };
-        let factor = (NORMAL_95 * sigma).exp();
-        let ends_j = [at(factor)?, at(1.0 / factor)?];
-        let [highest_j, lowest_j] = [ends_j[0].max(ends_j[1]), ends_j[0].min(ends_j[1])];
-        above_j2 += (highest_j - energy_j).max(0.0).powi(2);
-        let share = (lowest_j - least_j).max(0.0) / (energy_j - least_j);
-        if share < 1.0 {
-            below_ln2 += share.ln().powi(2);
-        }
+    let least_j = replay.least_j(robot)?;
+    let mut ends_j = Vec::new();
+    for parameter in robot.uncertain() {
+        let [upper, lower] = parameter.ends(robot);
+        ends_j.push([replay.energy_j(&upper)?, replay.energy_j(&lower)?]);
     }
-    let low_j = least_j + (energy_j - least_j) * (-below_ln2.sqrt()).exp();
-    Some([low_j.min(energy_j), energy_j + above_j2.sqrt()])
+    Some(interval(energy_j, least_j, &ends_j))
 }
 
 /// The steps of a path, ready to be driven by other robots: power is prepared once for each of the few motions and surfaces.
@@ -117,11 +76,12 @@ impl<'a> Replay<'a> {
         self.sum_j(robot, |manoeuvre, grade| manoeuvre.power_on_grade(grade, Acceleration::NONE).bus_w)
     }
 
-    /// The least that the steps can take, whatever the doubt: standing loads, and everything back that descents hold, of the mass
+    /// The least that the steps can take, whatever the doubt: standing loads at the lower end of their interval, and everything back that descents hold, of the mass
     /// at the upper end of its interval and through gears without losses [J].
     fn least_j(&self, robot: &Robot) -> Option<f64> {
         let mut heavy = robot.clone();
         heavy.mass_kg *= (NORMAL_95 * robot.uncertainty.mass_kg).exp();
+        heavy.hotel_power_w /= (NORMAL_95 * robot.uncertainty.hotel_power_w).exp();
         (heavy.motors.left.k2, heavy.motors.right.k2) = (1.0, 1.0);
         self.sum_j(&heavy, |manoeuvre, grade| {
             let kernel = manoeuvre.kernel();

@@ -8,7 +8,8 @@ use planner::{Goal, Objective, Patience, Plan, Query, Settings, Start, plan};
 use proptest::prelude::*;
 use terrain::{Grid, Terrain};
 
-const CERTAIN: Uncertainty = Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0 };
+const CERTAIN: Uncertainty =
+    Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0, hotel_power_w: 0.0 };
 
 /// From one corner to the other over ground of 1 m cells.
 fn across(robot: &Robot, height_m: impl Fn(f64, f64) -> f64) -> Plan {
@@ -48,7 +49,7 @@ proptest! {
 
     #[test]
     fn the_interval_holds_the_energy_and_nothing_is_gained_where_nothing_can_be(
-        sigmas in prop::array::uniform5(0.0f64..1.0),
+        sigmas in prop::array::uniform6(0.0f64..1.0),
         slopes in prop::array::uniform2(-0.15f64..0.15),
         waves_m in 0.0f64..0.4,
         regeneration in prop_oneof![Just(0.0), Just(1.0), 0.0f64..1.0],
@@ -56,9 +57,10 @@ proptest! {
         hotel_power_w in prop_oneof![Just(0.0), 0.0f64..50.0],
         is_level in any::<bool>(),
     ) {
-        let [mu_roll_sigma, mu_skid, k1, k2, mass_kg] = sigmas;
+        let [mu_roll_sigma, mu_skid, k1, k2, mass_kg, hotel_sigma] = sigmas;
         let mut robot = builtin::husky_a200();
-        robot.uncertainty = Uncertainty { mu_roll: mu_roll_sigma, mu_skid, k1, k2, mass_kg };
+        robot.uncertainty =
+            Uncertainty { mu_roll: mu_roll_sigma, mu_skid, k1, k2, mass_kg, hotel_power_w: hotel_sigma };
         robot.motors.regeneration = regeneration;
         robot.hotel_power_w = hotel_power_w;
         robot.surfaces.values_mut().for_each(|surface| surface.mu_roll = mu_roll);
@@ -69,7 +71,8 @@ proptest! {
         prop_assert!(low_j.is_finite() && high_j.is_finite());
         prop_assert!(low_j <= energy_j && energy_j <= high_j, "{low_j} {energy_j} {high_j}");
         if is_level || regeneration == 0.0 {
-            let standing_j = hotel_power_w * found.route.total.duration_s;
+            let least_w = hotel_power_w * (-model::robot::NORMAL_95 * hotel_sigma).exp();
+            let standing_j = least_w * found.route.total.duration_s;
             prop_assert!(low_j >= standing_j * (1.0 - 1e-9), "{low_j} below the {standing_j} of standing loads");
         }
     }

@@ -11,6 +11,7 @@ use crate::{
 
 /// How several columns or fields become one value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Combine {
     /// Their mean, as of the wheels of a side.

@@ -75,7 +75,7 @@ pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, 
 pub use combine::Combine;
 pub use error::{Error, TimeError};
 pub use format::Format;
-pub use map::{Map, Place, Sign, Source, Stamp, Target};
+pub use map::{Map, MapFile, Place, Sign, Source, Stamp, Target};
 pub use reading::{
     Reading, bytes_on_disk, read, read_file, read_path, read_path_watched, read_paths, read_paths_watched,
     unwatched,

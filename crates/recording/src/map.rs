@@ -74,6 +74,7 @@ pub struct Source {
 
 /// How the sign of a battery's current is known, of which drivers have both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Sign {
     /// As it comes, times the source's `scale`.
@@ -121,6 +122,7 @@ pub enum Place {
 
 /// Which of a message's times counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Stamp {
     /// `header.stamp` where every message of the topic has one, else the time it was logged.
@@ -130,39 +132,65 @@ pub enum Stamp {
     Log,
 }
 
+/// A map as its file has it, before it is checked.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = RecordingMap))]
 #[serde(deny_unknown_fields)]
-struct MapFile {
+pub struct MapFile {
+    /// What reports call it.
     name: String,
+    /// Radius that speeds in rad/s are multiplied by [m].
     wheel_radius_m: Option<f64>,
+    /// Separation of the wheels that a twist is taken apart by [m].
     wheel_separation_m: Option<f64>,
+    /// Topic whose stamps become the rows. Default: the slowest of those that tell power.
     base: Option<String>,
+    /// Which of a message's times counts. Default: header.
     #[serde(default)]
     stamp: Stamp,
+    /// Longest distance between neighbours that is interpolated across. Default: three median steps [s].
     max_gap_s: Option<f64>,
+    /// Surface of the whole drive, where the file does not tell.
     surface: Option<String>,
+    /// Namespace that a leading `*` of a topic stands for.
     namespace: Option<String>,
+    /// Where each channel comes from.
     sources: Vec<SourceFile>,
 }
 
+/// A source of a map as its file has it.
 #[derive(Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
-struct SourceFile {
+pub(crate) struct SourceFile {
+    /// Channel that it becomes, `t_s`, `run` or `surface`; this or `aside`.
     channel: Option<String>,
+    /// Name of a column of its own.
     aside: Option<String>,
+    /// Column of a table; this, `columns` or `topic` with `fields`.
     column: Option<String>,
+    /// Columns that are combined.
     #[serde(default)]
     columns: Vec<String>,
+    /// Topic; a leading `*` stands for any namespace.
     topic: Option<String>,
+    /// Field paths within its messages.
     #[serde(default)]
     fields: Vec<String>,
+    /// How several become one. Default: their mean.
     #[serde(default)]
     combine: Combine,
+    /// Unit that it comes in. Default: that of the channel.
     unit: Option<String>,
+    /// Factor on the value. Default: 1.
     scale: Option<f64>,
+    /// Whether the rate of change is meant.
     #[serde(default)]
     derivative: bool,
+    /// Value at which a counter begins anew.
     wraps_at: Option<f64>,
+    /// How the sign of a current is known. Default: as it comes.
     #[serde(default)]
     sign: Sign,
 }

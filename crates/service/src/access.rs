@@ -6,9 +6,9 @@ use subtle::{ConditionallySelectable, ConstantTimeEq};
 
 use crate::{Tenant, tenant::InvalidTenant};
 
-use crate::Hosts;
+use crate::{Hosts, Tiles};
 
-/// Who may ask. The default is anybody who reaches the service, and no page of another origin.
+/// Who may ask, and whom the page may. The default is anybody who reaches the service, and no page of another origin.
 #[derive(Clone, Debug, Default)]
 pub struct Access {
     /// Tokens that are taken; without any, none is asked for.
@@ -19,6 +19,8 @@ pub struct Access {
     pub cors_origins: Vec<HeaderValue>,
     /// Names by which the service may be asked where no token is.
     pub hosts: Hosts,
+    /// Pictures of the ground that the page may fetch from elsewhere; without, it asks nobody but the service.
+    pub tiles: Option<Tiles>,
 }
 
 /// Tokens with the tenants that hold them. Only hashes of tokens are kept.

@@ -34,7 +34,7 @@ use tower_http::{
 };
 use utoipa::openapi::OpenApi;
 
-pub(crate) use conditional::is_tagged;
+pub(crate) use conditional::{Named, is_tagged};
 use negotiate::Offers;
 use pace::Pace;
 pub(crate) use pace::TOO_SLOW;

@@ -3,7 +3,7 @@
 use axum::{body::Bytes, extract::Request};
 use futures_util::{FutureExt, stream};
 use serde::Deserialize;
-use terrain::{Terrain, io};
+use terrain::{MapFile, Terrain, io};
 use utoipa::ToSchema;
 
 use crate::{
@@ -45,6 +45,13 @@ pub(crate) enum MapReader {
     RosMap(String),
 }
 
+/// A map as a body holds it.
+pub(crate) struct Read {
+    pub(crate) terrain: Terrain,
+    /// What the body calls it.
+    pub(crate) name: Option<String>,
+}
+
 impl MapReader {
     /// The reader for a request.
     pub(crate) fn of(request: &Request) -> Result<Self, Problem> {
@@ -69,11 +76,15 @@ impl MapReader {
     }
 
     /// The map that a body holds.
-    pub(crate) fn read(&self, mut content: Content, options: &io::Options) -> Result<Terrain, Problem> {
+    pub(crate) fn read(&self, mut content: Content, options: &io::Options) -> Result<Read, Problem> {
         let length = content.bytes.len() as u64;
         let filling = options.fill_voids_m.map_or(0, |_| FILLING_CELL_BYTES);
         let read = match self {
-            MapReader::Json => return terrain_from(content.parsed(from_json)?, options, ""),
+            MapReader::Json => {
+                let mut file: MapFile = content.parsed(from_json)?;
+                let name = file.name.take();
+                return Ok(Read { terrain: terrain_from(file, options, "")?, name });
+            }
             MapReader::Ascii => {
                 let words = content.bytes.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
                 content.reserved.grow_to(length + (ASCII_CELL_BYTES + filling) * words.count() as u64)?;
@@ -98,7 +109,7 @@ impl MapReader {
                 io::read_ros_map(&form.yaml, options, |_| Ok(form.image.to_vec()))
             }
         };
-        read.map_err(|error| invalid(&error))
+        read.map(|terrain| Read { terrain, name: None }).map_err(|error| invalid(&error))
     }
 }
 

@@ -113,6 +113,24 @@ impl MapStore {
         Ok(is_new)
     }
 
+    /// What a tenant calls a map, if anything.
+    pub(crate) async fn name(&self, tenant: &Tenant, id: &str) -> Result<Option<String>, Problem> {
+        Ok(self.maps.notes.get(tenant, id).await?.and_then(|summary| summary.name))
+    }
+
+    /// A map that is at hand under the name that it was sent with, or else the one that it has. Each tenant has names of its own.
+    pub(crate) async fn renamed(&self, owner: &Tenant, summary: MapSummary) -> Result<MapSummary, Problem> {
+        let Some(kept) = self.maps.notes.of(owner).get(&summary.id).await? else { return Ok(summary) };
+        if summary.name.is_none() {
+            return Ok(MapSummary { name: kept.name, ..summary });
+        }
+        if summary.name != kept.name {
+            let renamed = MapSummary { name: summary.name.clone(), ..kept };
+            self.maps.replace_note(owner, &summary.id, &renamed).await?;
+        }
+        Ok(summary)
+    }
+
     /// Refuses one more map of a tenant beyond so many cells of all tenants, or beyond its share of them.
     async fn refuse_cells_beyond(
         &self,
@@ -264,6 +282,30 @@ mod tests {
             assert_eq!(*found.unwrap(), *stored.terrain);
         }
         assert_eq!((one.reads.into_inner(), other.reads.into_inner()), (0, 1));
+    }
+
+    #[tokio::test]
+    async fn a_map_has_the_name_that_it_was_last_sent_with_and_each_tenant_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let maps = MapStore::new(&Store::open_here(folder.path()), 1 << 20, &memory());
+        let [alice, bob] = ["alice", "bob"].map(|name| Tenant::named(name).unwrap());
+        let sent = async |owner: &Tenant, name: Option<&str>| {
+            let mut stored = map(4);
+            stored.summary.name = name.map(str::to_owned);
+            let summary = stored.summary.clone();
+            if maps.insert(owner, stored, &LIMITS).await.unwrap() {
+                return summary.name;
+            }
+            maps.renamed(owner, summary).await.unwrap().name
+        };
+        assert_eq!(sent(&alice, Some("yard")).await.as_deref(), Some("yard"));
+        assert_eq!(sent(&bob, None).await, None);
+        assert_eq!(sent(&alice, None).await.as_deref(), Some("yard"), "no name takes none away");
+        assert_eq!(sent(&alice, Some("field")).await.as_deref(), Some("field"));
+        let id = map(4).summary.id;
+        assert_eq!(maps.name(&alice, &id).await.unwrap().as_deref(), Some("field"));
+        assert_eq!(maps.name(&bob, &id).await.unwrap(), None);
+        assert_eq!(maps.list(&alice).await.unwrap()[0].name.as_deref(), Some("field"));
     }
 
     #[tokio::test]

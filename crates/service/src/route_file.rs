@@ -1,6 +1,8 @@
-//! A path as a table and as a GPS track.
+//! A path as a table, as a GPS track, and as a track for globes.
 
 use std::io::{self, Write};
+
+use quick_xml::escape::escape;
 
 use crate::routes::plan::PlanAnswer;
 
@@ -48,6 +50,49 @@ pub(crate) fn gpx(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
     }
     out.write_all(b"</trkseg></trk></gpx>\n")
 }
+
+/// Media type of KML.
+pub(crate) const KML: &str = "application/vnd.google-earth.kml+xml";
+
+/// Writes a path as KML 2.2 (OGC 07-147r2): a line on the ground in longitude and latitude, a point where start and goal are one place,
+/// with the totals as data. Heights are the map's own.
+///
+/// # Errors
+/// A pose without longitude and latitude, or an output that cannot be written to.
+pub(crate) fn kml(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
+    let [low_j, high_j] = plan.energy_interval_j;
+    let mut data = vec![
+        ("energy_j", plan.energy_j.to_string()),
+        ("energy_interval_j", format!("{low_j} {high_j}")),
+        ("duration_s", plan.duration_s.to_string()),
+        ("distance_m", plan.distance_m.to_string()),
+    ];
+    data.extend(plan.warnings.iter().map(|warning| ("warning", warning.detail.clone())));
+    write!(out, "{KML_HEAD}")?;
+    for (name, value) in data {
+        write!(out, "<Data name=\"{name}\"><value>{}</value></Data>", escape(value.as_str()))?;
+    }
+    let (opening, closing) = match plan.poses.as_slice() {
+        [_] => ("<Point>", "</Point>"),
+        _ => ("<LineString><tessellate>1</tessellate>", "</LineString>"),
+    };
+    write!(out, "</ExtendedData>{opening}<altitudeMode>clampToGround</altitudeMode><coordinates>")?;
+    for pose in &plan.poses {
+        let (Some(lon_deg), Some(lat_deg)) = (pose.lon_deg, pose.lat_deg) else {
+            return Err(io::Error::other("a pose lies beyond the area that the map's crs is for"));
+        };
+        writeln!(out, "{lon_deg:.9},{lat_deg:.9},{:.3}", pose.z_m)?;
+    }
+    writeln!(out, "</coordinates>{closing}</Placemark></Document></kml>")
+}
+
+/// What a document begins with.
+const KML_HEAD: &str = concat!(
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n",
+    "<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><name>joulepath</name>",
+    "<Style id=\"path\"><LineStyle><color>ff1f6feb</color><width>4</width></LineStyle></Style>",
+    "<Placemark><name>path</name><styleUrl>#path</styleUrl><ExtendedData>"
+);
 
 /// What a track begins with.
 const HEAD: &str = concat!(

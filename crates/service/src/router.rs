@@ -17,9 +17,10 @@ use crate::{
     layers::{layered, needs_token},
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, health, jobs, maps, matrix, metrics, mission, page, plan,
-        range, reachable, recordings, robots, status,
+        alternatives, calibrate, compare, diagnose, earth, health, jobs, maps, matrix, metrics, mission,
+        page, plan, range, reachable, recordings, robots, status,
     },
+    schemas,
 };
 
 #[derive(OpenApi)]
@@ -53,6 +54,7 @@ fn guarded() -> OpenApiRouter<Engine> {
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
         .routes(routes!(maps::read_areas))
+        .routes(routes!(earth::read))
         .routes(routes!(robots::create, robots::list))
         .routes(routes!(robots::read, robots::remove))
         .routes(routes!(recordings::create, recordings::list))
@@ -99,7 +101,9 @@ pub fn router(engine: Engine, access: &Access) -> Router {
     let document = Bytes::from(description.to_pretty_json().unwrap_or_default());
     let reference = SwaggerUi::new("/docs").config(Config::from("/openapi.json"));
     let routes = routes
-        .merge(page::routes())
+        .merge(page::routes(access))
+        .merge(page::settings(access).route_layer(from_fn_with_state(access.tokens.clone(), needs_token)))
+        .merge(schemas::routes())
         .merge(reference)
         .route(
             "/openapi.json",

@@ -4,6 +4,7 @@ pub mod alternatives;
 pub mod calibrate;
 pub mod compare;
 pub mod diagnose;
+pub mod earth;
 pub mod health;
 pub mod jobs;
 pub mod maps;

@@ -13,17 +13,18 @@ mod unit;
 mod warp;
 mod wkt;
 
+pub(crate) use self::{
+    earth::registered_code,
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, to_ground},
+    mercator::is_of_earth,
+    warp::{DegreeFrame, Unwarped, Warp},
+};
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
     unit::{LinearUnit, by_epsg_code, by_name},
     warp::WarpRefusal,
-};
-pub(crate) use self::{
-    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, to_ground},
-    mercator::is_of_earth,
-    warp::{DegreeFrame, Unwarped, Warp},
 };
 
 use crate::Error;

@@ -257,6 +257,20 @@ pub enum Error {
         /// What it holds.
         found: String,
     },
+    /// The only placement of a GeoTIFF stands in a world file that cannot be read.
+    #[error(
+        "the GeoTIFF does not say where it lies, and {file} beside it holds no six numbers (width, two turns, height, x and y of the first pixel's centre): write it anew, or `gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE`"
+    )]
+    WorldFile {
+        /// Its name.
+        file: String,
+    },
+    /// A mask file beside a GeoTIFF that cannot be honoured.
+    #[error("the mask beside the GeoTIFF (.msk) cannot be used: {why}; remove it or write it anew")]
+    MaskFile {
+        /// Why.
+        why: String,
+    },
     /// A ROS map that cannot be read.
     #[error(transparent)]
     RosMap(#[from] crate::io::ros_map::RosMapError),

@@ -50,7 +50,8 @@ pub enum Format {
 /// Most bytes that a packed text is unpacked to: 24 for each cell of the largest map, as `%.15g` and a blank take.
 const MOST_UNPACKED_BYTES: u64 = 24 * Terrain::MAX_CELLS;
 
-/// Reads a map file; its ending says which format it is in.
+/// Reads a map file; its ending says which format it is in. Files beside it that belong to it are read too: `.prj` beside `.asc`, and
+/// [`geotiff::Sidecars`].
 ///
 /// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.hgt` and `.hgt.gz` SRTM tile, `.yaml`/`.yml` ROS `map_server`.
 ///
@@ -74,7 +75,7 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
         () if has(&[".asc.gz"]) => {
             read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?
         }
-        () if has(&[".tif", ".tiff"]) => read_bytes(Format::GeoTiff, &bytes()?, options)?,
+        () if has(&[".tif", ".tiff"]) => read_geotiff(&bytes()?, &geotiff::Sidecars::beside(path)?, options)?,
         () if has(&[".hgt"]) => hgt::read(&bytes()?, &name, options)?.into_metres(options)?,
         () if has(&[".hgt.gz"]) => {
             hgt::read(&unpacked(&bytes()?, path, hgt::MOST_BYTES + 1)?, &name, options)?
@@ -94,16 +95,17 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
 /// # Errors
 /// What is wrong with it, with the place in it.
 pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Terrain, Error> {
-    let terrain = match format {
-        Format::Json => json::read(text(bytes)?)?.as_asked(options)?,
-        Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options)?,
-        Format::GeoTiff => {
-            let unwarped = geotiff::read_unwarped(bytes, options.most_cells).map_err(Error::in_geotiff)?;
-            unwarped.into_metres(options)?
-        }
-    };
-    let is_bytes = format == Format::GeoTiff && holds_bytes(bytes);
-    Ok(if is_bytes { terrain.with_doubt_of_bytes() } else { terrain })
+    match format {
+        Format::Json => json::read(text(bytes)?)?.as_asked(options),
+        Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options),
+        Format::GeoTiff => read_geotiff(bytes, &geotiff::Sidecars::default(), options),
+    }
+}
+
+fn read_geotiff(bytes: &[u8], beside: &geotiff::Sidecars, options: &Options) -> Result<Terrain, Error> {
+    let unwarped = geotiff::read_unwarped(bytes, options.most_cells, beside).map_err(Error::in_geotiff)?;
+    let terrain = unwarped.into_metres(options)?;
+    Ok(if holds_bytes(bytes) { terrain.with_doubt_of_bytes() } else { terrain })
 }
 
 /// Whether a TIFF holds one number of 8 bits for each pixel.

@@ -52,6 +52,8 @@ pub enum WarningKind {
     Warped,
     /// Parts of the file that were never written hold zero.
     UnwrittenBlocks,
+    /// A file beside the map contradicts it, or could not be used.
+    BesideFile,
     /// Cells far larger than the robot.
     CoarseCells,
     /// Moving the ends to the centres of cells matters to the energy.
@@ -64,6 +66,8 @@ pub enum WarningKind {
     UnknownGround,
     /// How the areas' coordinates were read, or what of them means nothing here.
     Areas,
+    /// Constants of the robot are borrowed from other robots.
+    BorrowedConstants,
 }
 
 impl WarningKind {

@@ -20,6 +20,7 @@ use crate::{Error, limits::within};
 
 /// One effect of a world file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Effect {
     /// Which one.
@@ -43,6 +44,7 @@ pub struct Effect {
 
 /// A rectangle on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Place {
     /// From west to east [m].
@@ -53,6 +55,7 @@ pub struct Place {
 
 /// A side of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Left.

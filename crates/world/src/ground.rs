@@ -146,7 +146,7 @@ impl Shape {
                 Shape::Plane { slope: [grade * uphill_rad.cos(), grade * uphill_rad.sin()] }
             }
             Relief::Rolling { grade, length_m, seed } => Shape::Waves(waves(*grade, *length_m, *seed)),
-            Relief::Map(path) => Shape::Map(Box::new(terrain::io::read_path(path)?)),
+            Relief::Map(path) => Shape::Map(Box::new(terrain::io::read_path(&path.0)?)),
         })
     }
 }

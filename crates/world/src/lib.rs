@@ -48,4 +48,4 @@ pub use robot::{RobotFile, example_robot};
 pub use sensors::{PowerChannels, Sensors};
 pub use simulate::{Simulation, simulate, simulate_all, simulate_closely};
 pub use trace::Instant;
-pub use world::{Patch, Relief, Wind, World};
+pub use world::{MapPath, Patch, Relief, Wind, World};

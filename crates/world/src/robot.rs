@@ -37,6 +37,19 @@ pub struct RobotFile {
     pub default_surface: String,
     #[serde(default)]
     pub uncertainty: Uncertainty,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_clearance_m: Option<f64>,
+    /// Where the numbers come from, and what a fit left open of them: the truth of a world is what the numbers say.
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub source: serde_json::Value,
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub provenance: serde_json::Value,
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub posterior: serde_json::Value,
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub model_error: serde_json::Value,
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub noise: serde_json::Value,
 }
 
 /// Where the centre of mass lies relative to the geometric centre, x forward, y left [m].
@@ -113,11 +126,17 @@ pub struct Uncertainty {
     pub k1: f64,
     pub k2: f64,
     pub mass_kg: f64,
+    #[serde(skip_serializing_if = "is_zero")]
+    pub hotel_power_w: f64,
+}
+
+fn is_zero(sigma: &f64) -> bool {
+    *sigma == 0.0
 }
 
 impl Default for Uncertainty {
     fn default() -> Self {
-        Uncertainty { mu_roll: 0.10, mu_skid: 0.10, k1: 0.05, k2: 0.02, mass_kg: 0.02 }
+        Uncertainty { mu_roll: 0.10, mu_skid: 0.10, k1: 0.05, k2: 0.02, mass_kg: 0.02, hotel_power_w: 0.0 }
     }
 }
 
@@ -279,6 +298,12 @@ pub fn example_robot() -> RobotFile {
         ]),
         default_surface: "marble".into(),
         uncertainty: Uncertainty::default(),
+        ground_clearance_m: None,
+        source: serde_json::Value::Null,
+        provenance: serde_json::Value::Null,
+        posterior: serde_json::Value::Null,
+        model_error: serde_json::Value::Null,
+        noise: serde_json::Value::Null,
     }
 }
 

@@ -6,6 +6,7 @@ use crate::{Error, RobotFile, limits::within};
 
 /// How a drive is recorded. Every field has a default, which is that of a good robot of the Husky's class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Sensors {
     /// Rows per second, 1 to 50 [Hz]. Default 10.
@@ -60,6 +61,7 @@ pub struct Sensors {
 
 /// In which forms power is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PowerChannels {
     /// At both motor drivers and at the battery, with its voltage.

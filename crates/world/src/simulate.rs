@@ -148,6 +148,7 @@ fn scattered<'a>(robot: &'a RobotFile, world: &World) -> Cow<'a, RobotFile> {
         surface.mu_roll *= factor(u.mu_roll);
         surface.mu_skid *= factor(u.mu_skid);
     }
+    robot.hotel_power_w *= factor(u.hotel_power_w);
     Cow::Owned(robot)
 }
 

@@ -8,6 +8,7 @@ use crate::{Effect, Error, Sensors, limits::within};
 
 /// Where a robot drives, with which sensors, and what is concealed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct World {
     /// The shape of the ground.
@@ -46,6 +47,7 @@ pub struct World {
 
 /// The shape of the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Relief {
     /// Flat and level.
@@ -70,11 +72,19 @@ pub enum Relief {
         seed: u64,
     },
     /// A map file, as the planner reads it; a relative path counts from the world file. Obstacles do not stop a drive.
-    Map(PathBuf),
+    Map(MapPath),
 }
+
+/// Where a map file lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(value_type = String))]
+#[serde(transparent)]
+pub struct MapPath(pub PathBuf);
 
 /// A rectangle of other ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Patch {
     /// Its surface, one of the robot's.
@@ -87,6 +97,7 @@ pub struct Patch {
 
 /// A steady wind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Wind {
     /// Its speed, 0 to 40 [m/s].
@@ -110,7 +121,7 @@ impl World {
     #[must_use]
     pub fn beside(mut self, folder: &Path) -> Self {
         if let Relief::Map(path) = &mut self.terrain {
-            *path = folder.join(&*path);
+            path.0 = folder.join(&path.0);
         }
         self
     }

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 use terrain::{Grid, Terrain, synthetic};
-use world::{Drive, DriveKind, Relief, RobotFile, Waypoint, World, simulate_closely};
+use world::{Drive, DriveKind, MapPath, Relief, RobotFile, Waypoint, World, simulate_closely};
 
 /// Cells a side of the ground of a mission, 1 m each.
 const SIDE: usize = 80;
@@ -148,7 +148,7 @@ fn driven(case: &Case, poses: &[planner::Pose]) -> Option<Driven> {
     let robot = RobotFile::from_json(&serde_json::to_string(&case.planner.lattice().robot).ok()?).ok()?;
     let path = map_file(case)?;
     let world = World {
-        terrain: Relief::Map(path.clone()),
+        terrain: Relief::Map(MapPath(path.clone())),
         scatter: case.scatter,
         seed: case.seed,
         ..World::from_json(r#"{"terrain": "level"}"#).ok()?

@@ -7,7 +7,7 @@ use service::routes::{
 };
 
 use crate::{
-    arguments::{Driving, Place, patience},
+    arguments::{Driving, Place, patience, warn_of_answer},
     failure::Refused,
     output,
     table::{energy, time},
@@ -50,6 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = plan.patience(&patience()).map_err(Refused)?;
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
+    warn_of_answer(&found.warnings, &terrain);
     if driving.json {
         output::json(&found)?;
     } else {

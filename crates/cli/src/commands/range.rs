@@ -8,7 +8,7 @@ use service::routes::{
 };
 
 use crate::{
-    arguments::{MapArguments, Place, patience, read_robot},
+    arguments::{MapArguments, Place, patience, read_robot, warn_of_answer},
     failure::{OutOfCharge, Refused},
     output,
     table::{energy, time},
@@ -93,6 +93,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let patience = plan.patience(&patience()).map_err(Refused)?;
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
+    warn_of_answer(&found.warnings, &terrain);
     if arguments.json {
         output::json(&found)?;
     } else {

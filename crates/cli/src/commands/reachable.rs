@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use service::routes::reachable::{Found, KindName, ReachableRequest};
 
 use crate::{
-    arguments::{Driving, Place, patience},
+    arguments::{Driving, Place, patience, warn_of_answer},
     failure::Refused,
     output,
     reach_picture::draw,
@@ -76,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let began = Instant::now();
     let found = Found::of(&planner, &request, &patience).map_err(Refused)?;
     let contours = found.contours(&patience).map_err(Refused)?;
+    warn_of_answer(&contours.warnings, &terrain);
     let taken_s = began.elapsed().as_secs_f64();
     if let Some(path) = &arguments.tiff {
         let raster = found.raster().map_err(Refused)?;

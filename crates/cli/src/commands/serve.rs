@@ -8,7 +8,7 @@ use std::{
 };
 
 use clap::{Args, ValueEnum, builder::FalseyValueParser};
-use service::{Access, Engine, Hosts, Tokens, serve};
+use service::{Access, Engine, Hosts, Tiles, Tokens, serve};
 use tracing_subscriber::EnvFilter;
 
 use crate::{allocator::give_back_freed_memory, failure::BadInput, limit_arguments::LimitArguments, output};
@@ -50,6 +50,16 @@ pub(crate) struct Arguments {
     /// other name than localhost is answered [default: none]
     #[arg(long, env = "JOULEPATH_HOST", value_delimiter = ',', value_name = "NAME")]
     host: Vec<String>,
+    /// Tiles of pictures that the page may lay under paths, as https://tiles.example.org/{z}/{x}/{y}.png in Web Mercator; who looks at
+    /// the page asks that host for them [default: none]
+    #[arg(long, env = "JOULEPATH_TILES", value_name = "URL")]
+    tiles: Option<String>,
+    /// Whom the tiles are from, which the page shows beside them
+    #[arg(long, env = "JOULEPATH_TILES_ATTRIBUTION", value_name = "TEXT", requires = "tiles")]
+    tiles_attribution: Option<String>,
+    /// Largest zoom that there are tiles of
+    #[arg(long, env = "JOULEPATH_TILES_MAX_ZOOM", value_name = "Z", default_value_t = 19, value_parser = clap::value_parser!(u8).range(0..=24))]
+    tiles_max_zoom: u8,
     /// Form of the log on stderr
     #[arg(long, env = "JOULEPATH_LOG_FORMAT", value_enum, default_value_t = LogFormat::Json)]
     log_format: LogFormat,
@@ -126,7 +136,12 @@ fn access(arguments: &Arguments, addresses: &[SocketAddr]) -> anyhow::Result<Acc
     };
     let cors_origins = arguments.cors_origin.iter().map(origin).collect::<Result<_, _>>()?;
     let hosts = Hosts::named(&arguments.host, !is_local).map_err(|error| BadInput(error.to_string()))?;
-    Ok(Access { tokens, open_metrics: is_local, cors_origins, hosts })
+    let tiles = arguments.tiles.as_deref().map(|url| {
+        let attribution = arguments.tiles_attribution.as_deref().unwrap_or_default();
+        Tiles::from_template(url, attribution, arguments.tiles_max_zoom)
+            .map_err(|error| BadInput(format!("--tiles {error}")))
+    });
+    Ok(Access { tokens, open_metrics: is_local, cors_origins, hosts, tiles: tiles.transpose()? })
 }
 
 fn tokens(file: Option<&Path>) -> Result<Tokens, BadInput> {

@@ -113,7 +113,7 @@ pub(crate) fn sources() -> String {
         let known = source.relative_sigma().map_or("`posterior`, else `uncertainty`".into(), percent);
         let _ = writeln!(text, "| `{name}` | {known} | {} |", percent(source.model_error()));
     }
-    let Uncertainty { mu_roll, mu_skid, k1, k2, mass_kg } = Uncertainty::default();
+    let Uncertainty { mu_roll, mu_skid, k1, k2, mass_kg, .. } = Uncertainty::default();
     let [roll, skid, k1, k2, mass] = [mu_roll, mu_skid, k1, k2, mass_kg].map(percent);
     let _ = writeln!(
         text,

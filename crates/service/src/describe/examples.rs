@@ -13,12 +13,16 @@ const DRIVE_CSV: &str = include_str!("drive.csv");
 /// A level map of two rows as an ESRI ASCII grid.
 const ASCII_MAP: &str = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n0.1 0.1 0.2\n0.1 0.2 0.2\n";
 
+/// South-west corner of the example of a map, in UTM zone 15 north.
+const WEST_M: f64 = 429_250.0;
+const SOUTH_M: f64 = 5_150_480.0;
+
 const ROBOT: &str = "husky-a200";
 
 /// Returns the example of a request's body; binary forms have none.
 pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
-    let start = || json!({ "x_m": 1.5, "y_m": 1.5, "heading_rad": 0.0 });
-    let goal = || json!({ "x_m": 8.5, "y_m": 6.5 });
+    let start = || json!({ "x_m": WEST_M + 1.5, "y_m": SOUTH_M + 1.5, "heading_rad": 0.0 });
+    let goal = || json!({ "x_m": WEST_M + 8.5, "y_m": SOUTH_M + 6.5 });
     let job = || json!({ "robot": ROBOT, "recordings": [drive_id()] });
     Some(match (operation_id, media_type) {
         ("plan" | "compare", _) => json!({ "map": map(), "robot": ROBOT, "start": start(), "goal": goal() }),
@@ -33,8 +37,10 @@ pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
             json!({ "map": map(), "robot": ROBOT, "start": start(), "goal": goal(), "charge": 0.9, "return": true })
         }
         ("mission", _) => {
-            let waypoints =
-                json!([goal(), { "x_m": 2.5, "y_m": 6.5, "service_s": 60.0, "service_power_w": 20.0 }]);
+            let work = json!({
+                "x_m": WEST_M + 2.5, "y_m": SOUTH_M + 6.5, "service_s": 60.0, "service_power_w": 20.0
+            });
+            let waypoints = json!([goal(), work]);
             json!({ "map": map(), "robot": ROBOT, "start": start(), "waypoints": waypoints, "return": true })
         }
         ("createMap", "application/json") => map(),
@@ -51,7 +57,7 @@ pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
 pub(super) fn parameter(operation_id: &str, name: &str) -> Option<Value> {
     Some(match (operation_id, name) {
         ("readRobot", "id") => ROBOT.into(),
-        (_, "id") if operation_id.ends_with("Map") => map_id()?.into(),
+        (_, "id") if operation_id.ends_with("Map") || operation_id == "readMapEarth" => map_id()?.into(),
         (_, "id") if operation_id.ends_with("Robot") => robot_id()?.into(),
         (_, "id") if operation_id.ends_with("Recording") => drive_id().into(),
         (_, "id") => "5b7c1f0e9a3d4c2b8e6f7a1d0c9b8a7f".into(),
@@ -73,7 +79,8 @@ fn map() -> Value {
     const COLUMNS: u32 = 10;
     let row = |row: u32| (0..COLUMNS).map(move |column| f64::from(4 * column + 2 * row) / 100.0).collect();
     let elevation_m: Vec<Vec<f64>> = (0..ROWS).map(row).collect();
-    json!({ "cell_size_m": 1.0, "origin_m": [0.0, 0.0], "rows": ROWS, "columns": COLUMNS, "elevation_m": elevation_m })
+    let origin_m = [WEST_M, SOUTH_M];
+    json!({ "cell_size_m": 1.0, "origin_m": origin_m, "crs": "EPSG:26915", "rows": ROWS, "columns": COLUMNS, "elevation_m": elevation_m })
 }
 
 fn map_id() -> Option<String> {

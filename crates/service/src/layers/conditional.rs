@@ -40,7 +40,7 @@ pub(crate) async fn conditional(path: Option<MatchedPath>, request: Request, nex
     let keep = match path.as_str() {
         _ if !is_found => NEVER,
         path if !is_tagged(path) => NEVER,
-        path if CONTENT_ADDRESSED.contains(&path) => IMMUTABLE,
+        path if CONTENT_ADDRESSED.contains(&path) && !is_named(&response) => IMMUTABLE,
         _ => REVALIDATE,
     };
     let tagged = keep != NEVER;
@@ -51,6 +51,14 @@ pub(crate) async fn conditional(path: Option<MatchedPath>, request: Request, nex
     // What one tenant sees is not there for another whose token comes from the same browser.
     response.headers_mut().append(header::VARY, HeaderValue::from_static("authorization"));
     tag(response, held.as_ref()).await
+}
+
+/// Mark of an answer that holds a name beside what its id is the hash of: the name may change.
+#[derive(Clone, Copy)]
+pub(crate) struct Named;
+
+fn is_named(response: &Response) -> bool {
+    response.extensions().get::<Named>().is_some()
 }
 
 /// Tags a short body that has no tag yet, and leaves out one that the client has. A body that is still being made, as events

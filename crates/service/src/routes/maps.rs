@@ -8,6 +8,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use sha2::{Digest, Sha256};
 use terrain::{MapFile, Patch, Terrain, Warning, areas::Areas, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
 
@@ -17,9 +18,11 @@ use crate::{
     answer::{Json, streamed},
     body::{Id, JsonBody, read as read_body},
     cells::CellBytes,
-    map_reader::{MapReader, RosMapForm},
+    layers::Named,
+    map_reader::{MapReader, Read, RosMapForm},
     maps::Stored,
     problem::{Problem, ProblemType},
+    store::id_of,
 };
 
 /// A map in brief.
@@ -28,6 +31,10 @@ pub struct MapSummary {
     /// Content hash: the same map always has the same id.
     #[schema(example = "b1ae055dffb40c1e6d70fd1ca9d5c3aa")]
     pub id: String,
+    /// What people call the map: the `name` that it was last sent with. Left out where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false, example = "minnesota.tif")]
+    pub name: Option<String>,
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
@@ -72,6 +79,7 @@ impl MapSummary {
         let passable = (0..grid.cells()).filter(|&i| !terrain.is_blocked(grid.cell(i))).count();
         MapSummary {
             id,
+            name: None,
             rows: grid.rows,
             columns: grid.columns,
             cell_size_m: grid.cell_size_m,
@@ -87,7 +95,7 @@ impl MapSummary {
 }
 
 /// How a map is to be read.
-#[derive(Clone, Copy, Debug, Default, Deserialize, IntoParams)]
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 #[serde(deny_unknown_fields)]
 pub struct ReadingQuery {
@@ -97,9 +105,13 @@ pub struct ReadingQuery {
     pub fill_voids_m: Option<f64>,
     /// Elevation of unknown cells, beside those that the file marks. Default: the service's setting, as above [m].
     pub nodata_m: Option<f64>,
+    /// What the map is called, as its file; at most 200 characters. A map that is at hand takes this name. Default: the `name` in a
+    /// JSON grid, else the one that it has.
+    #[param(min_length = 1, max_length = 200)]
+    pub name: Option<String>,
 }
 
-/// Store a map: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), or
+/// Store a map under a name of one's own, if it has one: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), or
 /// the YAML and the image of a ROS map_server map (multipart/form-data with the parts `yaml` and `image`). What looks wrong with
 /// its elevations stands in the answer's warnings.
 #[utoipa::path(
@@ -127,7 +139,7 @@ pub(crate) async fn create(
     uri: Uri,
     request: Request,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
-    let query = query::<ReadingQuery>(&uri, "fill_voids_m` and `nodata_m")?;
+    let query = query::<ReadingQuery>(&uri, "fill_voids_m`, `nodata_m` and `name")?;
     let reader = MapReader::of(&request)?;
     let usual = engine.limits().map_options();
     let options = io::Options {
@@ -135,18 +147,52 @@ pub(crate) async fn create(
         fill_voids_m: query.fill_voids_m.or(usual.fill_voids_m),
         ..usual
     };
+    let name = query.name.map(checked_name).transpose()?;
     let content = read_body(request, &engine).await?;
     let map = engine
         .compute(move |_| {
-            let terrain = reader.read(content, &options)?;
+            let Read { terrain, name: own_name } = reader.read(content, &options)?;
             refuse_too_large(&terrain, options.most_cells)?;
-            let summary = MapSummary::of(terrain.content_id(), &terrain);
+            let name = match name {
+                Some(name) => Some(name),
+                None => own_name.map(checked_name).transpose().map_err(|problem| problem.at("/name"))?,
+            };
+            let summary = MapSummary { name, ..MapSummary::of(terrain.content_id(), &terrain) };
             Ok(Stored { terrain: Arc::new(terrain), summary })
         })
         .await?;
     let summary = map.summary.clone();
     let new = engine.maps().insert(&tenant, map, &engine.limits().maps()).await?;
-    Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
+    answered(&engine, &tenant, new, summary).await
+}
+
+/// The answer to a map that was sent: of one that was at hand, with the name that it keeps.
+async fn answered(
+    engine: &Engine,
+    tenant: &Tenant,
+    new: bool,
+    summary: MapSummary,
+) -> Result<(StatusCode, Json<MapSummary>), Problem> {
+    if new {
+        return Ok((StatusCode::CREATED, Json(summary)));
+    }
+    Ok((StatusCode::OK, Json(engine.maps().renamed(tenant, summary).await?)))
+}
+
+/// Longest name of a map [characters]; those of files have 255 bytes at most.
+const LONGEST_NAME: usize = 200;
+
+/// A name of a map without blanks around it.
+fn checked_name(name: String) -> Result<String, Problem> {
+    let trimmed = name.trim();
+    let length = trimmed.chars().count();
+    if (1..=LONGEST_NAME).contains(&length) && !trimmed.contains(char::is_control) {
+        return Ok(trimmed.to_owned());
+    }
+    let detail = format!(
+        "the map's name has {length} characters, but must have 1 to {LONGEST_NAME} and no control characters: shorten it, or leave it out"
+    );
+    Err(Problem::new(ProblemType::InvalidRequest, detail))
 }
 
 /// Refuses a map that could be kept but not planned over.
@@ -217,7 +263,13 @@ pub(crate) async fn read(
     let form = preferred(&headers, &["application/json", "application/octet-stream"]);
     let about = |tag: String| [(header::CONTENT_TYPE, form.to_owned()), (header::ETAG, tag)];
     if form == "application/json" {
-        return Ok((about(format!("W/\"{id}\"")), streamed(JsonText::of(&map))).into_response());
+        let name = engine.maps().name(&tenant, &id).await?;
+        // The name is part of the answer, and no part of the content that the id is of.
+        let of_name = name.as_deref().map(|name| format!("-{}", id_of(Sha256::new_with_prefix(name))));
+        let tag = format!("W/\"{id}{}\"", of_name.unwrap_or_default());
+        let mut response = (about(tag), streamed(JsonText::of(&map).named(name))).into_response();
+        response.extensions_mut().insert(Named);
+        return Ok(response);
     }
     let cells = CellBytes::of(map, max_cells.unwrap_or(usize::MAX));
     let length = cells.length();
@@ -289,12 +341,13 @@ pub(crate) async fn change(
     JsonBody(patch): JsonBody<Patch>,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
     let before = engine.maps().get(&tenant, &id).await?;
+    let name = engine.maps().name(&tenant, &id).await?;
     let (map, changed) = engine
         .compute(move |_| {
             let (terrain, changed) =
                 before.patched(&patch).map_err(|error| Problem::invalid_map(&error, ""))?;
             let terrain = terrain.with_doubts();
-            let summary = MapSummary::of(terrain.content_id(), &terrain);
+            let summary = MapSummary { name, ..MapSummary::of(terrain.content_id(), &terrain) };
             Ok((Stored { terrain: Arc::new(terrain), summary }, changed))
         })
         .await?;
@@ -312,7 +365,7 @@ pub(crate) async fn change(
             })
             .await?;
     }
-    Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(summary)))
+    answered(&engine, &tenant, new, summary).await
 }
 
 /// Forget a map.

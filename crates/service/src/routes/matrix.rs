@@ -5,11 +5,13 @@ use model::PowerModel;
 use planner::{Patience, Planner};
 use routing::{Question, Waypoint};
 use serde::{Deserialize, Serialize};
-use terrain::MapFile;
+use terrain::{MapFile, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, ObjectiveName, PlanRequest, StartPose, UnknownGroundRequest, with_planner},
+    plan::{
+        GoalPose, ObjectiveName, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, with_planner,
+    },
     robots::RobotChoice,
 };
 use crate::{
@@ -70,6 +72,9 @@ pub struct MatrixAnswer {
     pub distance_m: Vec<Vec<Option<f64>>>,
     /// Why entries are null.
     pub unreachable: Vec<UnreachableAnswer>,
+    /// Doubts about the map.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// Why an entry is null.
@@ -187,6 +192,7 @@ pub fn answer(
         energy_j: found.energy_j,
         duration_s: found.duration_s,
         distance_m: found.distance_m,
+        warnings: map_warnings(planner),
     })
 }
 

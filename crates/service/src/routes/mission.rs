@@ -5,11 +5,14 @@ use mission::{Call, Doubt, Mission, MissionQuestion, Role, Site, Stop, mission};
 use planner::{Patience, Planner};
 use routing::Waypoint;
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Terrain};
+use terrain::{MapFile, Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, PoseAnswer, StartPose, UnknownGroundRequest, place_all, with_planner},
+    plan::{
+        GoalPose, PlanRequest, PoseAnswer, StartPose, UnknownGroundRequest, map_warnings, place_all,
+        with_planner,
+    },
     range::{SpreadAnswer, full, stalled},
     robots::RobotChoice,
 };
@@ -199,6 +202,9 @@ pub struct MissionAnswer {
     pub weakest_leg: WeakestAnswer,
     /// How good the order is.
     pub search: MissionSearch,
+    /// Doubts about the map.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// A stop of the plan. Charge and energy are as the files say.
@@ -353,7 +359,8 @@ pub fn answer(
     settle_all(&mut request.chargers, terrain, "/chargers")?;
     let found = mission(planner, &request.question(planner, patience))
         .map_err(|error| Problem::no_mission(&error))?;
-    Ok(MissionAnswer::from(&found).placed(terrain))
+    let answer = MissionAnswer { warnings: map_warnings(planner), ..MissionAnswer::from(&found) };
+    Ok(answer.placed(terrain))
 }
 
 impl From<&Mission> for MissionAnswer {
@@ -384,6 +391,7 @@ impl From<&Mission> for MissionAnswer {
                 least_energy_j: found.bound_j.min(found.ways_j),
                 excess_at_most_j: (found.ways_j - found.bound_j).max(0.0),
             },
+            warnings: Vec::new(),
         }
     }
 }

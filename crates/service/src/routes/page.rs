@@ -1,5 +1,7 @@
 //! `GET /`: the page, built from `ui` and carried by the program.
 
+use std::sync::Arc;
+
 use axum::{
     Router,
     body::Bytes,
@@ -9,9 +11,10 @@ use axum::{
     routing::get,
 };
 use rust_embed::{EmbeddedFile, RustEmbed};
+use serde::Serialize;
 
 use crate::{
-    Engine,
+    Access, Engine, Tiles,
     problem::{Problem, ProblemType},
 };
 
@@ -23,23 +26,43 @@ struct Built;
 /// Real ground to begin with.
 const SAMPLE_MAP: &[u8] = include_bytes!("../../../../maps/minnesota.tif");
 
-/// The page loads nothing from elsewhere, and nobody frames it.
-const CONTENT_SECURITY_POLICY: &str =
-    "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+/// The page loads nothing from elsewhere but pictures of the ground where the service was given a place for them, and nobody frames it.
+fn content_security_policy(tiles: Option<&Tiles>) -> String {
+    let pictures = tiles.map_or(String::new(), |tiles| format!("; img-src 'self' {}", tiles.origin()));
+    format!("default-src 'self'{pictures}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
+}
+
+/// What the service was started with that concerns the page alone.
+#[derive(Serialize)]
+struct Settings<'a> {
+    tiles: Option<&'a Tiles>,
+}
+
+/// The page's settings, which may hold the key to somebody's tiles.
+pub(crate) fn settings(access: &Access) -> Router<Engine> {
+    let document = serde_json::to_vec(&Settings { tiles: access.tiles.as_ref() }).unwrap_or_default();
+    let document = Bytes::from(document);
+    let about = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    Router::new().route("/page/settings.json", get(async move || (about, document)))
+}
 
 /// The page's own paths.
-pub(crate) fn routes() -> Router<Engine> {
+pub(crate) fn routes(access: &Access) -> Router<Engine> {
+    let policy: Arc<str> = content_security_policy(access.tiles.as_ref()).into();
+    let of_page = Arc::clone(&policy);
     Router::new()
-        .route("/", get(async |headers: HeaderMap| file("index.html", &headers)))
+        .route("/", get(async move |headers: HeaderMap| file("index.html", &headers, &policy)))
         .route(
             "/page/{name}",
-            get(async |Path(name): Path<String>, headers: HeaderMap| file(&format!("page/{name}"), &headers)),
+            get(async move |Path(name): Path<String>, headers: HeaderMap| {
+                file(&format!("page/{name}"), &headers, &of_page)
+            }),
         )
         .route("/sample-map.tif", get(async || ([(header::CONTENT_TYPE, "image/tiff")], SAMPLE_MAP)))
 }
 
 /// One file, or word that the client has it already.
-fn file(name: &str, headers: &HeaderMap) -> Response {
+fn file(name: &str, headers: &HeaderMap, policy: &str) -> Response {
     let Some(EmbeddedFile { data, metadata }) = Built::get(name) else {
         let detail = format!("the page has no `/{name}`: reload it from /");
         return Problem::new(ProblemType::NotFound, detail).into_response();
@@ -54,7 +77,7 @@ fn file(name: &str, headers: &HeaderMap) -> Response {
     let about = [
         (header::ETAG, tag.as_str()),
         (header::CACHE_CONTROL, keep),
-        (header::CONTENT_SECURITY_POLICY, CONTENT_SECURITY_POLICY),
+        (header::CONTENT_SECURITY_POLICY, policy),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
     ];

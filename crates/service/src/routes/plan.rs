@@ -3,7 +3,7 @@
 mod document;
 mod steering;
 mod unknown_ground;
-mod warnings;
+pub(crate) mod warnings;
 mod work;
 
 use std::{
@@ -36,6 +36,7 @@ pub(crate) use document::place_all;
 pub use document::{PlanAnswer, PoseAnswer, RefinedAnswer, SearchAnswer, SnapAnswer, Snapped};
 pub use steering::{ForbidName, GoalHeading, PricesRequest, UnknownGroundRequest};
 pub(crate) use unknown_ground::no_plan_over;
+pub(crate) use warnings::map_warnings;
 pub(crate) use work::with_planner;
 
 /// What to plan.
@@ -204,11 +205,12 @@ fn one() -> f64 {
     post, path = "/v1/plan", tag = "plan",
     request_body = PlanRequest,
     responses(
-        (status = 200, description = "The path, in the form that `Accept` asks for; longitude and latitude of WGS 84 in GeoJSON and GPX where the map has a `crs`, else metres in GeoJSON, and the start of a GPX track at 0° N 0° E", content(
+        (status = 200, description = "The path, in the form that `Accept` asks for; longitude and latitude of WGS 84 in GeoJSON and GPX where the map has a `crs`, else metres in GeoJSON, and the start of a GPX track at 0° N 0° E; KML of a map with a `crs` alone", content(
             (PlanAnswer = "application/json"),
             (Object = "application/geo+json"),
             (String = "text/csv"),
-            (String = "application/gpx+xml")
+            (String = "application/gpx+xml"),
+            (String = "application/vnd.google-earth.kml+xml")
         )),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
@@ -225,16 +227,34 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Written, Problem> {
-    let form =
-        preferred(&headers, &["application/json", "application/geo+json", "text/csv", "application/gpx+xml"]);
-    let found = with_planner(&engine, &tenant, &mut request, answer).await?;
+    const FORMS: [&str; 5] =
+        ["application/json", "application/geo+json", "text/csv", "application/gpx+xml", route_file::KML];
+    let form = preferred(&headers, &FORMS);
+    let planned = with_planner(&engine, &tenant, &mut request, move |planner, request, patience| {
+        if form == route_file::KML {
+            refuse_unplaced(&planner.lattice().terrain)?;
+        }
+        answer(planner, request, patience)
+    });
+    let found = planned.await?;
     engine.metrics().expansions.inc_by(found.search.expanded);
     Ok(Written::new(form, move |out| match form {
         "application/geo+json" => geojson::path(&found, out),
         "text/csv" => route_file::csv(&found, out),
         "application/gpx+xml" => route_file::gpx(&found, out),
+        route_file::KML => route_file::kml(&found, out),
         _ => Ok(serde_json::to_writer(out, &found)?),
     }))
+}
+
+/// Refuses a map whose paths cannot be told in longitude and latitude.
+fn refuse_unplaced(terrain: &Terrain) -> Result<(), Problem> {
+    terrain.earth().map(drop).map_err(|error| {
+        let detail = format!(
+            "KML is longitude and latitude, and {error}: send the map with a `crs` that is placed on earth, as EPSG:32632, or ask for application/json, application/geo+json or text/csv"
+        );
+        Problem::new(ProblemType::InvalidMap, detail).at("/map")
+    })
 }
 
 /// Largest limit on slopes: π/2, a vertical wall, rounded up [rad]. Degrees are nearly always beyond it.

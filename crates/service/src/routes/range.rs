@@ -6,11 +6,14 @@ use mission::{
 };
 use planner::{Patience, Planner};
 use serde::{Deserialize, Serialize};
-use terrain::{MapFile, Terrain};
+use terrain::{MapFile, Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, UnknownGroundRequest, with_planner},
+    plan::{
+        GoalPose, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, warnings::borrowed_constants,
+        with_planner,
+    },
     robots::RobotChoice,
 };
 use crate::{Engine, Tenant, answer::Json, body::JsonBody, problem::Problem};
@@ -132,6 +135,9 @@ pub struct RangeAnswer {
     pub replanned: Option<ReplannedAnswer>,
     /// How far the charge carries; null where a goal was given.
     pub carries: Option<CarriesAnswer>,
+    /// Doubts about the map and about the robot.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
 }
 
 /// One drive of everything as the files say.
@@ -310,7 +316,8 @@ pub fn answer(
         seed: request.seed,
     };
     let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
-    Ok(RangeAnswer::from(&found).placed(&planner.lattice().terrain))
+    let warnings = map_warnings(planner).into_iter().chain(borrowed_constants(robot)).collect();
+    Ok(RangeAnswer { warnings, ..RangeAnswer::from(&found) }.placed(&planner.lattice().terrain))
 }
 
 impl From<&Range> for RangeAnswer {
@@ -340,6 +347,7 @@ impl From<&Range> for RangeAnswer {
             best_speed: (&found.best_speed).into(),
             replanned: found.replanned.as_ref().map(ReplannedAnswer::from),
             carries: found.carries.as_ref().map(CarriesAnswer::from),
+            warnings: Vec::new(),
         }
     }
 }

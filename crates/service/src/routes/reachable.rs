@@ -17,7 +17,9 @@ use terrain::{MapFile, Warning, crs::Earth, io::geotiff};
 use utoipa::ToSchema;
 
 use super::{
-    plan::{GoalPose, PlanRequest, StartPose, UnknownGroundRequest, no_plan_over, with_planner},
+    plan::{
+        GoalPose, PlanRequest, StartPose, UnknownGroundRequest, map_warnings, no_plan_over, with_planner,
+    },
     robots::RobotChoice,
 };
 use crate::{
@@ -277,7 +279,7 @@ impl Found {
                     other => Problem::no_routing(other),
                 }
             })?;
-        let (warnings, crs) = (terrain.warnings().to_vec(), terrain.crs.clone());
+        let (warnings, crs) = (map_warnings(planner), terrain.crs.clone());
         Ok(Found { reach, kind: request.kind, energies_j, warnings, earth: terrain.earth().ok(), crs })
     }
 
@@ -358,7 +360,7 @@ impl Found {
     /// A raster that cannot be written.
     pub fn raster(&self) -> Result<Vec<u8>, Problem> {
         let energy_j: Vec<f32> = self.reach.energy_j.iter().map(|energy_j| *energy_j as f32).collect();
-        geotiff::write(&self.reach.grid, &energy_j)
+        geotiff::write(&self.reach.grid, &energy_j, self.crs.as_deref())
             .map_err(|error| Problem::new(ProblemType::Internal, format!("the raster: {error}")))
     }
 }

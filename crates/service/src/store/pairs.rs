@@ -83,6 +83,13 @@ impl<T: Serialize + DeserializeOwned + Send + Sync> Pairs<T> {
         Err(Problem::new(ProblemType::StoreUnavailable, detail))
     }
 
+    /// Puts another note of an id that a tenant has in the place of the one there is; none where that has gone meanwhile.
+    pub(crate) async fn replace_note(&self, owner: &Tenant, id: &str, note: &T) -> Result<(), Problem> {
+        let _changing = self.store.changing().await;
+        let notes = self.notes.of(owner);
+        if notes.has(id).await? { notes.put(id, note).await } else { Ok(()) }
+    }
+
     /// The data to be read, if it is there. Whether its reader may see it is asked of `notes`.
     pub(crate) async fn open(&self, id: &str) -> Result<Option<File>, Problem> {
         if is_id(id) { self.store.open_file(&self.name(id)).await } else { Ok(None) }

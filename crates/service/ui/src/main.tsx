@@ -2,6 +2,7 @@
 import { render } from "preact";
 import { App } from "./app";
 import { followJobs } from "./diagnose/state";
+import { followEarth } from "./map/earth";
 import { keepLink, readLink } from "./plan/link";
 import { followMap, loadAll } from "./plan/load";
 import { followReach } from "./plan/reach";
@@ -19,6 +20,7 @@ import "./style/report.css";
 
 readLink();
 followMap();
+followEarth();
 followQuestion();
 followReach();
 followJobs();

@@ -1,8 +1,11 @@
 import { eventsOf } from "../src/api/events";
 import { poseAt } from "../src/map/along";
+import { between, partsOf } from "../src/map/lattice";
+import { northOf } from "../src/map/north";
 import { roundLength_m, toMetres, toPixel, zoomed } from "../src/map/view";
 import { energiesOf } from "../src/plan/reach";
 import { arrivalCharge } from "../src/plan/charge";
+import { readTyped } from "../src/plan/typed_place";
 import type { Plan, Pose } from "../src/api/plans";
 import type { Robot } from "../src/api/robots";
 import { changed, read } from "../src/robots/pointer";
@@ -71,4 +74,52 @@ test("events are read whole, however the stream is cut", async () => {
       { id: "2", data: "{\n}" },
     ]);
   }
+});
+
+test("places are read in every form, with decimal points and commas", () => {
+  const read = (text: string) => {
+    const { kind, pair, heading_deg } = readTyped(text);
+    return [kind, ...pair, heading_deg];
+  };
+  expect(read("4, 8")).toEqual(["numbers", 4, 8, undefined]);
+  expect(read("4,8,90")).toEqual(["numbers", 4, 8, 90]);
+  expect(read("4,8, 5,2")).toEqual(["numbers", 4.8, 5.2, undefined]);
+  expect(read("512030,5; 5422994,5; -90°")).toEqual(["numbers", 512030.5, 5422994.5, -90]);
+  expect(read("512030,5 5422994,5")).toEqual(["numbers", 512030.5, 5422994.5, undefined]);
+  expect(read("@0.2,0.8")).toEqual(["parts", 0.2, 0.8, undefined]);
+  expect(read("46.5046N,93.9217W")).toEqual(["degrees", -93.9217, 46.5046, undefined]);
+  expect(read("93,9217° w, 46,5046° n, 45°")).toEqual(["degrees", -93.9217, 46.5046, 45]);
+  expect(read("46.5046, -93.9217")).toEqual(["numbers", 46.5046, -93.9217, undefined]);
+  for (const [text, says] of [
+    ["", "no place"],
+    ["4", "no place"],
+    ["4,8,5,2", "4 numbers"],
+    ["4, 8,5", "two ways"],
+    ["4,8 5", "two ways"],
+    ["4, b", "no number"],
+    ["4N, 5S", "one of E and W"],
+    ["91N, 5E", "0 to 90"],
+    ["4, 5, 400", "−360 to 360"],
+    ["1.000,5; 2", "no number"],
+  ] as const)
+    expect(() => readTyped(text), text).toThrow(says);
+});
+
+test("a lattice gives the numbers between its nodes, and the way back", () => {
+  const at = (u: number, v: number): [number, number] => [10 + 3 * u + 0.2 * u * v, 50 - 2 * v + 0.1 * u];
+  const nodes = [0, 0.5, 1].flatMap((v) => [0, 0.5, 1].map((u) => at(u, v)));
+  const lattice = { columns: 3, rows: 3, nodes };
+  const [x, y] = between(lattice, [0.3, 0.8]);
+  expect([x, y]).toEqual([expect.closeTo(at(0.3, 0.8)[0], 12), expect.closeTo(at(0.3, 0.8)[1], 12)]);
+  const [u, v] = partsOf(lattice, [x, y]);
+  expect([u, v]).toEqual([expect.closeTo(0.3, 9), expect.closeTo(0.8, 9)]);
+});
+
+test("the arrow shows true north where that is more than a degree off the grid", () => {
+  const of = (turn_deg: number) => northOf(((90 - turn_deg) * Math.PI) / 180);
+  expect(of(0.9)).toEqual({ turn_deg: 0, title: "Grid north, 0.9° from true north" });
+  expect(of(2.1).turn_deg).toBeCloseTo(2.1, 9);
+  expect(of(2.1).title).toBe("True north; the map's grid is turned 2.1° west of it");
+  expect(of(-2.1).title).toContain("2.1° east");
+  expect(northOf(null)).toEqual({ turn_deg: 0, title: "North by the map's y axis" });
 });

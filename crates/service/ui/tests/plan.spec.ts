@@ -121,6 +121,7 @@ for (const [form, ending, begins] of [
   ["JSON", "json", "{"],
   ["GeoJSON", "geojson", "{"],
   ["GPX", "gpx", "<?xml"],
+  ["KML", "kml", "<?xml"],
   ["CSV", "csv", "x_m,y_m,z_m"],
 ] as const) {
   test(`the path is saved as ${form}`, async ({ page, service }) => {

@@ -20,9 +20,9 @@ export class Service {
     private readonly child: ChildProcess,
   ) {}
 
-  static async start(): Promise<Service> {
+  static async start(...more: string[]): Promise<Service> {
     const folder = mkdtempSync(join(tmpdir(), "joulepath-store-"));
-    const child = spawn(program, ["serve", "--bind", "127.0.0.1:0", "--store", folder], { stdio: ["ignore", "pipe", "ignore"] });
+    const child = spawn(program, ["serve", "--bind", "127.0.0.1:0", "--store", folder, ...more], { stdio: ["ignore", "pipe", "ignore"] });
     child.once("exit", () => rmSync(folder, { recursive: true, force: true }));
     for await (const line of createInterface({ input: child.stdout! })) {
       const url = /http:\/\/\S+/.exec(line)?.[0];
@@ -67,6 +67,8 @@ export const test = base.extend<{ service: Service }>({
     if (dist) {
       await context.route(/:\d+\/(page\/[^?]*)?$/, (route) => {
         const path = new URL(route.request().url()).pathname;
+        // The settings are the service's own.
+        if (path === "/page/settings.json") return route.continue();
         return route.fulfill({ path: join(dist, path === "/" ? "index.html" : path) });
       });
     }

@@ -2,7 +2,7 @@
 
 use proj4rs::{Proj, transform::transform};
 
-use super::Crs;
+use super::{Crs, LinearUnit};
 
 /// A projected system as a map's x and y are in it, in metres, and its way to WGS 84.
 ///
@@ -137,6 +137,14 @@ impl Earth {
 
 fn finite(pair: [f64; 2]) -> Option<[f64; 2]> {
     pair.iter().all(|value| value.is_finite()).then_some(pair)
+}
+
+/// The code of the EPSG registry of a map's `crs`, with the unit of its coordinates; `None` where it has none, or where the unit is not known.
+pub(crate) fn registered_code(crs: &str) -> Option<(u32, LinearUnit)> {
+    let code = code_of(Crs::parse(crs)?.text.as_deref()?)?;
+    u16::try_from(code).ok().and_then(crs_definitions::from_code)?;
+    let of_code = Crs::from_epsg(code);
+    of_code.unit.filter(|_| !of_code.is_geographic).map(|unit| (code, unit))
 }
 
 /// The code of a text of [`Crs::text`]: `EPSG:code`, or WKT that names its code or is one of the UTM zones by the names that ESRI's files have.

@@ -3,6 +3,7 @@
 //! The `tiff` crate reads the directories; tags that say how samples are laid out (`layout`), compressed (`codec`), predicted and typed
 //! (`sample`), masked (`masks`) and scaled (`metadata`, `heights`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
 
+mod aux_xml;
 mod codec;
 mod directory;
 mod frame;
@@ -15,9 +16,10 @@ mod metadata;
 mod placement;
 mod raster;
 mod sample;
+mod sidecars;
+mod system_keys;
 mod write;
 
-pub use self::write::write;
 use self::{
     directory::TiffFile,
     geokeys::GeoKeys,
@@ -28,9 +30,10 @@ use self::{
     raster::Band,
     sample::Number,
 };
+pub use self::{sidecars::Sidecars, write::write};
 use crate::{
     Error, Terrain, Warning, WarningKind,
-    crs::{Size, Unwarped},
+    crs::{Crs, Size, Unwarped},
     resample::{Affine, Raster},
     samples::Sample,
 };
@@ -43,14 +46,14 @@ use crate::{
 /// # Errors
 /// A missing or unusable property by name, truncation, or an elevation out of range by cell.
 pub fn read(bytes: &[u8], most_cells: u64) -> Result<Terrain, Error> {
-    read_unwarped(bytes, most_cells)?.warped()
+    read_unwarped(bytes, most_cells, &Sidecars::default())?.warped()
 }
 
-/// Reads a GeoTIFF as [`read`] does, but for the warp of one in degrees.
+/// Reads a GeoTIFF as [`read`] does, with the files beside it, but for the warp of one in degrees.
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64) -> Result<Unwarped, Error> {
+pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) -> Result<Unwarped, Error> {
     let mut file = TiffFile::open(bytes)?;
     let (image, others) = file.main_image()?;
     let (columns, rows) = dimensions(&mut file.tags(image))?;
@@ -60,29 +63,35 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64) -> Result<Unwarped, E
     };
     refuse_many(columns as u64, rows as u64)?;
     let layout = Layout::read(&mut file.tags(image))?;
-    let mut warnings = Vec::new();
+    let mut warnings = beside.warnings.clone();
     if others > 0 {
         let detail = format!("the file holds {} images: the first was read", others + 1);
         warnings.push(Warning::new(WarningKind::FirstOfSeveral, detail));
     }
     let band = elevation_band(&layout, &mut warnings)?;
     let keys = GeoKeys::read(&mut file.tags(image))?;
-    let crs = keys.crs(&mut warnings)?;
-    let affine = Affine::read(&mut file.tags(image))?;
-    let placement = Placement::of(affine, Size { columns, rows }, (&keys, &crs), most_cells, &mut warnings)?;
+    let crs = system(&keys, beside, &mut warnings)?;
+    let is_own = Affine::is_in(&mut file.tags(image))?;
+    let affine = beside.affine(own_affine(&mut file, image, &keys), is_own, &mut warnings)?;
+    let is_named = keys.name_a_system() || beside.aux.crs.is_some();
+    let size = Size { columns, rows };
+    let placement = Placement::of(affine, size, (is_named, &crs), most_cells, &mut warnings)?;
     refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
-    let metadata = BandMetadata::read(&mut file.tags(image), band)?;
+    let metadata = beside.aux.over(BandMetadata::read(&mut file.tags(image), band)?)?;
     let heights = Heights::of(&metadata, &crs, &mut warnings)?;
-    let nodata = NoData::read(&mut file.tags(image), layout.sample)?;
+    let nodata = match &beside.aux.nodata {
+        Some(text) => NoData::parse(text, layout.sample)?,
+        None => NoData::read(&mut file.tags(image), layout.sample)?,
+    };
     let warp = placement.warp.clone();
-    let reading = Reading { layout, band, nodata, heights, placement };
+    let reading = Reading { layout, band, nodata, heights, placement, mask: beside.mask.as_deref() };
     let terrain = if reading.layout.sample.is_exact_in_single() {
         reading.terrain::<f32>(&mut file, &mut warnings)?
     } else {
         reading.terrain::<f64>(&mut file, &mut warnings)?
     };
-    let terrain = warnings.into_iter().fold(terrain, Terrain::with_warning);
+    let terrain = sidecars::joined(warnings).into_iter().fold(terrain, Terrain::with_warning);
     Ok(Unwarped { terrain, warp })
 }
 
@@ -98,9 +107,29 @@ pub fn cells(bytes: &[u8]) -> Result<u64, Error> {
     let keys = GeoKeys::read(&mut file.tags(image))?;
     let crs = keys.crs(&mut Vec::new());
     let Some(crs) = crs.ok().filter(|crs| crs.is_geographic) else { return Ok(size.pixels()) };
-    let affine = Affine::read(&mut file.tags(image))?;
-    let placement = Placement::of(affine, size, (&keys, &crs), Terrain::MAX_CELLS, &mut Vec::new());
+    let affine = own_affine(&mut file, image, &keys)?;
+    let placement = Placement::of(affine, size, (true, &crs), Terrain::MAX_CELLS, &mut Vec::new());
     Ok(placement.map_or(size.pixels(), |placement| placement.numbers(size)))
+}
+
+/// The system by GDAL's metadata beside the file, or by its own keys.
+fn system(keys: &GeoKeys, beside: &Sidecars, warnings: &mut Vec<Warning>) -> Result<Crs, Error> {
+    let Some(crs) = &beside.aux.crs else { return keys.crs(warnings) };
+    let own = keys.crs(&mut Vec::new()).ok().and_then(|own| own.text);
+    if let Some(own) = own.filter(|own| crs.text.as_ref() != Some(own)) {
+        let detail = format!(
+            "the file beside it (.aux.xml) says that the GeoTIFF is in {}, its own keys that it is in {own}: the former was followed, as GDAL does",
+            crs.text.as_deref().unwrap_or("another system")
+        );
+        warnings.push(Warning::new(WarningKind::BesideFile, detail));
+    }
+    Ok(crs.clone())
+}
+
+/// The placement by the file's own tags.
+fn own_affine(file: &mut TiffFile<'_>, image: usize, keys: &GeoKeys) -> Result<Affine, Error> {
+    let affine = Affine::read(&mut file.tags(image))?;
+    Ok(if keys.pixel_is_point() { affine.with_centred_pixels() } else { affine })
 }
 
 /// The band that holds elevation: the only one, or the first of several that are no colours.
@@ -129,15 +158,17 @@ fn elevation_band(layout: &Layout, warnings: &mut Vec<Warning>) -> Result<usize,
 }
 
 /// What is known of a raster before its samples are read.
-struct Reading {
+struct Reading<'a> {
     layout: Layout,
     band: usize,
     nodata: Option<NoData>,
     heights: Heights,
     placement: Placement,
+    /// A mask file beside it.
+    mask: Option<&'a [u8]>,
 }
 
-impl Reading {
+impl Reading<'_> {
     fn terrain<T: Number + Sample>(
         self,
         file: &mut TiffFile<'_>,
@@ -163,7 +194,7 @@ impl Reading {
                 }
             }
         }
-        masks::apply(file, layout, &mut samples)?;
+        masks::apply(file, layout, self.mask, &mut samples)?;
         let grid = self.placement.grid;
         let (columns, rows) = (layout.columns, layout.rows);
         let samples = match self.placement.arrangement {
@@ -205,7 +236,7 @@ mod tests {
     fn a_raster_that_was_written_lies_where_it_did_and_holds_what_it_held() {
         let grid = Grid { rows: 3, columns: 5, cell_size_m: 0.5, origin_m: [500_000.0, 4_649_776.5] };
         let values: Vec<f32> = (0..15).map(|i| if i == 7 { f32::NAN } else { i as f32 * 1.5 }).collect();
-        let terrain = read(&write(&grid, &values).unwrap(), 15).unwrap();
+        let terrain = read(&write(&grid, &values, None).unwrap(), 15).unwrap();
         assert_eq!(terrain.grid, grid);
         assert_eq!(terrain.warnings(), []);
         for (index, value) in values.iter().enumerate() {

@@ -37,6 +37,10 @@ pub struct MapFile {
     #[serde(default)]
     #[cfg_attr(feature = "openapi", schema(example = "EPSG:26915"))]
     pub crs: Option<String>,
+    /// What people call the map, as the name of its file; kept beside its content, of which it is no part. Default: none.
+    #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 200, example = "yard"))]
+    pub name: Option<String>,
     /// Elevation by row and column, −11 000 to 22 000 or null [m].
     #[cfg_attr(feature = "openapi", schema(value_type = Vec<Vec<Option<f64>>>))]
     pub elevation_m: Layer<Vec<f64>>,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Every effect that a world can conceal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum EffectName {
     /// Windings and cases warm up; strength 1 is a Husky's motor.

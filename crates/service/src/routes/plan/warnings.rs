@@ -1,5 +1,6 @@
-//! What is doubtful about a path because of the map it lies on.
+//! What is doubtful about a path because of the map it lies on and of the robot that takes it.
 
+use model::{Robot, worth::remedy};
 use planner::Planner;
 use terrain::{Terrain, Warning, WarningKind};
 
@@ -9,17 +10,24 @@ use super::{PlanAnswer, PlanRequest, PoseAnswer};
 /// stands for ground that the robot climbs and descends many times over.
 const COARSE_WHEELBASES: f64 = 10.0;
 
+/// Doubts about a planner's map that hold for every path over it.
+pub(crate) fn map_warnings(planner: &Planner) -> Vec<Warning> {
+    let lattice = planner.lattice();
+    let coarse = coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m);
+    lattice.terrain.warnings().iter().cloned().chain(coarse).collect()
+}
+
 impl PlanAnswer {
     /// The answer with its place on earth and doubts about the map and about this path over it.
     pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest) -> Self {
         let lattice = planner.lattice();
         let mut answer = self.placed(&lattice.terrain);
-        answer.warnings = lattice.terrain.warnings().to_vec();
+        answer.warnings = map_warnings(planner);
         let own = [
-            coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m),
             moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
             filled_ground(&lattice.terrain, &answer.poses),
             stops(&answer, request),
+            borrowed_constants(&lattice.robot),
         ];
         answer.warnings.extend(own.into_iter().flatten());
         answer
@@ -74,6 +82,18 @@ fn stops(answer: &PlanAnswer, request: &PlanRequest) -> Option<Warning> {
         );
         Warning::new(WarningKind::Stops, detail)
     })
+}
+
+/// A warning where the robot has constants of other robots, with the drive that would tell the one that matters most.
+pub(crate) fn borrowed_constants(robot: &Robot) -> Option<Warning> {
+    let worst = robot.worst_borrowed()?;
+    let detail = format!(
+        "{} of `{}` are borrowed from other robots or assumed; most would be gained by {worst}: `joulepath calibrate` with {}",
+        robot.borrowed().join(", "),
+        robot.name,
+        remedy(worst)
+    );
+    Some(Warning::new(WarningKind::BorrowedConstants, detail))
 }
 
 /// A warning where the path leads over ground that was filled in, with how much of it.

@@ -10,6 +10,10 @@ export interface Warning {
 
 export interface MapSummary {
   id: string;
+  /** What people call it. */
+  name?: string;
+  /** Its coordinate reference system, if it says so. */
+  crs?: string;
   rows: number;
   columns: number;
   cell_size_m: number;
@@ -42,8 +46,9 @@ const MOST_CELLS = 1_500_000;
 
 export const listMaps = async () => (await ask<{ maps: MapSummary[] }>("/v1/maps")).maps;
 
-export const storeMap = (body: Blob, contentType: string, tell: (share: number) => void) =>
-  upload<MapSummary>("/v1/maps", body, contentType, tell);
+/** Stores a map; `query` says its name and how it is to be read. */
+export const storeMap = (body: Blob, contentType: string, query: Record<string, string>, tell: (share: number) => void) =>
+  upload<MapSummary>(`/v1/maps?${new URLSearchParams(query)}`, body, contentType, tell);
 
 /** Fetches the cells of a map. */
 export async function readCells(map: MapSummary, signal?: AbortSignal): Promise<Cells> {

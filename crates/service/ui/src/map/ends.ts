@@ -4,6 +4,7 @@ import type { Cells } from "../api/maps";
 import type { Place } from "../api/plans";
 import { metres } from "../format";
 import * as state from "../plan/state";
+import { degreesOf, degreesWords } from "./earth";
 import { extentOf } from "./view";
 
 export type End = "start" | "goal";
@@ -23,7 +24,9 @@ export function placeWords({ x_m, y_m }: Place): string {
   if (!map) return "";
   const z_m = elevationAt(state.cells.value, x_m, y_m);
   const height = Number.isNaN(z_m) ? "" : `, ${metres(z_m)} up`;
-  return `${metres(x_m - map.origin_m[0])} east, ${metres(y_m - map.origin_m[1])} north${height}`;
+  const degrees = degreesOf({ x_m, y_m });
+  const onEarth = degrees ? `, ${degreesWords(degrees)}` : "";
+  return `${metres(x_m - map.origin_m[0])} east, ${metres(y_m - map.origin_m[1])} north${height}${onEarth}`;
 }
 
 /** Keeps a place on the map. */

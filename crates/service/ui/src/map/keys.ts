@@ -4,6 +4,7 @@ import { announce } from "../announce";
 import type { Place } from "../api/plans";
 import * as state from "../plan/state";
 import { onMap, placeWords, setEnd, settle, turn } from "./ends";
+import { pointedAt } from "./pointed";
 import { fitted, toPixel, zoomed, type Size, type View } from "./view";
 
 /** Where the keyboard's cursor is; null while the map has not the focus. */
@@ -48,6 +49,7 @@ export function press(event: KeyboardEvent, view: View, size: Size, show: (view:
 function move(at: Place, [dx, dy]: [number, number], pixels: number, view: View, size: Size, show: (view: View) => void): void {
   const next = onMap({ x_m: at.x_m + (dx * pixels) / view.px_per_m, y_m: at.y_m + (dy * pixels) / view.px_per_m });
   cursor.value = next;
+  pointedAt.value = null;
   announce(placeWords(next));
   const { x, y } = toPixel(view, size, next.x_m, next.y_m);
   const isInside = x > 30 && y > 30 && x < size.width - 30 && y < size.height - 30;

@@ -6,12 +6,16 @@ import * as state from "../plan/state";
 import { color, theme } from "../theme";
 import { poseAt } from "./along";
 import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
+import { Coordinates } from "./coordinates";
+import { earth } from "./earth";
 import { listen } from "./gestures";
 import { cursor, KEYS, press } from "./keys";
 import { Legend } from "./legend";
+import { NorthArrow } from "./north_arrow";
 import { relief, scaleOf, slopesOf } from "./relief";
 import { ScaleBar } from "./scale_bar";
-import { fitted, toPixel, zoomed, type Size, type View } from "./view";
+import { drawTiles, missing, tileSource } from "./tiles";
+import { extentOf, fitted, toPixel, zoomed, type Size, type View } from "./view";
 
 export const view = signal<View | null>(null);
 const size = signal<Size>({ width: 0, height: 0 });
@@ -59,6 +63,16 @@ function drawGround(canvas: HTMLCanvasElement): void {
   context.drawImage(picture, west.x, west.y, cells.columns * px, cells.rows * px);
 }
 
+function drawPictures(canvas: HTMLCanvasElement): void {
+  const [shown, known, source, map] = [view.value, earth.value, tileSource.value, state.map.value];
+  const context = sized(canvas);
+  if (!context || !shown || !known || !source || !map || !state.hasTiles.value) return;
+  const { west_m, south_m, width_m, height_m } = extentOf(map);
+  const corner = toPixel(shown, size.value, west_m, south_m + height_m);
+  const frame = { ...corner, width: width_m * shown.px_per_m, height: height_m * shown.px_per_m };
+  drawTiles({ context, earth: known, view: shown, size: size.value, ratio: devicePixelRatio || 1 }, source, frame);
+}
+
 function drawOver(canvas: HTMLCanvasElement): void {
   const context = sized(canvas);
   const [shown, plans] = [view.value, state.comparison.value];
@@ -87,19 +101,29 @@ function followFit(): () => void {
   });
 }
 
+/** Whom the tiles are from, and how many did not come. */
+function Attribution() {
+  const source = tileSource.value;
+  if (!source || !state.hasTiles.value || !earth.value) return null;
+  const gaps = missing.value > 0 ? ` (${missing.value} tiles did not come)` : "";
+  return <p class="map-attribution">{`${source.attribution}${gaps}`.trim() || "Tiles without a stated source"}</p>;
+}
+
 export function MapView() {
   const frame = useRef<HTMLDivElement>(null);
   const below = useRef<HTMLCanvasElement>(null);
+  const pictures = useRef<HTMLCanvasElement>(null);
   const above = useRef<HTMLCanvasElement>(null);
 
   useEffect(() => {
-    const [element, groundCanvas, overCanvas] = [frame.current, below.current, above.current];
-    if (!element || !groundCanvas || !overCanvas) return;
+    const [element, groundCanvas, tileCanvas, overCanvas] = [frame.current, below.current, pictures.current, above.current];
+    if (!element || !groundCanvas || !tileCanvas || !overCanvas) return;
     const ended = new AbortController();
     const watcher = new ResizeObserver(() => (size.value = { width: element.clientWidth, height: element.clientHeight }));
     watcher.observe(element);
     listen({ element: overCanvas, size: () => size.value, view: () => view.value, show: (next) => (view.value = next) }, ended.signal);
-    const stops = [effect(() => drawGround(groundCanvas)), effect(() => drawOver(overCanvas)), followFit()];
+    const draw = [() => drawGround(groundCanvas), () => drawPictures(tileCanvas), () => drawOver(overCanvas)];
+    const stops = [...draw.map((each) => effect(each)), followFit()];
     return () => {
       ended.abort();
       watcher.disconnect();
@@ -136,6 +160,7 @@ export function MapView() {
         onBlur={() => (cursor.value = null)}
       >
         <canvas ref={below} class="map-ground" aria-hidden="true" />
+        <canvas ref={pictures} class="map-tiles" aria-hidden="true" />
         <canvas ref={above} class="map-over" aria-hidden="true" />
       </div>
       <p id="map-keys" class="map-keys">
@@ -153,8 +178,13 @@ export function MapView() {
           ⤢
         </button>
       </div>
+      {state.map.value && <NorthArrow />}
       <div class="map-foot">
         {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
+        <div class="map-where">
+          <Coordinates />
+          <Attribution />
+        </div>
         {view.value && <ScaleBar view={view.value} />}
       </div>
     </div>

@@ -20,6 +20,12 @@ const FORMS = [
     ending: "gpx",
     about: "A track; its start is put at 0° N 0° E where the map does not say where on earth it lies",
   },
+  {
+    name: "KML",
+    type: "application/vnd.google-earth.kml+xml",
+    ending: "kml",
+    about: "A line on the globe, of a map that says where on earth it lies",
+  },
   { name: "CSV", type: "text/csv", ending: "csv", about: "Pose by pose" },
 ] as const;
 

@@ -1,6 +1,7 @@
 /** What is there before any map is. */
 import { DropZone } from "../widgets/drop_zone";
 import { addMap, addSample, sending } from "./load";
+import { ReadingOptions } from "./reading_options";
 
 export const MAP_ENDINGS = ".json,.asc,.txt,.tif,.tiff";
 
@@ -15,6 +16,7 @@ export function FirstMap() {
       <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
         <span>GeoTIFF, ESRI ASCII grid (.asc), or a JSON grid</span>
       </DropZone>
+      <ReadingOptions />
       <p class="first-map-or">
         <button type="button" class="primary" disabled={sending.value !== null} onClick={() => void addSample()}>
           Open the sample map

@@ -34,6 +34,7 @@ export function readLink(): void {
   const layer = said.get("layer");
   if (layer === "slope" || layer === "surface") state.layer.value = layer;
   state.is3d.value = said.has("3d");
+  state.hasTiles.value = said.has("tiles");
   const reach = said.get("reach");
   state.reach.value = reach === "outward" || reach === "out-and-back" ? reach : null;
   if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
@@ -54,6 +55,7 @@ function link(): string {
   say("surface", state.surface.value);
   say("layer", state.layer.value === "elevation" ? null : state.layer.value);
   if (state.is3d.value) said.set("3d", "");
+  if (state.hasTiles.value) said.set("tiles", "");
   say("reach", state.reach.value);
   say("job", job.value?.id);
   const query = said

@@ -1,10 +1,13 @@
 /** Brings maps and robots in at the start, cells when a map is chosen, and a map that is dropped. */
 import { effect, signal } from "@preact/signals";
+import { readSettings } from "../api/earth";
 import { listMaps, readCells, storeMap, type MapSummary } from "../api/maps";
 import { problemOf, type Problem } from "../api/problem";
 import { listRobots } from "../api/robots";
 import { mapType } from "../api/upload";
 import { setEnd } from "../map/ends";
+import { tileSource } from "../map/tiles";
+import { readingQuery } from "./reading_options";
 import * as state from "./state";
 
 /** How much of a map has been sent, 0 to 1; null when none is. */
@@ -21,7 +24,8 @@ export async function loadRobots(): Promise<void> {
 export async function loadAll(): Promise<void> {
   loadProblem.value = null;
   try {
-    const [maps] = await Promise.all([listMaps(), loadRobots()]);
+    const [maps, settings] = await Promise.all([listMaps(), readSettings(), loadRobots()]);
+    tileSource.value = settings.tiles;
     state.maps.value = maps;
     const isKnown = maps.some(({ id }) => id === state.mapId.value);
     if (!isKnown && state.mapId.value) {
@@ -50,23 +54,31 @@ function added(map: MapSummary): void {
   chooseMap(map.id);
 }
 
-async function sent(body: Blob, type: string): Promise<void> {
-  sending.value = 0;
+/** Longest name that the service keeps [characters]. */
+const LONGEST_NAME = 200;
+
+async function sent(body: Blob, type: string, name: string): Promise<void> {
   loadProblem.value = null;
+  const reading = readingQuery();
+  if (!reading) {
+    loadProblem.value = problemOf(new Error("One of the reading options is no number. Mend it, and add the map again."));
+    return;
+  }
+  sending.value = 0;
   try {
-    added(await storeMap(body, type, (share) => (sending.value = share)));
+    added(await storeMap(body, type, { name: name.slice(0, LONGEST_NAME), ...reading }, (share) => (sending.value = share)));
   } catch (thrown) {
     loadProblem.value = problemOf(thrown);
   }
   sending.value = null;
 }
 
-export const addMap = (file: File) => sent(file, mapType(file.name));
+export const addMap = (file: File) => sent(file, mapType(file.name), file.name);
 
 /** The service carries a piece of Minnesota for who has no map at hand. */
 export async function addSample(): Promise<void> {
   const sample = await fetch("/sample-map.tif");
-  await sent(await sample.blob(), "image/tiff");
+  await sent(await sample.blob(), "image/tiff", "minnesota.tif");
   const map = state.map.value;
   if (!map) return;
   const middle_m = map.cell_size_m / 2;

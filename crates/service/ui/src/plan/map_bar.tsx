@@ -2,13 +2,19 @@
 import { metres } from "../format";
 import type { MapSummary } from "../api/maps";
 import type { ReachKind } from "../api/reachable";
+import { earth } from "../map/earth";
+import { tileSource } from "../map/tiles";
 import { Choice } from "../widgets/choice";
 import { MAP_ENDINGS } from "./first_map";
 import { addMap, chooseMap } from "./load";
+import { ReadingOptions } from "./reading_options";
 import * as state from "./state";
 
-const title = ({ id, rows, columns, cell_size_m, elevation_range_m: [low, high] }: MapSummary) =>
-  `${metres(columns * cell_size_m)} × ${metres(rows * cell_size_m)}, ${metres(high - low)} relief · ${id.slice(0, 6)}`;
+/** What a map is called, and how large it is; one without a name has its id. */
+function title({ id, name, rows, columns, cell_size_m, elevation_range_m: [low, high] }: MapSummary): string {
+  const extent = `${metres(columns * cell_size_m)} × ${metres(rows * cell_size_m)}, ${metres(high - low)} relief`;
+  return name ? `${name} · ${extent}` : `${extent} · ${id.slice(0, 6)}`;
+}
 
 export function MapBar() {
   const hasSurfaces = (state.map.value?.surfaces.length ?? 0) > 0;
@@ -36,6 +42,7 @@ export function MapBar() {
         />
         Add map…
       </label>
+      <ReadingOptions />
       <Choice
         label="A click sets"
         value={state.tool.value}
@@ -66,6 +73,11 @@ export function MapBar() {
           <option value="outward">Reach from start</option>
           <option value="out-and-back">Reach and back</option>
         </select>
+      )}
+      {tileSource.value && earth.value && (
+        <button type="button" aria-pressed={state.hasTiles.value} onClick={() => (state.hasTiles.value = !state.hasTiles.value)}>
+          Tiles
+        </button>
       )}
       <button type="button" aria-pressed={state.is3d.value} onClick={() => (state.is3d.value = !state.is3d.value)}>
         3-D

@@ -2,6 +2,7 @@
 import { duration, metres, percent, words } from "../format";
 import { RobotSelect } from "../widgets/robot_select";
 import { Slider } from "../widgets/slider";
+import { PlaceField } from "./place_field";
 import * as state from "./state";
 
 /** No robot is loaded with more than this share of its own mass here. */
@@ -16,7 +17,9 @@ export function Question() {
   const speed_mps = Math.min(state.speed_mps.value ?? state.usualSpeed(robot), robot.max_wheel_speed_mps);
   const { battery } = robot;
   return (
-    <section class="question" aria-label="Robot">
+    <section class="question" aria-label="Question">
+      <PlaceField end="start" name="Start at" />
+      <PlaceField end="goal" name="Goal at" />
       <RobotChoice />
       <Slider
         label="Speed"

@@ -34,6 +34,8 @@ export const charge = signal(1);
 
 export const layer = signal<Layer>("elevation");
 export const is3d = signal(false);
+/** Whether tiles of pictures lie on the ground. */
+export const hasTiles = signal(false);
 
 /** Which contours are wanted, and whether the service has any. */
 export const reach = signal<ReachKind | null>(null);

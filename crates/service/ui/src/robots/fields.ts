@@ -1,4 +1,4 @@
-/** The fields of a robot: what they mean, their units, and the ranges that the service keeps to (`robot_limits.rs` of the model). */
+/** The fields of a robot: what they mean, their units, and the ranges that the service keeps to (`robot/ranges.rs` of the model). */
 
 import { words } from "../format";
 import { escaped } from "./pointer";

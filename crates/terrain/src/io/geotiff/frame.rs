@@ -6,6 +6,13 @@ use super::directory::Tags;
 use crate::{Error, resample::Affine};
 
 impl Affine {
+    /// Whether a file says where it lies.
+    pub(super) fn is_in(tags: &mut Tags<'_, '_>) -> Result<bool, Error> {
+        let is_there = |found: Option<Vec<f64>>| found.is_some();
+        Ok(is_there(tags.doubles(Tag::ModelTransformationTag)?)
+            || is_there(tags.doubles(Tag::ModelPixelScaleTag)?))
+    }
+
     /// The map from pixels to coordinates in the file's own units, by its transformation or by tie point and scale.
     ///
     /// # Errors

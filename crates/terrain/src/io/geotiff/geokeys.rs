@@ -8,18 +8,18 @@ use crate::{
     crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, is_of_earth, vertical},
 };
 
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
-const CITATION: u16 = 1026;
+pub(super) const MODEL_TYPE: u16 = 1024;
+pub(super) const RASTER_TYPE: u16 = 1025;
+pub(super) const CITATION: u16 = 1026;
 const GEODETIC_CRS: u16 = 2048;
 const ANGULAR_UNITS: u16 = 2054;
 const SEMI_MAJOR_AXIS: u16 = 2057;
 const SEMI_MINOR_AXIS: u16 = 2058;
 const INVERSE_FLATTENING: u16 = 2059;
-const PROJECTED_CRS: u16 = 3072;
-const PROJECTED_CITATION: u16 = 3073;
+pub(super) const PROJECTED_CRS: u16 = 3072;
+pub(super) const PROJECTED_CITATION: u16 = 3073;
 const PROJECTION_METHOD: u16 = 3075;
-const LINEAR_UNITS: u16 = 3076;
+pub(super) const LINEAR_UNITS: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
 const STANDARD_PARALLEL: u16 = 3078;
 const NATURAL_ORIGIN_LONGITUDE: u16 = 3080;
@@ -29,17 +29,10 @@ const NATURAL_ORIGIN_SCALE: u16 = 3092;
 const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNITS: u16 = 4099;
 
-const USER_DEFINED: u32 = 32767;
-/// A directory that says: projected, a pixel is an area, some frame of the user's, in metres.
-#[rustfmt::skip]
-pub(super) const PROJECTED_METRES: [u16; 20] = [
-    1, 1, 0, 4,
-    MODEL_TYPE, 0, 1, 1,
-    RASTER_TYPE, 0, 1, 1,
-    PROJECTED_CRS, 0, 1, 32767,
-    LINEAR_UNITS, 0, 1, 9001,
-];
-
+pub(super) const USER_DEFINED: u16 = 32767;
+const USER_DEFINED_CODE: u32 = USER_DEFINED as u32;
+/// What the citations of Esri begin with that hold a system in WKT.
+pub(super) const ESRI_CITATION: &str = "ESRI PE String = ";
 /// What a GeoTIFF says of its coordinate reference system.
 pub(super) struct GeoKeys {
     /// Key and value of short keys; a double's or text's place otherwise.
@@ -106,14 +99,14 @@ impl GeoKeys {
                 expected: "1, projected",
             });
         }
-        let geodetic = self.code(GEODETIC_CRS).filter(|code| *code != USER_DEFINED);
+        let geodetic = self.code(GEODETIC_CRS).filter(|code| *code != USER_DEFINED_CODE);
         if kind == Some(GEOGRAPHIC) || (kind != Some(PROJECTED) && projected.is_none() && geodetic.is_some())
         {
             self.refuse_other_angles()?;
             let text = geodetic.map(|code| format!("EPSG:{code}"));
             return Ok(Crs { text, is_geographic: true, vertical: self.vertical()?, ..Crs::default() });
         }
-        let mut crs = match projected.filter(|code| *code != USER_DEFINED) {
+        let mut crs = match projected.filter(|code| *code != USER_DEFINED_CODE) {
             Some(code) => Crs::from_epsg(code),
             None => self.own_system(),
         };
@@ -137,12 +130,12 @@ impl GeoKeys {
 
     /// A system without a code: Esri writes its text into the citation, others its parameters into keys.
     fn own_system(&self) -> Crs {
-        const ESRI: &str = "ESRI PE String = ";
         const MERCATOR: u32 = 7;
         const EQUIRECTANGULAR: u32 = 17;
         const WGS_84: u32 = 4326;
         let citations = [self.citation(PROJECTED_CITATION), self.citation(CITATION)];
-        let of_esri = citations.iter().flatten().find_map(|text| Crs::parse(text.strip_prefix(ESRI)?));
+        let of_esri =
+            citations.iter().flatten().find_map(|text| Crs::parse(text.strip_prefix(ESRI_CITATION)?));
         if let Some(crs) = of_esri {
             return crs;
         }
@@ -199,7 +192,7 @@ impl GeoKeys {
             return Err(Error::TiffValue { tag, value: size.to_string(), expected: "metres above zero" });
         }
         match self.code(LINEAR_UNITS) {
-            None | Some(USER_DEFINED) => Ok(size.map(LinearUnit::of_metres)),
+            None | Some(USER_DEFINED_CODE) => Ok(size.map(LinearUnit::of_metres)),
             Some(code) => by_epsg_code(code).map(Some).ok_or(Error::TiffValue {
                 tag: TAG,
                 value: code.to_string(),
@@ -209,9 +202,9 @@ impl GeoKeys {
     }
 
     fn vertical(&self) -> Result<Option<Vertical>, Error> {
-        let of_code = self.code(VERTICAL_CRS).filter(|code| *code != USER_DEFINED).and_then(vertical);
+        let of_code = self.code(VERTICAL_CRS).filter(|code| *code != USER_DEFINED_CODE).and_then(vertical);
         let unit = match self.code(VERTICAL_UNITS) {
-            None | Some(USER_DEFINED) => return Ok(of_code),
+            None | Some(USER_DEFINED_CODE) => return Ok(of_code),
             Some(code) => by_epsg_code(code).ok_or(Error::TiffValue {
                 tag: "vertical unit (VerticalUnitsGeoKey)",
                 value: code.to_string(),

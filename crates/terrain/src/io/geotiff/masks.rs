@@ -17,13 +17,14 @@ pub(super) fn alpha_band(layout: &Layout) -> Option<usize> {
     layout.extra.iter().position(|kind| ALPHA.contains(kind)).map(|position| first_extra + position)
 }
 
-/// Marks as NaN what an alpha band or a mask image of the same size leaves out.
+/// Marks as NaN what an alpha band, a mask image of the same size or a mask file beside it leaves out.
 ///
 /// # Errors
 /// A mask of another size, or one that cannot be decoded.
 pub(super) fn apply<T: Number>(
     file: &mut TiffFile<'_>,
     layout: &Layout,
+    beside: Option<&[u8]>,
     samples: &mut [T],
 ) -> Result<(), Error> {
     if let Some(alpha) = alpha_band(layout) {
@@ -37,7 +38,23 @@ pub(super) fn apply<T: Number>(
         }
         hide(samples, file, &mask, 0)?;
     }
-    Ok(())
+    beside.map_or(Ok(()), |bytes| apply_file(bytes, layout, samples))
+}
+
+/// The same of a mask file (`.msk`), which is a TIFF of its own.
+fn apply_file<T: Number>(bytes: &[u8], layout: &Layout, samples: &mut [T]) -> Result<(), Error> {
+    let refused = |why: String| Error::MaskFile { why };
+    let mut file = TiffFile::open(bytes).map_err(|error| refused(error.to_string()))?;
+    let (image, _) = file.main_image().map_err(|error| refused(error.to_string()))?;
+    let mask = Layout::read(&mut file.tags(image)).map_err(|error| refused(error.to_string()))?;
+    if (mask.columns, mask.rows) != (layout.columns, layout.rows) {
+        let (columns, rows) = (mask.columns, mask.rows);
+        return Err(refused(format!(
+            "it has {columns} × {rows} pixels, the map {} × {}",
+            layout.columns, layout.rows
+        )));
+    }
+    hide(samples, &file, &mask, 0).map_err(|error| refused(error.to_string()))
 }
 
 fn hide<T: Number>(

@@ -31,21 +31,36 @@ impl BandMetadata {
     }
 
     fn parse(text: &str, band: usize) -> Result<Self, Error> {
-        let mut metadata = BandMetadata::default();
-        for Item { role, text } in items(text, band) {
+        BandMetadata::default().with(items(text, band).iter(), "GDAL_METADATA")
+    }
+
+    /// The same with items in the place of what they say anew; `source` is where they stand.
+    ///
+    /// # Errors
+    /// A unit or number that means nothing here, by name.
+    pub(super) fn with<'a>(
+        self,
+        items: impl Iterator<Item = &'a Item>,
+        source: &'static str,
+    ) -> Result<Self, Error> {
+        let mut metadata = self;
+        let is_beside = source != "GDAL_METADATA";
+        for Item { role, text } in items {
             let number = |tag| {
                 let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-                let refused = Error::TiffValue { tag, value: excerpt(&text), expected: "a number" };
+                let refused = Error::TiffValue { tag, value: excerpt(text), expected: "a number" };
                 value.map_or(Err(refused), |value| Ok(Some(value)))
             };
             match role.as_str() {
+                "scale" if is_beside => metadata.scale = number("scale (.aux.xml)")?,
                 "scale" => metadata.scale = number("scale (GDAL_METADATA)")?,
+                "offset" if is_beside => metadata.offset = number("offset (.aux.xml)")?,
                 "offset" => metadata.offset = number("offset (GDAL_METADATA)")?,
                 "unittype" if !text.trim().is_empty() => {
-                    let unit = by_name(&text);
+                    let unit = by_name(text);
                     metadata.unit = Some(unit.ok_or(Error::TiffValue {
-                        tag: "band unit (GDAL_METADATA)",
-                        value: excerpt(&text),
+                        tag: if is_beside { "band unit (.aux.xml)" } else { "band unit (GDAL_METADATA)" },
+                        value: excerpt(text),
                         expected: "a unit of length, as metre, foot or US survey foot; `gdal_edit.py -units metre FILE` sets it",
                     })?);
                 }
@@ -53,17 +68,22 @@ impl BandMetadata {
             }
         }
         if metadata.scale == Some(0.0) {
-            let (tag, value) = ("scale (GDAL_METADATA)", "0".to_owned());
-            return Err(Error::TiffValue { tag, value, expected: "a number other than zero" });
+            let tag = if is_beside { "scale (.aux.xml)" } else { "scale (GDAL_METADATA)" };
+            return Err(Error::TiffValue {
+                tag,
+                value: "0".to_owned(),
+                expected: "a number other than zero",
+            });
         }
         Ok(metadata)
     }
 }
 
-/// An item of GDAL_METADATA that has a role for a band.
-struct Item {
-    role: String,
-    text: String,
+/// Something that metadata say of a band, by its role.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Item {
+    pub(super) role: String,
+    pub(super) text: String,
 }
 
 /// The items of a band. XML that is broken off is read as far as it goes, as GDAL does.
@@ -122,7 +142,11 @@ impl NoData {
         tags.text(Tag::GdalNodata)?.map_or(Ok(None), |text| Self::parse(&text, sample))
     }
 
-    fn parse(text: &str, sample: SampleType) -> Result<Option<Self>, Error> {
+    /// The mark by its spelling.
+    ///
+    /// # Errors
+    /// Text that is no number.
+    pub(super) fn parse(text: &str, sample: SampleType) -> Result<Option<Self>, Error> {
         let plain = text.trim().to_lowercase().replace(',', ".");
         let mark = match plain.as_str() {
             "" | "none" | "null" | "n/a" => return Ok(None),

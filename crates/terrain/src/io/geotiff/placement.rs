@@ -1,6 +1,5 @@
 //! The grid that a raster becomes: metres of the ground, square cells, north up; or the refusal that says how to bring it there.
 
-use super::geokeys::GeoKeys;
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
     crs::{Crs, DegreeFrame, Size, UNTOLD_CELLS, Warp, WarpRefusal, to_ground},
@@ -30,22 +29,21 @@ pub(super) enum Arrangement {
 }
 
 impl Placement {
-    /// Places a raster in metres of the ground. What had to be assumed or changed is added to the warnings.
+    /// Places a raster in metres of the ground; `is_named` says whether anything names its system. What had to be assumed or changed is added to the warnings.
     ///
     /// # Errors
     /// Degrees, a scale that changes over the map, or a grid that no map may have.
     pub(super) fn of(
         affine: Affine,
         size: Size,
-        (keys, crs): (&GeoKeys, &Crs),
+        (is_named, crs): (bool, &Crs),
         most_cells: u64,
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, Error> {
-        let affine = if keys.pixel_is_point() { affine.with_centred_pixels() } else { affine };
         if crs.is_geographic {
             return Self::warped(&affine, size, crs, most_cells);
         }
-        if !keys.name_a_system() {
+        if !is_named {
             doubt_nameless(&affine, size, warnings)?;
         }
         let (affine, text) = to_ground(affine, size, crs, "tif", warnings)?;

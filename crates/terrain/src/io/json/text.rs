@@ -9,6 +9,8 @@ const PIECE_CELLS: usize = 4096;
 #[derive(Clone, Debug)]
 pub struct JsonText {
     terrain: Terrain,
+    /// What people call it.
+    name: Option<String>,
     /// Layer under way; `None` once all has been given.
     layer: Option<Layer>,
     /// Next cell of it.
@@ -26,18 +28,24 @@ enum Layer {
 impl JsonText {
     /// The text of a map, whose cells are shared, not copied.
     pub fn of(terrain: &Terrain) -> Self {
-        JsonText { terrain: terrain.clone(), layer: Some(Layer::Elevation), cell: 0 }
+        JsonText { terrain: terrain.clone(), name: None, layer: Some(Layer::Elevation), cell: 0 }
+    }
+
+    /// The same with a name of the map.
+    pub fn named(self, name: Option<String>) -> Self {
+        JsonText { name, ..self }
     }
 
     fn head(&self, layer: Layer) -> String {
         let grid = &self.terrain.grid;
         match layer {
             Layer::Elevation => format!(
-                "{{\"cell_size_m\":{},\"origin_m\":[{},{}],{}\"rows\":{},\"columns\":{},\"elevation_m\":[",
+                "{{{}\"cell_size_m\":{},\"origin_m\":[{},{}],{}\"rows\":{},\"columns\":{},\"elevation_m\":[",
+                text_member("name", self.name.as_deref()),
                 number(grid.cell_size_m),
                 number(grid.origin_m[0]),
                 number(grid.origin_m[1]),
-                self.crs(),
+                text_member("crs", self.terrain.crs.as_deref()),
                 grid.rows,
                 grid.columns
             ),
@@ -45,11 +53,6 @@ impl JsonText {
             Layer::Obstacle => ",\"obstacle\":[".to_owned(),
             Layer::Filled => ",\"filled\":[".to_owned(),
         }
-    }
-
-    fn crs(&self) -> String {
-        let quoted = |crs: &String| format!("\"crs\":{},", serde_json::Value::from(crs.as_str()));
-        self.terrain.crs.as_ref().map(quoted).unwrap_or_default()
     }
 
     /// The end of the document.
@@ -92,6 +95,11 @@ impl JsonText {
         const ORDER: [Layer; 4] = [Layer::Elevation, Layer::Surface, Layer::Obstacle, Layer::Filled];
         ORDER.into_iter().skip_while(|other| *other != layer).skip(1).find(has)
     }
+}
+
+/// A member of the document and a comma, where there is a text.
+fn text_member(name: &str, text: Option<&str>) -> String {
+    text.map(|text| format!("\"{name}\":{},", serde_json::Value::from(text))).unwrap_or_default()
 }
 
 impl Iterator for JsonText {

@@ -3,7 +3,8 @@
 //! They are wide enough for anything from a desk toy to a mining loader and narrow enough that a
 //! value in the wrong unit (millimetres, degrees, per cent) falls outside.
 
-use crate::{Error, Robot, battery::Battery, knowledge, known_limits};
+use super::{Battery, Robot};
+use crate::{Error, knowledge, known_limits};
 
 const HALF_PI: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -29,6 +30,7 @@ pub(crate) fn check(robot: &Robot) -> Result<(), Error> {
         ("uncertainty.k1", u.k1),
         ("uncertainty.k2", u.k2),
         ("uncertainty.mass_kg", u.mass_kg),
+        ("uncertainty.hotel_power_w", u.hotel_power_w),
     ] {
         within(field, value, 0.0, 1.0, "give a relative sigma, 0.1 for 10 %")?;
     }

@@ -1,0 +1,221 @@
+//! k1 and k2 of eq. 2 from what data sheets tell of motors and gears.
+//!
+//! A side has n motors that share its force F evenly, wheels of radius r, and gears of ratio G and efficiency η between them. With
+//! the torque at a wheel per ampere of its motor, K = η G K_t, eqs. 1 and 2 of Dogru & Marques (2018) read
+//!
+//! ```text
+//! I = F r / (n K)                       current of one motor
+//! P = n (R I² + K_e ω_m I)              winding and induced voltage, ω_m = G u / r, K_e = K_t
+//!   = R r² / (n K²) · F²  +  1/η · u F
+//! k1 = R r² / (n K²),   k2 = 1 / (η η_o)
+//! ```
+//!
+//! where η_o is what drivers, brushes, iron and belts let through.
+
+use super::{Constant, Drive, MotorSheet};
+use crate::{Error, builtin, knowledge::Provenance, robot::Motor};
+
+/// η_o: share that drivers, brushes, iron and belts together let through [-]; an assumption. Gears of 0.65 and this give the k2
+/// of a Husky A200.
+const OTHER_EFFICIENCY: f64 = 0.88;
+/// Relative one-sigma uncertainty of η_o times an η from a data sheet, which is that of the rated load [-].
+const EFFICIENCY_SIGMA: f64 = 0.12;
+/// Relative one-sigma uncertainty of a k2 that is a Husky's [-]: 95 % are 1.30 to 2.34, gears of 0.87 to 0.49.
+const BORROWED_K2_SIGMA: f64 = 0.15;
+/// Relative one-sigma uncertainty of a torque constant: makers of small motors state ±10 % [-].
+const TORQUE_CONSTANT_SIGMA: f64 = 0.05;
+/// Relative one-sigma uncertainty of the resistance of winding, driver, plugs and cables, of which a data sheet has the first [-].
+const RESISTANCE_SIGMA: f64 = 0.25;
+/// Heat of the winding over shaft power at the rated point [-]; an assumption: motors of 50 to 500 W turn some 75 % into shaft
+/// power, and most of what is left is copper's.
+const COPPER_SHARE: f64 = 0.25;
+/// Relative one-sigma uncertainty of a k1 from it [-]: 95 % lie within a factor of 4.
+const COPPER_SHARE_SIGMA: f64 = 0.70;
+/// Rated power of a side over mass and top speed where nothing is known of the motors [W s/(kg m)]; an assumption: between 1.4, of
+/// which [`COPPER_SHARE`] makes the k1 of a Husky A200, and 7.4 of a Jackal of 17 kg and 2 m/s, whose two motors have 500 W.
+const SPECIFIC_POWER: f64 = 3.2;
+/// Relative one-sigma uncertainty of a k1 from it, which puts both of them one sigma off [-].
+const SPECIFIC_POWER_SIGMA: f64 = 0.80;
+
+/// Motor constants of a side with their uncertainty and reasons.
+pub(super) struct DriveConstants {
+    pub(super) motor: Motor,
+    pub(super) k1: Constant,
+    pub(super) k2: Constant,
+}
+
+/// What a robot's motors carry.
+#[derive(Clone, Copy)]
+pub(super) struct Load {
+    pub(super) mass_kg: f64,
+    pub(super) wheel_radius_m: f64,
+    pub(super) max_wheel_speed_mps: f64,
+}
+
+pub(super) fn constants(drive: &Drive, load: Load) -> Result<DriveConstants, Error> {
+    check(drive)?;
+    let husky = builtin::husky_a200().motors;
+    let husky_k2 = (husky.left.k2 + husky.right.k2) / 2.0;
+    let (n, r_m) = (f64::from(drive.motors_per_side), load.wheel_radius_m);
+    let mut k2 = match drive.gear_efficiency {
+        Some(eta) => constant(
+            "k2",
+            1.0 / (eta * OTHER_EFFICIENCY),
+            "",
+            EFFICIENCY_SIGMA,
+            Provenance::DataSheet,
+            format!(
+                "1 / (η η_o), η = {eta} of the gears, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
+            ),
+        ),
+        None => constant(
+            "k2",
+            husky_k2,
+            "",
+            BORROWED_K2_SIGMA,
+            Provenance::Borrowed,
+            "a Husky A200's (Dogru & Marques 2018, Table I): no efficiency is given".into(),
+        ),
+    };
+    let eta = drive.gear_efficiency.unwrap_or(1.0 / (husky_k2 * OTHER_EFFICIENCY));
+    let eta_sigma = if drive.gear_efficiency.is_some() { EFFICIENCY_SIGMA } else { BORROWED_K2_SIGMA };
+    let sheet_sigma =
+        (4.0 * (TORQUE_CONSTANT_SIGMA.powi(2) + eta_sigma.powi(2)) + RESISTANCE_SIGMA.powi(2)).sqrt();
+    let k1_of = |resistance_ohm: f64, torque_nm_per_a: f64| {
+        resistance_ohm * r_m.powi(2) / (n * torque_nm_per_a.powi(2))
+    };
+    let (k1, torque_nm_per_a) = match drive.sheet {
+        MotorSheet::Constants { torque_constant_nm_per_a, resistance_ohm, gear_ratio } => {
+            let torque = eta * gear_ratio * torque_constant_nm_per_a;
+            let because = format!(
+                "R r² / (n (η G K_t)²), R = {resistance_ohm} Ω, r = {r_m} m, n = {n}, η = {eta:.3}, G = {gear_ratio}, K_t = {torque_constant_nm_per_a} N m/A"
+            );
+            (
+                constant(
+                    "k1",
+                    k1_of(resistance_ohm, torque),
+                    K1_UNIT,
+                    sheet_sigma,
+                    Provenance::DataSheet,
+                    because,
+                ),
+                Some(torque),
+            )
+        }
+        MotorSheet::Stall { torque_nm, current_a, voltage_v, gear_ratio, no_load_speed_radps } => {
+            // Of a geared motor the gears' losses are in its stall torque already.
+            let through = if gear_ratio == 1.0 { 1.0 } else { eta };
+            let torque = through * gear_ratio * torque_nm / current_a;
+            let because = format!(
+                "R r² / (n K²), R = U / I = {:.3} Ω and K = T / I = {torque:.3} N m/A at the wheel of a stalled motor, r = {r_m} m, n = {n}",
+                voltage_v / current_a
+            );
+            if let Some(speed_radps) = no_load_speed_radps {
+                let ratio = voltage_v * current_a / (speed_radps * torque_nm);
+                super::check(
+                    "no_load_speed",
+                    ratio,
+                    1.0,
+                    20.0,
+                    "its stalled torque times its free speed is more than its electrical power; give both at the same shaft, in N m and revolutions per minute",
+                )?;
+                k2 = constant(
+                    "k2",
+                    ratio / through / OTHER_EFFICIENCY,
+                    "",
+                    EFFICIENCY_SIGMA,
+                    Provenance::DataSheet,
+                    format!(
+                        "U I / (ω_0 T η_o) of torque and current at stall and speed without load, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
+                    ),
+                );
+            }
+            let sigma = (4.0 * TORQUE_CONSTANT_SIGMA.powi(2) + RESISTANCE_SIGMA.powi(2)).sqrt();
+            let sigma = if gear_ratio == 1.0 { sigma } else { sheet_sigma };
+            (
+                constant(
+                    "k1",
+                    k1_of(voltage_v / current_a, torque),
+                    K1_UNIT,
+                    sigma,
+                    Provenance::DataSheet,
+                    because,
+                ),
+                Some(torque),
+            )
+        }
+        MotorSheet::RatedPower { power_w } => {
+            let k1 = COPPER_SHARE * load.max_wheel_speed_mps.powi(2) / (n * power_w);
+            let because = format!(
+                "c u² / (n P), P = {power_w} W at top speed u = {} m/s, n = {n}, of which c = {COPPER_SHARE} heats the winding (assumed)",
+                load.max_wheel_speed_mps
+            );
+            (constant("k1", k1, K1_UNIT, COPPER_SHARE_SIGMA, Provenance::Borrowed, because), None)
+        }
+        MotorSheet::Unknown => {
+            let power_w = SPECIFIC_POWER * load.mass_kg * load.max_wheel_speed_mps;
+            let k1 = COPPER_SHARE * load.max_wheel_speed_mps.powi(2) / power_w;
+            let because = format!(
+                "c u² / P, a side's P = {power_w:.0} W at top speed u = {} m/s taken from mass and speed, of which c = {COPPER_SHARE} heats the winding (assumed): give the motors' data sheet",
+                load.max_wheel_speed_mps
+            );
+            (constant("k1", k1, K1_UNIT, SPECIFIC_POWER_SIGMA, Provenance::Borrowed, because), None)
+        }
+    };
+    let force_n_per_a = torque_nm_per_a.map(|torque| torque / r_m);
+    let motor = Motor { k1_w_per_n2: k1.value, k2: k2.value, force_n_per_a, idle_current_a: None };
+    Ok(DriveConstants { motor, k1, k2 })
+}
+
+const K1_UNIT: &str = "W/N²";
+
+fn constant(
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    sigma: f64,
+    provenance: Provenance,
+    because: String,
+) -> Constant {
+    Constant { name: name.into(), value, unit, sigma: Some(sigma), provenance, because }
+}
+
+fn check(drive: &Drive) -> Result<(), Error> {
+    super::check(
+        "motors_per_side",
+        f64::from(drive.motors_per_side),
+        1.0,
+        20.0,
+        "give how many motors drive a side",
+    )?;
+    if let Some(eta) = drive.gear_efficiency {
+        super::check("gear_efficiency", eta, 0.05, 1.0, "give a fraction, 0.75 for 75 %")?;
+    }
+    let gears = "give turns of the motor per turn of the wheel";
+    match drive.sheet {
+        MotorSheet::Constants { torque_constant_nm_per_a, resistance_ohm, gear_ratio } => {
+            super::check(
+                "torque_constant",
+                torque_constant_nm_per_a,
+                1e-5,
+                100.0,
+                "give N m/A; mN m/A are a thousandth",
+            )?;
+            super::check("resistance", resistance_ohm, 1e-4, 1e3, "give ohms")?;
+            super::check("gear_ratio", gear_ratio, 0.1, 2e3, gears)
+        }
+        MotorSheet::Stall { torque_nm, current_a, voltage_v, gear_ratio, no_load_speed_radps } => {
+            super::check("stall_torque", torque_nm, 1e-4, 1e5, "give N m")?;
+            super::check("stall_current", current_a, 1e-2, 1e4, "give amperes")?;
+            super::check("motor_voltage", voltage_v, 1.0, 1500.0, "give volts")?;
+            super::check("gear_ratio", gear_ratio, 0.1, 2e3, gears)?;
+            no_load_speed_radps.map_or(Ok(()), |speed| {
+                super::check("no_load_speed", speed, 1e-2, 1e5, "give the speed without load")
+            })
+        }
+        MotorSheet::RatedPower { power_w } => {
+            super::check("rated_power", power_w, 0.1, 1e6, "give watts of one motor")
+        }
+        MotorSheet::Unknown => Ok(()),
+    }
+}
