@@ -61,7 +61,7 @@ enum Command {
     /// Print what plans take, beside general-purpose searches on the same graphs
     Bench(commands::bench::Arguments),
     /// Serve the HTTP API
-    Serve(commands::serve::Arguments),
+    Serve(Box<commands::serve::Arguments>),
     /// Start the service, compare paths over real terrain, and draw them
     Demo(commands::demo::Arguments),
 }
