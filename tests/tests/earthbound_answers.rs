@@ -45,7 +45,7 @@ fn kml_is_a_line_in_degrees_and_is_refused_where_nothing_says_where_the_map_lies
     // pyproj: (512008.5, 5422976.5) is 9.164046814 E, 48.959589321 N.
     assert!(placed.text.contains("<coordinates>9.164046814,48.959589321,0.000\n"), "{}", placed.text);
     assert!(placed.text.contains("<LineString>") && placed.text.contains("<Data name=\"energy_j\">"));
-    let doubts = json!([{ "kind": "image", "detail": "heights < 255 & more" }]);
+    let doubts = json!([{ "kind": "interpolated", "detail": "heights < 255 & more" }]);
     let doubtful = with(
         question(Some("EPSG:32632")),
         "map",

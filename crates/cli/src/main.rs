@@ -66,7 +66,7 @@ enum Command {
     /// Print the JSON Schema of a robot, map, recording map or world file
     Schema(commands::schema::Arguments),
     /// Serve the HTTP API
-    Serve(commands::serve::Arguments),
+    Serve(Box<commands::serve::Arguments>),
     /// Start the service, compare paths over real terrain, and draw them
     Demo(commands::demo::Arguments),
 }

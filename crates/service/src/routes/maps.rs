@@ -147,7 +147,7 @@ pub(crate) async fn create(
         fill_voids_m: query.fill_voids_m.or(usual.fill_voids_m),
         ..usual
     };
-    let name = query.name.map(checked_name).transpose()?;
+    let name = query.name.as_deref().map(checked_name).transpose()?;
     let content = read_body(request, &engine).await?;
     let map = engine
         .compute(move |_| {
@@ -155,7 +155,11 @@ pub(crate) async fn create(
             refuse_too_large(&terrain, options.most_cells)?;
             let name = match name {
                 Some(name) => Some(name),
-                None => own_name.map(checked_name).transpose().map_err(|problem| problem.at("/name"))?,
+                None => own_name
+                    .as_deref()
+                    .map(checked_name)
+                    .transpose()
+                    .map_err(|problem| problem.at("/name"))?,
             };
             let summary = MapSummary { name, ..MapSummary::of(terrain.content_id(), &terrain) };
             Ok(Stored { terrain: Arc::new(terrain), summary })
@@ -183,7 +187,7 @@ async fn answered(
 const LONGEST_NAME: usize = 200;
 
 /// A name of a map without blanks around it.
-fn checked_name(name: String) -> Result<String, Problem> {
+fn checked_name(name: &str) -> Result<String, Problem> {
     let trimmed = name.trim();
     let length = trimmed.chars().count();
     if (1..=LONGEST_NAME).contains(&length) && !trimmed.contains(char::is_control) {

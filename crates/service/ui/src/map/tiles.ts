@@ -24,8 +24,8 @@ const MOST_HELD = 1000;
 /** Errors that nobody sees [px]; a tile is cut in four while the straight lines of its edges are off by more. */
 const UNSEEN_PX = 0.25;
 const MOST_CUTS = 4;
-/** Neighbours overlap so much, lest the ground shines through between them [px]. */
-const OVERLAP_PX = 0.5;
+/** Tiles are drawn so much too large at first, lest the ground shines through between them, and over that as large as they are [px]. */
+const PASSES_PX = [1, 0];
 
 interface Tile {
   z: number;
@@ -97,9 +97,9 @@ export function drawTiles(board: Board, source: TileSource, frame: { x: number; 
   context.rect(frame.x, frame.y, frame.width, frame.height);
   context.clip();
   const inView = tilesOf(earth, view.px_per_m, source.max_zoom).filter((tile) => isInView(board, tile));
-  for (const tile of inView.slice(0, MOST_TILES)) {
-    const picture = pictureOf(source, tile);
-    if (picture) drawPart(board, picture, tile, [0, 0, 1], MOST_CUTS);
+  const pictures = inView.slice(0, MOST_TILES).map((tile) => ({ tile, picture: pictureOf(source, tile) }));
+  for (const over_px of PASSES_PX) {
+    for (const { tile, picture } of pictures) if (picture) drawPart({ ...board, over_px }, picture, tile, [0, 0, 1], MOST_CUTS);
   }
   context.restore();
 }
@@ -121,8 +121,13 @@ function isInView(board: Board, tile: Tile): boolean {
   return Math.max(...xs) > 0 && Math.min(...xs) < board.size.width && Math.max(...ys) > 0 && Math.min(...ys) < board.size.height;
 }
 
+interface Pass extends Board {
+  /** How much each part is too large on every side [px]. */
+  over_px: number;
+}
+
 /** Draws a part of a tile as the parallelogram that is nearest to its corners, or in four parts where that is seen. */
-function drawPart(board: Board, picture: HTMLImageElement, tile: Tile, part: [number, number, number], cuts: number): void {
+function drawPart(board: Pass, picture: HTMLImageElement, tile: Tile, part: [number, number, number], cuts: number): void {
   const [a, b, c, d] = cornersOf(board, tile, part) as [Point, Point, Point, Point];
   const off = Math.hypot(a.x + d.x - b.x - c.x, a.y + d.y - b.y - c.y) / 4;
   const [right, down, edge] = part;
@@ -147,7 +152,7 @@ function drawPart(board: Board, picture: HTMLImageElement, tile: Tile, part: [nu
   context.setTransform(ratio * u.x, ratio * u.y, ratio * v.x, ratio * v.y, ratio * first.x, ratio * first.y);
   context.imageSmoothingQuality = "high";
   const { naturalWidth: width, naturalHeight: height } = picture;
-  const over = OVERLAP_PX / Math.max(Math.hypot(u.x, u.y), 1);
+  const over = board.over_px / Math.max(Math.hypot(u.x, u.y), 1);
   const box = [-over, -over, 1 + 2 * over, 1 + 2 * over] as const;
   context.drawImage(picture, right * width, down * height, edge * width, edge * height, ...box);
 }
