@@ -121,6 +121,32 @@ impl Recording {
         (step_s <= run.gap_s).then_some(step_s)
     }
 
+    /// The same drives with some of their runs alone.
+    pub fn of_runs(&self, keep: impl Fn(&Run) -> bool) -> Recording {
+        let kept: Vec<&Run> = self.runs.iter().filter(|run| keep(run)).collect();
+        fn column<T: Copy>(kept: &[&Run], values: &[T]) -> Vec<T> {
+            kept.iter().flat_map(|run| values.get(run.rows.clone()).unwrap_or_default()).copied().collect()
+        }
+        let columns = |values: &Vec<f64>| column(&kept, values);
+        let mut from = 0;
+        let run = |run: &&Run| {
+            let rows = from..from + run.rows.len();
+            from = rows.end;
+            Run { rows, ..(*run).clone() }
+        };
+        Recording {
+            t_s: columns(&self.t_s),
+            channels: self.channels.iter().map(|(channel, values)| (*channel, columns(values))).collect(),
+            aside: self.aside.iter().map(|(name, values)| (name.clone(), columns(values))).collect(),
+            surface: self
+                .surface
+                .as_ref()
+                .map(|labels| Labels { names: labels.names.clone(), index: column(&kept, &labels.index) }),
+            reading_ends: column(&kept, &self.reading_ends),
+            runs: kept.iter().map(run).collect(),
+        }
+    }
+
     /// The runs of several recordings behind one another. A channel that one of them lacks is a gap there, but for the power of a
     /// battery whose current and voltage it has; a run whose name is taken gets a number behind it.
     pub fn join(parts: impl IntoIterator<Item = Recording>) -> Recording {
@@ -227,6 +253,20 @@ impl Labels {
     /// The same name for every row.
     pub fn constant(name: &str, rows: usize) -> Labels {
         Labels { names: vec![name.to_owned()], index: vec![0; rows] }
+    }
+
+    /// Gives rows without a name this one.
+    pub fn name_the_rest(&mut self, name: &str) {
+        if !self.index.contains(&Labels::NONE) {
+            return;
+        }
+        let known = self.names.iter().position(|other| other == name);
+        let place = known.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        });
+        let place = u32::try_from(place).unwrap_or(Labels::NONE);
+        self.index.iter_mut().filter(|index| **index == Labels::NONE).for_each(|index| *index = place);
     }
 
     pub(crate) fn unnamed(rows: usize) -> Labels {
