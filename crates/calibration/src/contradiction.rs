@@ -16,10 +16,11 @@ fn contradiction(fit: &Fit, i: usize) -> Option<String> {
     let (parameter, value) = (&fit.parameters[i], fit.values[i]);
     let [low, high] = parameter.bounds;
     let name = &parameter.name;
-    // Nothing is the natural end of what cannot be negative.
+    // Nothing is the natural end of what cannot be negative, and Coulomb's law that of a slip angle's scale.
+    let is_natural = |limit: f64| limit == 0.0 || (limit == low && name.ends_with("slip_angle_scale_rad"));
     let limit = [low, high]
         .into_iter()
-        .find(|limit| *limit != 0.0 && (value - limit).abs() < AT_LIMIT * (high - low));
+        .find(|limit| !is_natural(*limit) && (value - limit).abs() < AT_LIMIT * (high - low));
     if let Some(limit) = limit {
         let beside = match parameter.prior {
             Some([mean, _]) if mean > 0.0 => format!(", {:.1} times what the robot's file has", limit / mean),

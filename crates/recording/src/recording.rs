@@ -316,6 +316,29 @@ mod tests {
     }
 
     #[test]
+    fn some_runs_of_a_recording_are_what_each_of_them_was() {
+        let joined = Recording::join([part(Channel::Power, None), part(Channel::Power, Some("ice"))]);
+        let second = joined.of_runs(|run| run.name == "drive-2");
+        let alone = part(Channel::Power, Some("ice"));
+        assert_eq!((&second.t_s, &second.channels), (&alone.t_s, &alone.channels));
+        assert_eq!((second.runs.len(), second.runs[0].rows.clone()), (1, 0..4));
+        assert_eq!(second.surface.as_ref().unwrap().get(3), Some("ice"));
+        assert_eq!(joined.of_runs(|_| true), joined);
+        assert_eq!(joined.of_runs(|_| false).rows(), 0);
+    }
+
+    #[test]
+    fn rows_without_a_name_get_one_and_others_keep_theirs() {
+        let joined = Recording::join([part(Channel::Power, None), part(Channel::Power, Some("ice"))]);
+        let mut surface = joined.surface.unwrap();
+        surface.name_the_rest("mud");
+        assert_eq!((surface.get(0), surface.get(7)), (Some("mud"), Some("ice")));
+        let before = surface.clone();
+        surface.name_the_rest("moss");
+        assert_eq!(surface, before, "every row has its name");
+    }
+
+    #[test]
     fn a_step_over_a_gap_or_out_of_the_run_is_none() {
         let recording = part(Channel::Power, None);
         let run = &recording.runs[0];
