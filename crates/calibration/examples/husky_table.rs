@@ -13,6 +13,7 @@ use calibration::{
     current_calibration::{CurrentCalibration, fit_currents},
     current_judge::judge,
 };
+use model::Robot;
 
 const SURFACES: [&str; 4] = ["flooring", "asphalt", "ice", "sandy-loam"];
 
@@ -34,6 +35,7 @@ fn main() {
     print_surfaces(&found);
     print_forces(&found);
     print_friction(&calibrate(&robot, &recording, &options).unwrap());
+    print_files(&robot, &SURFACES.map(|surface| vec![file(surface)]));
     let (snow, _) = recording::read_paths(&[file("snow")], None).unwrap();
     print_snow(&found, &Drives::new(&found.robot, &snow).unwrap());
     println!(
@@ -73,6 +75,27 @@ fn print_forces(found: &CurrentCalibration) {
         let [low, high] = surface.force_alone.force_interval_n_per_a(&found.robot);
         let force_n_per_a = surface.force_alone.force_n_per_a(&found.robot);
         println!("{:<11} {force_n_per_a:>6.1} N/A  [{low:.1}, {high:.1}]", surface.surface);
+    }
+}
+
+/// How well robot files of half of the runs predict the others, as `calibrate` says and `predict` finds, each ground calibrated alone.
+fn print_files(robot: &Robot, grounds: &[Vec<PathBuf>]) {
+    println!(
+        "\n| robot file of | R² of side current, held out | by half of the runs | RMSE | the file on its own runs |"
+    );
+    println!("| --- | --- | --- | --- | --- |");
+    for files in grounds {
+        let (recording, _) = recording::read_paths(files, None).unwrap();
+        let found = calibrate(robot, &recording, &Options::default()).unwrap();
+        let (held_out, written) = (found.held_out.unwrap(), found.as_written.unwrap());
+        let [first, second] = [0, 1].map(|fold: usize| held_out.folds[fold].skill.r2_a.unwrap());
+        println!(
+            "| {} | {:.2} | {second:.2}, {first:.2} | {:.2} A | {:.2} |",
+            recording.surface.unwrap().names.join(", "),
+            held_out.r2_a.unwrap(),
+            held_out.rmse_a.unwrap(),
+            written.r2_a.unwrap()
+        );
     }
 }
 

@@ -5,15 +5,12 @@ use recording::{PowerForm, Recording, Watch, unwatched};
 use serde::Serialize;
 
 use crate::{
-    Drives, DrivesCoverage, Error, SlipTrack,
+    Drives, DrivesCoverage, Error, HeldOut, Skill, SlipTrack,
     contradiction::contradictions,
-    current_calibration,
-    current_judge::SurfaceVerdict,
+    current_robot,
     fit::NORMAL_975,
-    folds,
-    power::{by_row, seen_w},
+    held_out::{as_written, held_out},
     power_fit::{PowerFit, fit_power, fit_thinned},
-    score::{Score, median},
     slopes::slopes_note,
     stuck,
 };
@@ -43,36 +40,16 @@ pub struct FittedParameter {
     pub determined: bool,
 }
 
-/// How well the fit holds on runs that it did not see.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct HeldOut {
-    /// Root mean square error of one-second averages \[W\].
-    pub rmse_w: f64,
-    /// R² of the same.
-    pub r2: f64,
-    /// Mean of predicted less recorded \[W\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bias_w: Option<f64>,
-    /// Median magnitude of the energy error by run \[%\].
-    pub median_energy_error_percent: f64,
-    /// Root mean square error of side current, where currents were recorded \[A\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rmse_a: Option<f64>,
-    /// R² of the same.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub r2_a: Option<f64>,
-    /// Surface by surface, where currents were recorded.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub surfaces: Vec<SurfaceVerdict>,
-}
-
 /// A robot fitted to its recordings, with what is uncertain about it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
     /// What was fitted.
     pub parameters: Vec<FittedParameter>,
-    /// How well it holds on runs that were not fitted; `null` where a single run was recorded.
+    /// How well the robot file of half of the runs predicts the other half; `null` where a single run was recorded.
     pub held_out: Option<HeldOut>,
+    /// How well the robot file that is written predicts the runs that it was fitted to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub as_written: Option<Skill>,
     /// What a person should know.
     pub notes: Vec<String>,
     /// How many seconds of every run were fitted, and why the rest was not.
@@ -116,26 +93,46 @@ pub fn calibrate_watched(
 ) -> Result<Calibration, Error> {
     let recording = &*recording.thinned_watched(watch)?;
     let drives = Drives::watched(robot, recording, watch)?;
-    let found = calibrate_drives(robot, &drives, options)?;
+    let Found { parameters, mut notes, robot: fitted } = fit_drives(robot, &drives, options)?;
+    fitted.validate()?;
+    let fit = |half: &Recording| fit_half(robot, &Drives::watched(robot, half, watch)?, options);
+    let held_out = held_out(robot, recording, &drives, &fit, watch)?;
+    if held_out.is_none() {
+        notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
+    }
+    let as_written = Some(as_written(&fitted, recording, watch)?);
+    let coverage = DrivesCoverage::default();
+    let found = Calibration { parameters, held_out, as_written, notes, robot: fitted, coverage };
     Ok(found.covering(recording, &drives).with_note(slopes_note(recording)))
 }
 
-fn calibrate_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result<Calibration, Error> {
+/// What a fit of drives found.
+pub(crate) struct Found {
+    pub(crate) parameters: Vec<FittedParameter>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) robot: Robot,
+}
+
+fn fit_drives(robot: &Robot, drives: &Drives, options: &Options) -> Result<Found, Error> {
     if drives.form == Some(PowerForm::MotorCurrents) {
-        return current_calibration::calibrate(robot, drives, options);
+        return current_robot::calibrate(robot, drives, options);
     }
     let (robot, track) = with_slip_track(robot, drives)?;
     let found = fit_power(&robot, drives)?;
     let mut parameters = vec![track];
     parameters.extend((0..found.fit.values.len()).map(|i| fitted(&found, i)));
-    let held_out = power_held_out(&robot, drives)?;
     let mut notes: Vec<String> = held_note(&parameters).into_iter().collect();
     notes.extend(contradictions(&found.fit));
-    if held_out.is_none() {
-        notes.push("there is one run, so no run could judge the fit; record two or more".to_owned());
+    Ok(Found { parameters, notes, robot: with_uncertainty(&found) })
+}
+
+/// The robot that the same fit makes of half of the runs.
+fn fit_half(robot: &Robot, drives: &Drives, options: &Options) -> Result<Robot, Error> {
+    if drives.form == Some(PowerForm::MotorCurrents) {
+        return current_robot::fit_half(robot, drives, options);
     }
-    let robot = with_uncertainty(&found);
-    Ok(Calibration { parameters, held_out, notes, robot, coverage: DrivesCoverage::default() })
+    let (robot, _) = with_slip_track(robot, drives)?;
+    Ok(fit_thinned(&robot, drives)?.robot)
 }
 
 /// Names what the recording does not determine, for a person to read.
@@ -199,42 +196,4 @@ fn with_uncertainty(found: &PowerFit) -> Robot {
     robot.uncertainty.k1 = relative("k1_w_per_n2", u.k1);
     robot.uncertainty.k2 = relative("k2", u.k2);
     robot
-}
-
-/// Each half of the runs judged by the fit of the other half.
-fn power_held_out(robot: &Robot, drives: &Drives) -> Result<Option<HeldOut>, Error> {
-    if drives.judged_runs().len() < 2 {
-        return Ok(None);
-    }
-    let halves = folds::halves(drives)?;
-    let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
-    for i in 0..2 {
-        let fitted = fit_thinned(robot, &halves[i])?.robot;
-        let mut judging = fitted.clone();
-        let others = &halves[1 - i];
-        for name in &others.surfaces {
-            // Ground that the other half did not drive on is judged by the robot file, or by the default ground of a fit.
-            if let Some(surface) = robot.surfaces.get(name) {
-                judging.surfaces.entry(name.clone()).or_insert_with(|| surface.clone());
-            }
-        }
-        let form = others.form.unwrap_or(PowerForm::Battery);
-        let seen = by_row(others, &judging, |i, power| {
-            seen_w(&judging, form, &others.rows[i], power).iter().sum::<f64>()
-        })?;
-        let predicted = others.averaged(&seen);
-        let recorded = others.averaged_by(|row| others.recorded.iter().map(|column| column[row]).sum());
-        let error = |run: usize| others.energy_error_percent(run, &predicted, &recorded).abs();
-        energies.extend(others.judged_runs().into_iter().map(error));
-        predicted_w.extend(predicted);
-        recorded_w.extend(recorded);
-    }
-    let score = Score::of(&predicted_w, &recorded_w);
-    Ok(Some(HeldOut {
-        rmse_w: score.rmse,
-        r2: score.r2,
-        bias_w: Some(score.bias),
-        median_energy_error_percent: median(&energies),
-        ..HeldOut::default()
-    }))
 }

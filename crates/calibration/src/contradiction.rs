@@ -15,12 +15,12 @@ pub(crate) fn contradictions(fit: &Fit) -> Vec<String> {
 fn contradiction(fit: &Fit, i: usize) -> Option<String> {
     let (parameter, value) = (&fit.parameters[i], fit.values[i]);
     let [low, high] = parameter.bounds;
-    let (name, unit) = (&parameter.name, if parameter.unit == "1" { "" } else { parameter.unit });
-    let told = |x: f64| format!("{} {unit}", digits(x)).trim_end().to_owned();
-    // Nothing is the natural end of what cannot be negative.
+    let name = &parameter.name;
+    // Nothing is the natural end of what cannot be negative, and Coulomb's law that of a slip angle's scale.
+    let is_natural = |limit: f64| limit == 0.0 || (limit == low && name.ends_with("slip_angle_scale_rad"));
     let limit = [low, high]
         .into_iter()
-        .find(|limit| *limit != 0.0 && (value - limit).abs() < AT_LIMIT * (high - low));
+        .find(|limit| !is_natural(*limit) && (value - limit).abs() < AT_LIMIT * (high - low));
     if let Some(limit) = limit {
         let beside = match parameter.prior {
             Some([mean, _]) if mean > 0.0 => format!(", {:.1} times what the robot's file has", limit / mean),
@@ -29,10 +29,14 @@ fn contradiction(fit: &Fit, i: usize) -> Option<String> {
         return Some(format!(
             "`{name}` ends at its limit of {}{beside}: the drives ask for more than a robot of this file can have, and its interval does not hold \
              the truth; correct the file",
-            told(limit)
+            with_unit(limit, parameter.unit)
         ));
     }
-    let [mean, sigma] = parameter.prior?;
+    far(name, parameter.unit, value, parameter.prior?)
+}
+
+/// A sentence about a value that lies far from what the robot's file says, as mean and sigma.
+pub(crate) fn far(name: &str, unit: &str, value: f64, [mean, sigma]: [f64; 2]) -> Option<String> {
     let far = (value - mean) / sigma;
     (far.abs() > FAR_SIGMAS).then(|| {
         // A prior as wide as the distance would have it at one standard deviation.
@@ -40,10 +44,14 @@ fn contradiction(fit: &Fit, i: usize) -> Option<String> {
         format!(
             "`{name}` is {}, {far:+.1} prior standard deviations from the {} of the robot's file: one of them is wrong, and the intervals of all \
              lean on both; correct the file, or widen its `uncertainty`{widened} and calibrate again",
-            told(value),
-            told(mean)
+            with_unit(value, unit),
+            with_unit(mean, unit)
         )
     })
+}
+
+fn with_unit(x: f64, unit: &str) -> String {
+    if unit == "1" { digits(x) } else { format!("{} {unit}", digits(x)) }
 }
 
 /// A number with four digits that count.

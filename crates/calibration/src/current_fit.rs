@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-use model::{Robot, STANDARD_GRAVITY_MPS2};
+use model::Robot;
 use rayon::prelude::*;
 
 use crate::{
@@ -14,16 +14,16 @@ use crate::{
     current::{COUNT, CurrentModel, CurrentParameters, YawSource, idle_a},
     field::SCALE_SIGMA,
     fit::{Fit, Parameter, Problem},
-    folds,
+    folds, force,
     noise::{LARGEST, Noise},
 };
 
 /// Size of an error of a one-second average that stands for a sigma in a first, rough fit \[A\]: twice the spread of 1 A that is
 /// left on hard ground, since neighbouring seconds err alike. The fit that counts takes what the rough one leaves.
-const ROUGH_NOISE_A: f64 = 2.0;
+pub(crate) const ROUGH_NOISE_A: f64 = 2.0;
 
 /// Rows that a fit looks at, evenly spread: what is left on real drives is no chance, which more rows would not average out.
-const MOST_ROWS: usize = 20_000;
+pub(crate) const MOST_ROWS: usize = 20_000;
 /// Rows that the rough fits look at, which only choose where to begin.
 const ROUGH_ROWS: usize = 5_000;
 
@@ -80,7 +80,7 @@ const FIRST: [Before; COUNT] = {
 };
 
 /// Both starting points of the slip-angle scale: with a free shape the valley has two ends \[rad\].
-const SCALE_STARTS_RAD: [f64; 2] = [0.08, 0.3];
+pub(crate) const SCALE_STARTS_RAD: [f64; 2] = [0.08, 0.3];
 
 /// How far the numbers of another surface may lie from those of the reference: what belongs to the robot is nearly fixed,
 /// what belongs to the ground is open, but for a slip-angle scale that the robot file has.
@@ -118,17 +118,43 @@ fn after(robot: &Robot, drives: &Drives, reference: &CurrentParameters) -> [Opti
 /// [`Error::Stopped`] when the drives' watch breaks.
 pub fn fit_reference(robot: &Robot, drives: &Drives) -> Result<CurrentFit, Error> {
     let mut priors = FIRST.each_ref().map(|before| before.prior);
-    if let (Some([mean, sigma]), Some(force_n_per_a)) = (priors[LIFTING], robot.motors.left.force_n_per_a) {
-        let lifting_a = force_n_per_a_inverse(robot, force_n_per_a);
-        priors[LIFTING] = Some([lifting_a, sigma / mean * lifting_a]);
+    let lifting_a = prior_lifting_a(robot);
+    priors[LIFTING] = Some([lifting_a, force::lifting_share(robot) * lifting_a]);
+    let mut open = parameters(&priors, drives);
+    open[LIFTING].bounds = force::lifting_bounds_a(lifting_a);
+    let fit = |open: &[Parameter]| {
+        let starts = SCALE_STARTS_RAD.map(|scale_rad| {
+            let mut parameters = open.to_vec();
+            parameters[SCALE].start = scale_rad;
+            parameters
+        });
+        solve(robot, drives, robot.slip_track_m, YawSource::Wheels, &starts)
+    };
+    let found = fit(&open)?;
+    if is_told(&found.fit, lifting_a) || !found.fit.determined(LIFTING) {
+        return Ok(found);
     }
-    let open = parameters(&priors, drives);
-    let starts = SCALE_STARTS_RAD.map(|scale_rad| {
-        let mut parameters = open.clone();
-        parameters[SCALE].start = scale_rad;
-        parameters
-    });
-    solve(robot, drives, robot.slip_track_m, YawSource::Wheels, &starts)
+    // Slopes that ask for what no robot has are none.
+    open[LIFTING].held = true;
+    fit(&open)
+}
+
+/// Whether a lifting current is one of a robot: within its bounds, and known better than from nothing.
+fn is_told(fit: &Fit, prior_a: f64) -> bool {
+    /// Share of the range within which a value is at its end.
+    const AT_LIMIT: f64 = 0.01;
+    let (value, [low, high]) = (fit.values[LIFTING], force::lifting_bounds_a(prior_a));
+    let margin = AT_LIMIT * (high - low);
+    let is_sharp = fit.sigma(LIFTING) < force::OF_NONE * value;
+    fit.determined(LIFTING) && (low + margin..high - margin).contains(&value) && is_sharp
+}
+
+/// The lifting current before anything was driven: by the file's force per ampere where it gives one \[A\].
+pub(crate) fn prior_lifting_a(robot: &Robot) -> f64 {
+    match robot.motors.left.force_n_per_a {
+        Some(force_n_per_a) => force::per_lifting(robot, force_n_per_a),
+        None => FIRST[LIFTING].start,
+    }
 }
 
 /// Fits another surface of the same robot.
@@ -160,6 +186,8 @@ pub fn fit_force_alone(robot: &Robot, drives: &Drives, reference: &CurrentFit) -
 pub(crate) const LIFTING: usize = 5;
 /// Place of the slip-angle scale.
 pub(crate) const SCALE: usize = 3;
+/// Places of rolling and skid current, their slip-angle scale, and the lifting current, which are told as the robot file has them.
+pub(crate) const IN_THE_FILE: [usize; 4] = [0, 2, SCALE, LIFTING];
 /// Place of the offset.
 const OFFSET: usize = 11;
 
@@ -242,12 +270,12 @@ fn solve(
         largest: LARGEST,
         predict: &predict,
     };
-    let fit = problem.solve_determined(&parameters)?;
+    let fit = problem.solve_holding(&parameters, 1)?;
     Ok(CurrentFit { parameters: numbers(&fit.values), fit, idle_a, slip_track_m, yaw })
 }
 
 /// About so many rows, or all where those are none that count.
-fn thinned(drives: &Drives, most_rows: usize) -> Result<Cow<'_, Drives>, Error> {
+pub(crate) fn thinned(drives: &Drives, most_rows: usize) -> Result<Cow<'_, Drives>, Error> {
     let part = (drives.rows.len() > most_rows).then(|| drives.thinned(most_rows)).transpose()?;
     Ok(part.filter(|part| !part.averages.is_empty()).map_or(Cow::Borrowed(drives), Cow::Owned))
 }
@@ -268,22 +296,15 @@ impl CurrentFit {
 
     /// c: force at the rim of a side per ampere, `m g / 2 G` \[N/A\].
     pub fn force_n_per_a(&self, robot: &Robot) -> f64 {
-        force_n_per_a(robot, self.parameters.lifting_a)
+        force::per_lifting(robot, self.parameters.lifting_a)
     }
 
     /// 95 % interval of the force per ampere \[N/A\]; open above where the lifting current may be zero.
     pub fn force_interval_n_per_a(&self, robot: &Robot) -> [f64; 2] {
         let [low_a, high_a] = self.fit.interval_95(LIFTING);
-        [force_n_per_a(robot, high_a), if low_a > 0.0 { force_n_per_a(robot, low_a) } else { f64::INFINITY }]
+        [
+            force::per_lifting(robot, high_a),
+            if low_a > 0.0 { force::per_lifting(robot, low_a) } else { f64::INFINITY },
+        ]
     }
-}
-
-/// G of a robot whose sides push `force_n_per_a` \[A\]; the relation is its own inverse.
-fn force_n_per_a_inverse(robot: &Robot, force_n_per_a: f64) -> f64 {
-    self::force_n_per_a(robot, force_n_per_a)
-}
-
-/// `m g / 2 G`: a side holds half the weight on a vertical wall \[N/A\].
-fn force_n_per_a(robot: &Robot, lifting_a: f64) -> f64 {
-    robot.mass_kg * STANDARD_GRAVITY_MPS2 / 2.0 / lifting_a
 }

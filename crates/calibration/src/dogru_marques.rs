@@ -12,7 +12,7 @@ use model::{
 use recording::{PowerForm, Recording, Watch};
 
 use crate::{
-    Calibration, Drives, DrivesCoverage, Error, FittedParameter, HeldOut, folds,
+    Calibration, Drives, DrivesCoverage, Error, FittedParameter, HeldOut, folds, held_out,
     score::{Score, median},
 };
 
@@ -59,14 +59,16 @@ pub fn calibrate(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<
     let (fitted, mut parameters) = fit(&robot, &drives, &steady)?;
     parameters.insert(0, slip_track);
     let halves = folds::halves(&drives)?.map(|half| half.judged_runs());
-    let held_out = held_out(&robot, &drives, &steady, &halves);
+    let held_out = by_the_printed_form(&robot, &drives, &steady, &halves);
     drives.go_on()?;
     let notes = vec![format!(
         "{} steady seconds; errors are those of the paper's printed form on them",
         steady.len()
     )];
     let coverage = DrivesCoverage::default();
-    Ok(Calibration { parameters, held_out, notes, robot: fitted, coverage }.covering(recording, &drives))
+    let as_written = Some(held_out::as_written(&fitted, recording, watch)?);
+    Ok(Calibration { parameters, held_out, as_written, notes, robot: fitted, coverage }
+        .covering(recording, &drives))
 }
 
 /// Seconds whose neighbours have the same rim speeds.
@@ -210,7 +212,12 @@ fn by_speed(robot: &Robot, found: &[(f64, (FrictionSample, Option<f64>))]) -> Ve
 }
 
 /// Each half of the runs judged by the printed form with the other half's coefficients.
-fn held_out(robot: &Robot, drives: &Drives, steady: &[Steady], halves: &[Vec<usize>; 2]) -> Option<HeldOut> {
+fn by_the_printed_form(
+    robot: &Robot,
+    drives: &Drives,
+    steady: &[Steady],
+    halves: &[Vec<usize>; 2],
+) -> Option<HeldOut> {
     let (mut predicted_w, mut recorded_w, mut energies) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..2 {
         let part =

@@ -7,13 +7,16 @@ use crate::{Drives, fit::Parameter};
 
 /// What is known of ground that the robot file does not name: rolling 0.1 ± 0.1 and skid 0.4 ± 0.3 span hard floor to loose
 /// sand (Dogru & Marques 2018, Fig. 13; BorealTC: 0.10 to 0.15 and 0.11 to 0.61); the scale is the file's default.
-const NEW_GROUND: [[f64; 2]; 3] = [[0.1, 0.1], [0.4, 0.3], [0.3, 0.15]];
+pub(crate) const NEW_GROUND: [[f64; 2]; 3] = [[0.1, 0.1], [0.4, 0.3], [0.3, 0.15]];
 /// Relative sigma of a slip-angle scale that the robot file gives; its `uncertainty` has no such entry.
 pub(crate) const SCALE_SIGMA: f64 = 0.5;
 /// Sigma of the fraction that comes back: that of a fraction of which nothing is known, √(1/12).
 const REGENERATION_SIGMA: f64 = 0.29;
-/// Sigma of a standing power that the robot file gives as zero \[W\]: a computer and its sensors.
-const STANDING_SIGMA_W: f64 = 30.0;
+/// Sigma of the power of a motor's driver that the robot file gives as zero \[W\].
+const DRIVER_SIGMA_W: f64 = 30.0;
+/// Sigma of a hotel load that the robot file gives as zero, which is how it says nothing of it \[W\]: from a microcontroller to computers,
+/// lidars and an arm.
+const UNSTATED_HOTEL_SIGMA_W: f64 = 300.0;
 /// Sigma of α_R \[1/K\]: copper's 0.0039 is certain, but a sensor on the case is warmer or colder than the winding by a quarter.
 pub const RESISTANCE_SIGMA_PER_K: f64 = 0.001;
 /// Sigma of α_M \[1/K\], which spans the remanence of magnets: AlNiCo −0.0002, NdFeB −0.0012, ferrite −0.0020.
@@ -59,17 +62,19 @@ pub(crate) fn known_before(robot: &Robot, known: &Robot, drives: &Drives) -> (Ve
         }
     }
     lines.add_motors(robot, drives);
-    let standing = |mean_w: f64| [mean_w, (0.5 * mean_w).max(STANDING_SIGMA_W)];
+    let about = |mean_w: f64, least_w: f64| [mean_w, (0.5 * mean_w).max(least_w)];
     let seen = matches!(drives.form, Some(PowerForm::Battery | PowerForm::CurrentAndVoltage));
     let hotel_w = robot.hotel_power_w;
-    lines.add(Field::Hotel, "hotel_power_w", "W", standing(hotel_w), [0.0, hotel_w + 1000.0]).held |= !seen;
+    let least_w = if hotel_w > 0.0 { DRIVER_SIGMA_W } else { UNSTATED_HOTEL_SIGMA_W };
+    let hotel = about(hotel_w, least_w);
+    lines.add(Field::Hotel, "hotel_power_w", "W", hotel, [0.0, (hotel_w + 1000.0).min(1e5)]).held |= !seen;
     let electronics_w = robot.drive_electronics_w;
     lines.add(
         Field::Electronics,
         "drive_electronics_w",
         "W",
-        standing(electronics_w),
-        [0.0, electronics_w + 500.0],
+        about(electronics_w, DRIVER_SIGMA_W),
+        [0.0, (electronics_w + 500.0).min(1e4)],
     );
     (lines.fields, lines.parameters)
 }
@@ -123,8 +128,14 @@ impl Lines {
         for (side, motor, first, second) in sides {
             let (k1, k2) = (motor.k1_w_per_n2, motor.k2);
             let name = format!("motors.{side}.k1_w_per_n2");
-            self.add(first, &name, "W/N²", [k1, u.k1 * k1], [0.2 * k1, 5.0 * k1 + 1e-9]);
-            self.add(second, &format!("motors.{side}.k2"), "1", [k2, u.k2 * k2], [1.0, (2.0 * k2).max(3.0)]);
+            self.add(first, &name, "W/N²", [k1, u.k1 * k1], [0.2 * k1, (5.0 * k1 + 1e-9).min(10.0)]);
+            self.add(
+                second,
+                &format!("motors.{side}.k2"),
+                "1",
+                [k2, u.k2 * k2],
+                [1.0, (2.0 * k2).max(3.0).min(20.0)],
+            );
         }
         // At one temperature both coefficients are k1 and k2 by other names.
         let warmed = temperature_span_k(drives) >= LEAST_RISE_K;

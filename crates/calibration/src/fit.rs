@@ -128,7 +128,8 @@ impl Problem<'_> {
         Ok(predicted.iter().zip(self.recorded).zip(self.sigma).map(of).collect())
     }
 
-    /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again.
+    /// Finds the parameters, holds those that the recording does not determine at their prior, and finds the rest again, until all that is
+    /// left is determined beside what is held.
     ///
     /// What the prior leaves open of a held parameter widens the intervals of the rest by as much as they lean on it:
     ///
@@ -139,39 +140,35 @@ impl Problem<'_> {
     /// # Errors
     /// As [`Problem::solve`].
     pub fn solve_determined(&self, parameters: &[Parameter]) -> Result<Fit, Error> {
+        // Every round holds one more at least.
+        self.solve_holding(parameters, parameters.len())
+    }
+
+    /// The same in so many rounds at most: numbers that no file holds need not all be told.
+    ///
+    /// # Errors
+    /// As [`Problem::solve`].
+    pub fn solve_holding(&self, parameters: &[Parameter], rounds: usize) -> Result<Fit, Error> {
         let free = self.solve(parameters)?;
-        let mut again = parameters.to_vec();
-        for (i, parameter) in again.iter_mut().enumerate() {
-            if free.determined(i) {
-                parameter.start = free.values[i];
-            } else {
-                parameter.start = parameter.prior.map_or(free.values[i], |[mean, _]| mean);
-                parameter.held = true;
+        let (mut again, mut fit) = (parameters.to_vec(), free.clone());
+        for _ in 0..rounds {
+            let open = (0..again.len()).filter(|&i| !again[i].held && !fit.determined(i));
+            let open: Vec<usize> = open.collect();
+            if open.is_empty() {
+                break;
             }
-        }
-        let newly: Vec<usize> = (0..again.len()).filter(|&i| again[i].held && !parameters[i].held).collect();
-        if newly.is_empty() {
-            return Ok(free);
-        }
-        let mut held = self.solve(&again)?;
-        let width = |i: usize| parameters[i].prior.map_or_else(|| free.sigma(i), |[_, sigma]| sigma);
-        let all = |a: &[usize], b: &[usize]| {
-            DMatrix::from_fn(a.len(), b.len(), |i, j| free.covariance[(a[i], b[j])])
-        };
-        let rest: Vec<usize> = (0..again.len()).filter(|&i| !again[i].held).collect();
-        if let Some(inverse) = all(&newly, &newly).try_inverse() {
-            let widths = DVector::from_iterator(newly.len(), newly.iter().map(|&i| width(i).powi(2)));
-            let leaning = all(&rest, &newly) * inverse;
-            let added = &leaning * DMatrix::from_diagonal(&widths) * leaning.transpose();
-            for (a, &i) in rest.iter().enumerate() {
-                for (b, &j) in rest.iter().enumerate() {
-                    held.covariance[(i, j)] += added[(a, b)];
+            for (i, parameter) in again.iter_mut().enumerate().filter(|(_, parameter)| !parameter.held) {
+                parameter.start = fit.values[i];
+                if open.contains(&i) {
+                    parameter.start = parameter.prior.map_or(fit.values[i], |[mean, _]| mean);
+                    parameter.held = true;
                 }
             }
+            fit = self.solve(&again)?;
+            let newly = (0..again.len()).filter(|&i| again[i].held && !parameters[i].held);
+            fit.lean_on(&free, &newly.collect::<Vec<_>>());
         }
-        // Held values keep the width of what was known before.
-        newly.iter().for_each(|&i| held.covariance[(i, i)] = width(i).powi(2));
-        Ok(held)
+        Ok(fit)
     }
 
     /// What a prior that is off by its sigma counts in sigmas of a value: neighbours that err alike say less than as many that do not.
@@ -267,6 +264,27 @@ impl Problem<'_> {
 }
 
 impl Fit {
+    /// Widens it by what the priors of parameters leave open that are held since the fit of all did not determine them.
+    fn lean_on(&mut self, free: &Fit, held: &[usize]) {
+        let width = |i: usize| free.parameters[i].prior.map_or_else(|| free.sigma(i), |[_, sigma]| sigma);
+        let all = |a: &[usize], b: &[usize]| {
+            DMatrix::from_fn(a.len(), b.len(), |i, j| free.covariance[(a[i], b[j])])
+        };
+        let rest: Vec<usize> = (0..self.values.len()).filter(|&i| !self.parameters[i].held).collect();
+        if let Some(inverse) = all(held, held).try_inverse() {
+            let widths = DVector::from_iterator(held.len(), held.iter().map(|&i| width(i).powi(2)));
+            let leaning = all(&rest, held) * inverse;
+            let added = &leaning * DMatrix::from_diagonal(&widths) * leaning.transpose();
+            for (a, &i) in rest.iter().enumerate() {
+                for (b, &j) in rest.iter().enumerate() {
+                    self.covariance[(i, j)] += added[(a, b)];
+                }
+            }
+        }
+        // Held values keep the width of what was known before.
+        held.iter().for_each(|&i| self.covariance[(i, i)] = width(i).powi(2));
+    }
+
     /// One-sigma uncertainty of a parameter.
     pub fn sigma(&self, index: usize) -> f64 {
         self.covariance[(index, index)].max(0.0).sqrt()

@@ -13,13 +13,17 @@ pub mod current;
 pub mod current_calibration;
 pub mod current_fit;
 pub mod current_judge;
+mod current_robot;
 pub mod dogru_marques;
 pub mod doubt;
 pub mod drives;
 mod error;
 mod field;
+mod file_fit;
 pub mod fit;
 pub mod folds;
+mod force;
+pub mod held_out;
 pub mod lag;
 pub mod lift;
 pub mod losses;
@@ -37,12 +41,13 @@ mod standstill;
 mod stuck;
 mod watch;
 
-pub use calibrate::{Calibration, FittedParameter, HeldOut, Options, calibrate, calibrate_watched};
+pub use calibrate::{Calibration, FittedParameter, Options, calibrate, calibrate_watched};
 pub use coverage::{Coverage, DrivesCoverage, LeftOut, RunCoverage};
 pub use doubt::{Doubt, doubts};
 pub use drives::Drives;
 pub use error::Error;
 pub use field::{MOTOR_CONSTANT_SIGMA_PER_K, RESISTANCE_SIGMA_PER_K};
+pub use held_out::{Fold, HeldOut, Skill, SurfaceSkill};
 pub use method::Method;
 pub use predict::{
     PredictedDrives, Prediction, RunPrediction, current_readings_a, force_n_per_a, predict, predict_watched,

@@ -21,6 +21,24 @@ fn driven_s(recording: &Recording) -> f64 {
     recording.runs.iter().map(of_run).sum()
 }
 
+/// What ground was taken for that the recording does not name.
+fn ground_note(robot: &Robot, recording: &Recording) -> Option<String> {
+    let ground = &robot.default_surface;
+    let Some(labels) = &recording.surface else {
+        return Some(format!(
+            "the recordings do not name their ground: it was taken for `{ground}`, the robot's default"
+        ));
+    };
+    let rows = || recording.runs.iter().flat_map(|run| run.rows.clone());
+    let unnamed = rows().filter(|row| labels.get(*row).is_none()).count();
+    (unnamed > 0).then(|| {
+        format!(
+            "{unnamed} of {} rows do not name their ground: it was taken for `{ground}`, the robot's default",
+            rows().count()
+        )
+    })
+}
+
 impl Options {
     fn is_overruled(&self, name: &str) -> bool {
         self.despite.iter().any(|other| other == name)
@@ -72,22 +90,17 @@ impl Method {
             Method::Fit => calibrate_watched(robot, recording, options, watch),
             Method::DogruMarques => dogru_marques::calibrate(robot, recording, watch),
         }?;
-        if recording.surface.is_none() {
-            let ground = &robot.default_surface;
-            found.notes.push(format!(
-                "the recordings do not name their ground: it was taken for `{ground}`, the robot's default"
-            ));
-        }
+        found.notes.extend(ground_note(robot, recording));
         found.notes.extend(overruled.iter().map(|doubt| format!("calibrated despite a doubt: {doubt}")));
         match &found.held_out {
             // Where nothing was determined nothing was fitted.
             Some(judged)
-                if judged.r2 < 0.0
+                if judged.recorded_r2() < 0.0
                     && driven_s(recording) >= LEAST_JUDGED_S
                     && found.parameters.iter().any(|parameter| parameter.determined)
                     && !options.is_overruled(HELD_OUT) =>
             {
-                Err(Error::Contradicted { r2: judged.r2, rmse_w: judged.rmse_w })
+                Err(Error::Contradicted { r2: judged.recorded_r2(), rmse_w: judged.rmse_w })
             }
             _ => Ok(found),
         }

@@ -53,6 +53,9 @@ pub fn fit_power(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
 /// # Errors
 /// Those of [`fit_power`].
 pub fn fit_thinned(robot: &Robot, drives: &Drives) -> Result<PowerFit, Error> {
+    if drives.rows.len() <= FIRST_ROWS {
+        return fit_from(robot, drives, None);
+    }
     let part = drives.thinned(FIRST_ROWS)?;
     if part.averages.is_empty() { fit_from(robot, drives, None) } else { fit_from(robot, &part, None) }
 }

@@ -11,6 +11,7 @@ use crate::{
     Coverage, Doubt, Drives, Error,
     coverage::coverage,
     doubts,
+    held_out::Skill,
     power::{PowerModel, columns_by_row, seen_w},
     row::Row,
     score::Tally,
@@ -100,7 +101,16 @@ pub fn predict_watched(
     Ok(found)
 }
 
-fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Result<PredictedDrives, Error> {
+/// Drives with what a robot file predicts of them.
+struct Compared {
+    drives: Drives,
+    predicted_w: Vec<f64>,
+    recorded_w: Vec<f64>,
+    stuck: Vec<bool>,
+    averages: Averages,
+}
+
+fn compare(robot: &Robot, drives: Drives) -> Result<Compared, Error> {
     let stuck: Vec<bool> = drives.rows.par_iter().map(|row| row.stuck).collect();
     // A prediction is judged on all of a drive; being stuck is part of it.
     let drives = drives.including_stuck().including_level();
@@ -124,13 +134,41 @@ fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Resul
         None => Vec::new(),
     };
     drives.go_on()?;
-    let order = drives.judged_runs();
     let averages = Averages {
         predicted_w: drives.averaged(&predicted_w),
         recorded_w: drives.averaged(&recorded_w),
         currents_a,
     };
-    let judged = judge(&drives, &predicted_w, &recorded_w, &stuck, &averages);
+    Ok(Compared { drives, predicted_w, recorded_w, stuck, averages })
+}
+
+/// How well a robot file predicts drives: run by run, and surface by surface.
+pub(crate) struct JudgedDrives {
+    pub(crate) judged: Vec<Judged>,
+    pub(crate) surfaces: Vec<(String, Judged)>,
+}
+
+/// Judges a robot file on a recording as [`predict_watched()`] does, without a look at what is doubtful about it.
+pub(crate) fn judge_drives(
+    robot: &Robot,
+    recording: &Recording,
+    watch: &Watch,
+) -> Result<JudgedDrives, Error> {
+    let recording = &*recording.thinned_watched(watch)?;
+    let compared = compare(robot, Drives::watched(robot, recording, watch)?)?;
+    let names = compared.drives.surfaces.iter().cloned().enumerate();
+    let on_surface = |(surface, name): (usize, String)| {
+        let by_run = judge(&compared, Some(surface));
+        (name, by_run.iter().fold(Judged::default(), Judged::join))
+    };
+    Ok(JudgedDrives { judged: judge(&compared, None), surfaces: names.map(on_surface).collect() })
+}
+
+fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Result<PredictedDrives, Error> {
+    let compared = compare(robot, drives)?;
+    let judged = judge(&compared, None);
+    let Compared { drives, predicted_w, recorded_w, .. } = compared;
+    let order = drives.judged_runs();
     let covered = coverage(recording, &drives);
     let of_all = Coverage::of_all(&covered);
     if of_all.used_s <= 0.0 && recording.rows() > 1 {
@@ -200,11 +238,17 @@ pub fn force_n_per_a(robot: &Robot) -> Result<Sides<f64>, Error> {
 /// # Errors
 /// [`Error::NoForcePerAmpere`].
 pub fn current_readings_a(robot: &Robot, row: &Row, power: &Power) -> Result<Sides<f64>, Error> {
+    Ok(readings_a(robot, force_n_per_a(robot)?, row, power))
+}
+
+/// The same at newtons per ampere that are known \[A\].
+#[inline]
+pub(crate) fn readings_a(robot: &Robot, per_a: Sides<f64>, row: &Row, power: &Power) -> Sides<f64> {
     if row.stands() {
-        return Ok(robot.motor_sides().map(|motor| motor.idle_current_a.unwrap_or(0.0)));
+        return robot.motor_sides().map(|motor| motor.idle_current_a.unwrap_or(0.0));
     }
-    let per_a = signed_n_per_a(robot, force_n_per_a(robot)?, row, power.force_n);
-    Ok(power.force_n.zip(per_a).map(|(force_n, per_a)| force_n / per_a))
+    let per_a = signed_n_per_a(robot, per_a, row, power.force_n);
+    power.force_n.zip(per_a).map(|(force_n, per_a)| force_n / per_a)
 }
 
 /// Signed newtons that an ampere of each side's reading stands for while that side exerts a force \[N/A\]: c where the motor drives,
@@ -238,8 +282,8 @@ fn watts_of_currents(
 /// One-second averages of predicted and recorded current, side by side \[A\].
 fn currents(robot: &Robot, drives: &Drives, amperes: Sides<f64>) -> Result<Vec<[Vec<f64>; 2]>, Error> {
     let predicted = PowerModel::new(drives)?.averages(robot, |row, power| {
-        let per_a = signed_n_per_a(robot, amperes, row, power.force_n);
-        [power.force_n.left / per_a.left, power.force_n.right / per_a.right]
+        let reading = readings_a(robot, amperes, row, power);
+        [reading.left, reading.right]
     })?;
     let sides = (0..2).map(|side| {
         let of_side = predicted.iter().map(|current_a| current_a[side]).collect();
@@ -264,7 +308,7 @@ struct Averages {
 
 /// How well one run was predicted, in what adds up over runs.
 #[derive(Clone, Copy, Default)]
-struct Judged {
+pub(crate) struct Judged {
     by_row: Tally,
     by_second: Tally,
     currents: Option<Tally>,
@@ -274,7 +318,7 @@ struct Judged {
 }
 
 impl Judged {
-    fn join(self, other: &Judged) -> Judged {
+    pub(crate) fn join(self, other: &Judged) -> Judged {
         Judged {
             by_row: self.by_row.join(&other.by_row),
             by_second: self.by_second.join(&other.by_second),
@@ -286,6 +330,28 @@ impl Judged {
             predicted_j: self.predicted_j + other.predicted_j,
             recorded_j: self.recorded_j + other.recorded_j,
         }
+    }
+
+    /// It as figures of a robot file.
+    pub(crate) fn skill(&self) -> Skill {
+        let (by_row, by_second) = (self.by_row.score(), self.by_second.score());
+        let currents = self.currents.map(|tally| tally.score());
+        Skill {
+            rows: by_row.count,
+            rmse_w: by_row.rmse,
+            r2: by_row.r2.is_finite().then_some(by_row.r2),
+            second_rmse_w: by_second.rmse,
+            second_r2: by_second.r2.is_finite().then_some(by_second.r2),
+            bias_w: by_row.bias,
+            rmse_a: currents.map(|score| score.rmse),
+            r2_a: currents.map(|score| score.r2).filter(|r2| r2.is_finite()),
+        }
+    }
+
+    /// Magnitude of 100 (predicted - recorded) / recorded energy \[%\]; `None` where none was recorded.
+    pub(crate) fn energy_error_percent(&self) -> Option<f64> {
+        let percent = 100.0 * (self.predicted_j / self.recorded_j - 1.0);
+        percent.is_finite().then_some(percent.abs())
     }
 
     fn named(&self, run: String, coverage: Coverage) -> RunPrediction {
@@ -309,20 +375,16 @@ impl Judged {
     }
 }
 
-/// Judges every run.
-fn judge(
-    drives: &Drives,
-    predicted_w: &[f64],
-    recorded_w: &[f64],
-    stuck: &[bool],
-    averages: &Averages,
-) -> Vec<Judged> {
+/// Judges every run, all of it or what of it is on one surface.
+fn judge(compared: &Compared, surface: Option<usize>) -> Vec<Judged> {
+    let Compared { drives, predicted_w, recorded_w, stuck, averages } = compared;
+    let is_there = |one: usize| surface.is_none_or(|surface| surface == one);
     // Stretches and averages are in order of rows, those of a run together.
     let stretches = by_run(drives.runs.len(), drives.stretches.iter().map(|stretch| stretch.run));
     let seconds = by_run(drives.runs.len(), drives.averages.iter().map(|average| average.run));
     let of_run = |(stretches, seconds): (Range<usize>, Range<usize>)| {
         let mut judged = Judged::default();
-        for stretch in &drives.stretches[stretches] {
+        for stretch in drives.stretches[stretches].iter().filter(|stretch| is_there(stretch.surface)) {
             let mut before_used = false;
             for i in stretch.rows.clone() {
                 let row = &drives.rows[i];
@@ -339,7 +401,8 @@ fn judge(
             }
         }
         let pairs = |[predicted, recorded]: [&[f64]; 2]| {
-            Tally::of(seconds.clone().map(|i| (predicted[i], recorded[i])))
+            let there = seconds.clone().filter(|i| is_there(drives.averages[*i].surface));
+            Tally::of(there.map(|i| (predicted[i], recorded[i])))
         };
         judged.by_second = pairs([&averages.predicted_w, &averages.recorded_w]);
         if drives.placement.is_some() {

@@ -4,7 +4,7 @@
 
 use calibration::{Error, Method, Options, doubts, predict};
 use model::{Robot, builtin};
-use recording::{Channel, Recording, unwatched};
+use recording::{Channel, Labels, Recording, unwatched};
 
 mod simulated;
 use simulated::{drives, seeded, with_battery_power, with_power};
@@ -77,6 +77,34 @@ fn a_doubtful_recording_is_predicted_with_its_doubt_and_not_calibrated_unless_ov
     let despite = Options { despite: vec!["power_sign".into(), "held_out".into()], ..Options::default() };
     let found = calibrated(despite).unwrap();
     assert!(found.notes.iter().any(|note| note.contains("despite a doubt: power_sign")), "{:?}", found.notes);
+}
+
+#[test]
+fn a_fit_that_other_runs_contradict_is_refused_with_its_skill() {
+    let wrong = changed(healthy(), &[Channel::LeftPower, Channel::RightPower], |w| -w);
+    let options = Options { despite: vec!["power_sign".into()], ..Options::default() };
+    let refused = Method::Fit.calibrate(&robot(), &wrong, &options).unwrap_err();
+    assert!(matches!(refused, Error::Contradicted { r2, .. } if r2 < 0.0), "{refused}");
+    let said = refused.to_string();
+    assert!(said.contains("worse than their mean") && said.contains("--despite held_out"), "{said}");
+}
+
+#[test]
+fn ground_without_a_name_is_said_to_be_the_robots_default() {
+    let of = |recording: &Recording| {
+        let found = Method::Fit.calibrate(&robot(), recording, &Options::default()).unwrap();
+        found.notes.into_iter().find(|note| note.contains("name their ground"))
+    };
+    let mut recording = healthy();
+    recording.surface = None;
+    assert!(of(&recording).unwrap().contains("`marble`, the robot's default"));
+    let rows = recording.rows();
+    let mut labels = Labels::constant("marble", rows);
+    recording.surface = Some(labels.clone());
+    assert_eq!(of(&recording), None);
+    labels.index[..7].fill(Labels::NONE);
+    recording.surface = Some(labels);
+    assert!(of(&recording).unwrap().starts_with(&format!("7 of {rows} rows")));
 }
 
 #[test]

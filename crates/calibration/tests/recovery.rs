@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use calibration::{Options, calibrate, predict};
+use calibration::{Drives, Options, calibrate, predict};
 use model::{Attitude, Motion, Robot, Sides, builtin, power};
 use proptest::prelude::*;
 use rand_pcg::Pcg64Mcg;
@@ -10,7 +10,7 @@ use recording::{Channel, Recording};
 
 mod simulated;
 use simulated::{
-    ROWS, RUNS, drives, normal, seeded, with_power,
+    ROWS, RUNS, drives, normal, seeded, with_battery_power, with_power,
     worlds::{World, file, truth},
 };
 
@@ -27,6 +27,43 @@ fn motors_that_warm_tell_their_temperature_coefficients_and_each_ground_its_fric
 #[test]
 fn the_battery_alone_tells_hotel_power_and_friction() {
     World::Battery.assert_as_promised();
+}
+
+#[test]
+fn a_hotel_load_that_the_file_does_not_state_is_found_from_drives_that_hardly_stand() {
+    let mut inside = 0;
+    const TRIALS: u64 = 20;
+    for trial in 0..TRIALS {
+        let mut random = seeded(700 + trial);
+        let mut truth = truth(&mut random);
+        truth.hotel_power_w = [15.0, 60.0, 140.0, 250.0][trial as usize % 4];
+        let plain = hardly_standing(drives(&mut random, 6, 300));
+        let recording = with_battery_power(&truth, plain, &mut random);
+        let stands = Drives::new(&file(), &recording).unwrap().rows;
+        let share = stands.iter().filter(|row| row.stands()).count() as f64 / stands.len() as f64;
+        assert!((0.02..0.07).contains(&share), "{share} of the time it stands");
+        assert_eq!(file().hotel_power_w, 0.0);
+        let found = calibrate(&file(), &recording, &Options::default()).unwrap();
+        let hotel = found.parameters.iter().find(|p| p.name == "hotel_power_w").unwrap();
+        let [low, high] = hotel.interval_95.unwrap();
+        assert!(hotel.determined, "{hotel:?}");
+        inside += u64::from((low..=high).contains(&truth.hotel_power_w));
+    }
+    // Of intervals that hold in 95 % of cases, 17 or more of 20 hold in 98 %.
+    assert!(inside >= 17, "{inside} of {TRIALS}");
+}
+
+/// The drives with halts driven through but for the last twentieth of each run, in which the robot stands.
+fn hardly_standing(mut recording: Recording) -> Recording {
+    let runs = recording.runs.clone();
+    for side in [Channel::LeftSpeed, Channel::RightSpeed] {
+        let speeds = recording.channels.get_mut(&side).unwrap();
+        speeds.iter_mut().filter(|mps| mps.abs() < 0.02).for_each(|mps| *mps = 0.05);
+        for run in &runs {
+            speeds[run.rows.end - run.rows.len() / 20..run.rows.end].fill(0.0);
+        }
+    }
+    recording
 }
 
 #[test]

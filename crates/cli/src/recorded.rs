@@ -67,7 +67,7 @@ impl Recorded {
     }
 
     /// The runs that were asked for.
-    fn chosen(&self, mut recording: Recording) -> Result<Recording, BadInput> {
+    fn chosen(&self, recording: Recording) -> Result<Recording, BadInput> {
         if self.runs.is_empty() {
             return Ok(recording);
         }
@@ -78,14 +78,15 @@ impl Recorded {
                 known.join(", ")
             )));
         }
-        recording.runs.retain(|run| self.runs.contains(&run.name));
-        Ok(recording)
+        Ok(recording.of_runs(|run| self.runs.contains(&run.name)))
     }
 
     /// Ground without a label is what was asked for, else the robot's default.
     fn label(&self, recording: &mut Recording) {
-        if let (None, Some(name)) = (&recording.surface, &self.surface) {
-            recording.surface = Some(Labels::constant(name, recording.rows()));
+        let Some(name) = &self.surface else { return };
+        match &mut recording.surface {
+            None => recording.surface = Some(Labels::constant(name, recording.rows())),
+            Some(labels) => labels.name_the_rest(name),
         }
     }
 

@@ -51,7 +51,7 @@ impl Rows {
     /// # Errors
     /// A count of cells that is not the header's, a second header, or a row of other units.
     pub(crate) fn role(&mut self, plan: &Plan, record: &ByteRecord, line: u64) -> Result<Role, Error> {
-        let is_empty = |cell: &[u8]| cell.trim_ascii().is_empty();
+        let is_empty = |cell: &[u8]| cell.iter().all(u8::is_ascii_whitespace);
         let first = record.get(0).unwrap_or_default();
         // A name may begin like a remark, a number may not.
         let is_name = record.len() == self.headers.len() && plan.kinds.first() != Some(&Kind::Number);

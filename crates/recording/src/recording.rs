@@ -121,6 +121,32 @@ impl Recording {
         (step_s <= run.gap_s).then_some(step_s)
     }
 
+    /// The same drives with some of their runs alone.
+    pub fn of_runs(&self, keep: impl Fn(&Run) -> bool) -> Recording {
+        let kept: Vec<&Run> = self.runs.iter().filter(|run| keep(run)).collect();
+        fn column<T: Copy>(kept: &[&Run], values: &[T]) -> Vec<T> {
+            kept.iter().flat_map(|run| values.get(run.rows.clone()).unwrap_or_default()).copied().collect()
+        }
+        let columns = |values: &Vec<f64>| column(&kept, values);
+        let mut from = 0;
+        let run = |run: &&Run| {
+            let rows = from..from + run.rows.len();
+            from = rows.end;
+            Run { rows, ..(*run).clone() }
+        };
+        Recording {
+            t_s: columns(&self.t_s),
+            channels: self.channels.iter().map(|(channel, values)| (*channel, columns(values))).collect(),
+            aside: self.aside.iter().map(|(name, values)| (name.clone(), columns(values))).collect(),
+            surface: self
+                .surface
+                .as_ref()
+                .map(|labels| Labels { names: labels.names.clone(), index: column(&kept, &labels.index) }),
+            reading_ends: column(&kept, &self.reading_ends),
+            runs: kept.iter().map(run).collect(),
+        }
+    }
+
     /// The runs of several recordings behind one another. A channel that one of them lacks is a gap there, but for the power of a
     /// battery whose current and voltage it has; a run whose name is taken gets a number behind it.
     pub fn join(parts: impl IntoIterator<Item = Recording>) -> Recording {
@@ -229,6 +255,20 @@ impl Labels {
         Labels { names: vec![name.to_owned()], index: vec![0; rows] }
     }
 
+    /// Gives rows without a name this one.
+    pub fn name_the_rest(&mut self, name: &str) {
+        if !self.index.contains(&Labels::NONE) {
+            return;
+        }
+        let known = self.names.iter().position(|other| other == name);
+        let place = known.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.names.len() - 1
+        });
+        let place = u32::try_from(place).unwrap_or(Labels::NONE);
+        self.index.iter_mut().filter(|index| **index == Labels::NONE).for_each(|index| *index = place);
+    }
+
     pub(crate) fn unnamed(rows: usize) -> Labels {
         Labels { names: Vec::new(), index: vec![Labels::NONE; rows] }
     }
@@ -273,6 +313,29 @@ mod tests {
         assert!(joined.channel(Channel::Current).unwrap()[..4].iter().all(|i| i.is_nan()));
         let surface = joined.surface.unwrap();
         assert_eq!((surface.get(0), surface.get(7)), (None, Some("ice")));
+    }
+
+    #[test]
+    fn some_runs_of_a_recording_are_what_each_of_them_was() {
+        let joined = Recording::join([part(Channel::Power, None), part(Channel::Power, Some("ice"))]);
+        let second = joined.of_runs(|run| run.name == "drive-2");
+        let alone = part(Channel::Power, Some("ice"));
+        assert_eq!((&second.t_s, &second.channels), (&alone.t_s, &alone.channels));
+        assert_eq!((second.runs.len(), second.runs[0].rows.clone()), (1, 0..4));
+        assert_eq!(second.surface.as_ref().unwrap().get(3), Some("ice"));
+        assert_eq!(joined.of_runs(|_| true), joined);
+        assert_eq!(joined.of_runs(|_| false).rows(), 0);
+    }
+
+    #[test]
+    fn rows_without_a_name_get_one_and_others_keep_theirs() {
+        let joined = Recording::join([part(Channel::Power, None), part(Channel::Power, Some("ice"))]);
+        let mut surface = joined.surface.unwrap();
+        surface.name_the_rest("mud");
+        assert_eq!((surface.get(0), surface.get(7)), (Some("mud"), Some("ice")));
+        let before = surface.clone();
+        surface.name_the_rest("moss");
+        assert_eq!(surface, before, "every row has its name");
     }
 
     #[test]

@@ -109,6 +109,13 @@ fn summary(found: &Calibration) -> String {
             text += &format!("; side current R² {r2:.3}, RMSE {rmse_a:.2} A");
         }
     }
+    if let Some(skill) = &found.as_written {
+        let r2 = skill.r2.map_or("-".to_owned(), |r2| format!("{r2:.3}"));
+        text += &format!("\nthe file on the runs that it was fitted to: R² {r2}, RMSE {:.1} W", skill.rmse_w);
+        if let (Some(r2), Some(rmse_a)) = (skill.r2_a, skill.rmse_a) {
+            text += &format!("; side current R² {r2:.3}, RMSE {rmse_a:.2} A");
+        }
+    }
     for note in &found.notes {
         text += &format!("\n{note}");
     }
