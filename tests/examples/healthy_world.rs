@@ -34,7 +34,11 @@ fn main() {
         let after = predict(&found.robot, &recording).unwrap();
         say("  calibrated", &after.prediction.total);
         let held_out = found.held_out.unwrap();
-        println!("  held out, 1 s: R² {:.4}, RMSE {:.2} W", held_out.second_r2.unwrap(), held_out.second_rmse_w.unwrap());
+        println!(
+            "  held out, 1 s: R² {:.4}, RMSE {:.2} W",
+            held_out.second_r2.unwrap(),
+            held_out.second_rmse_w.unwrap()
+        );
         regimes(&after);
     }
     let file = file(&robot);
