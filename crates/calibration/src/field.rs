@@ -134,7 +134,7 @@ impl Lines {
                 &format!("motors.{side}.k2"),
                 "1",
                 [k2, u.k2 * k2],
-                [1.0, (2.0 * k2).max(3.0).min(20.0)],
+                [1.0, (2.0 * k2).clamp(3.0, 20.0)],
             );
         }
         // At one temperature both coefficients are k1 and k2 by other names.

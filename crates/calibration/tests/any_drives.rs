@@ -1,6 +1,6 @@
 //! Whatever little drives tell, a calibration holds the rest at the robot file and writes a robot that can be.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::path::PathBuf;
 
