@@ -2,7 +2,7 @@
 
 use axum::{Router, extract::Path, http::header, response::IntoResponse, routing::get};
 use serde_json::{Map, Value, json};
-use utoipa::{PartialSchema, ToSchema};
+use utoipa::ToSchema;
 
 use crate::{
     Engine,
