@@ -158,7 +158,23 @@ fn robots_are_listed_and_read_by_name_and_one_of_them_may_be_posted_back() {
     let robots = server.get("/v1/robots").json();
     let names: Vec<&str> =
         robots["robots"].as_array().unwrap().iter().map(|r| r["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["husky-a200", "husky-a200-a", "husky-a200-b", "husky-a200-c", "husky-a200-d"]);
+    let built_in = [
+        "bunker",
+        "husky-a200",
+        "husky-a200-a",
+        "husky-a200-b",
+        "husky-a200-c",
+        "husky-a200-d",
+        "husky-a200-field",
+        "husky-a300",
+        "jackal",
+        "leo-rover",
+        "rover-pro",
+        "scout-2",
+        "scout-mini",
+        "warthog",
+    ];
+    assert_eq!(names, built_in);
     let husky = server.get("/v1/robots/husky-a200").json();
     let by_name = server.post_json("/v1/plan", &question()).json();
     let in_full = server.post_json("/v1/plan", &question_with("/robot", husky)).json();

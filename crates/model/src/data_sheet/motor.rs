@@ -52,119 +52,129 @@ pub(super) struct Load {
     pub(super) max_wheel_speed_mps: f64,
 }
 
+/// Motor constants of a side.
+///
+/// # Errors
+/// The first figure that cannot be right, by its name.
 pub(super) fn constants(drive: &Drive, load: Load) -> Result<DriveConstants, Error> {
     check(drive)?;
+    let k2 = k2(drive)?;
+    let (k1, torque_nm_per_a) = match drive.sheet {
+        MotorSheet::Constants { .. } | MotorSheet::Stall { .. } => k1_of_circuit(drive, load),
+        MotorSheet::RatedPower { power_w } => (k1_of_rated_power(drive, load, power_w), None),
+        MotorSheet::Unknown => (k1_of_size(load), None),
+    };
+    let force_n_per_a = torque_nm_per_a.map(|torque| torque / load.wheel_radius_m);
+    let motor = Motor { k1_w_per_n2: k1.value, k2: k2.value, force_n_per_a, idle_current_a: None };
+    Ok(DriveConstants { motor, k1, k2 })
+}
+
+/// k2 of a Husky A200, the mean of its sides [-].
+fn husky_k2() -> f64 {
     let husky = builtin::husky_a200().motors;
-    let husky_k2 = (husky.left.k2 + husky.right.k2) / 2.0;
-    let (n, r_m) = (f64::from(drive.motors_per_side), load.wheel_radius_m);
-    let mut k2 = match drive.gear_efficiency {
-        Some(eta) => constant(
-            "k2",
+    (husky.left.k2 + husky.right.k2) / 2.0
+}
+
+/// η, and its relative one-sigma uncertainty [-].
+fn gear_efficiency(drive: &Drive) -> (f64, f64) {
+    let borrowed = (1.0 / (husky_k2() * OTHER_EFFICIENCY), BORROWED_K2_SIGMA);
+    drive.gear_efficiency.map_or(borrowed, |eta| (eta, EFFICIENCY_SIGMA))
+}
+
+/// What of a shaft's torque reaches the wheel: of a geared motor the gears' losses are in its stall torque already [-].
+fn through_gears(drive: &Drive, gear_ratio: f64) -> f64 {
+    if gear_ratio == 1.0 { 1.0 } else { gear_efficiency(drive).0 }
+}
+
+fn k2(drive: &Drive) -> Result<Constant, Error> {
+    let sheet = |value, because| constant("k2", value, "", EFFICIENCY_SIGMA, Provenance::DataSheet, because);
+    if let MotorSheet::Stall {
+        torque_nm,
+        current_a,
+        voltage_v,
+        gear_ratio,
+        no_load_speed_radps: Some(speed_radps),
+    } = drive.sheet
+    {
+        let ratio = voltage_v * current_a / (speed_radps * torque_nm);
+        super::check(
+            "no_load_speed",
+            ratio,
+            1.0,
+            20.0,
+            "its stalled torque times its free speed is more than its electrical power; give both at the same shaft, in N m and revolutions per minute",
+        )?;
+        let because = format!(
+            "U I / (ω_0 T η_o) of torque and current at stall and speed without load, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
+        );
+        return Ok(sheet(ratio / through_gears(drive, gear_ratio) / OTHER_EFFICIENCY, because));
+    }
+    Ok(match drive.gear_efficiency {
+        Some(eta) => sheet(
             1.0 / (eta * OTHER_EFFICIENCY),
-            "",
-            EFFICIENCY_SIGMA,
-            Provenance::DataSheet,
             format!(
                 "1 / (η η_o), η = {eta} of the gears, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
             ),
         ),
         None => constant(
             "k2",
-            husky_k2,
+            husky_k2(),
             "",
             BORROWED_K2_SIGMA,
             Provenance::Borrowed,
             "a Husky A200's (Dogru & Marques 2018, Table I): no efficiency is given".into(),
         ),
-    };
-    let eta = drive.gear_efficiency.unwrap_or(1.0 / (husky_k2 * OTHER_EFFICIENCY));
-    let eta_sigma = if drive.gear_efficiency.is_some() { EFFICIENCY_SIGMA } else { BORROWED_K2_SIGMA };
-    let sheet_sigma =
-        (4.0 * (TORQUE_CONSTANT_SIGMA.powi(2) + eta_sigma.powi(2)) + RESISTANCE_SIGMA.powi(2)).sqrt();
-    let k1_of = |resistance_ohm: f64, torque_nm_per_a: f64| {
-        resistance_ohm * r_m.powi(2) / (n * torque_nm_per_a.powi(2))
-    };
-    let (k1, torque_nm_per_a) = match drive.sheet {
+    })
+}
+
+/// k1 and K from the winding and what of its torque reaches the wheel; for sheets that tell neither, nothing.
+fn k1_of_circuit(drive: &Drive, load: Load) -> (Constant, Option<f64>) {
+    let (n, r_m) = (f64::from(drive.motors_per_side), load.wheel_radius_m);
+    let (eta, eta_sigma) = gear_efficiency(drive);
+    let (resistance_ohm, torque, gear_sigma, because) = match drive.sheet {
         MotorSheet::Constants { torque_constant_nm_per_a, resistance_ohm, gear_ratio } => {
-            let torque = eta * gear_ratio * torque_constant_nm_per_a;
             let because = format!(
                 "R r² / (n (η G K_t)²), R = {resistance_ohm} Ω, r = {r_m} m, n = {n}, η = {eta:.3}, G = {gear_ratio}, K_t = {torque_constant_nm_per_a} N m/A"
             );
-            (
-                constant(
-                    "k1",
-                    k1_of(resistance_ohm, torque),
-                    K1_UNIT,
-                    sheet_sigma,
-                    Provenance::DataSheet,
-                    because,
-                ),
-                Some(torque),
-            )
+            (resistance_ohm, eta * gear_ratio * torque_constant_nm_per_a, eta_sigma, because)
         }
-        MotorSheet::Stall { torque_nm, current_a, voltage_v, gear_ratio, no_load_speed_radps } => {
-            // Of a geared motor the gears' losses are in its stall torque already.
-            let through = if gear_ratio == 1.0 { 1.0 } else { eta };
-            let torque = through * gear_ratio * torque_nm / current_a;
-            let because = format!(
-                "R r² / (n K²), R = U / I = {:.3} Ω and K = T / I = {torque:.3} N m/A at the wheel of a stalled motor, r = {r_m} m, n = {n}",
-                voltage_v / current_a
+        MotorSheet::Stall { torque_nm, current_a, voltage_v, gear_ratio, .. } => {
+            let (ohm, torque) = (
+                voltage_v / current_a,
+                through_gears(drive, gear_ratio) * gear_ratio * torque_nm / current_a,
             );
-            if let Some(speed_radps) = no_load_speed_radps {
-                let ratio = voltage_v * current_a / (speed_radps * torque_nm);
-                super::check(
-                    "no_load_speed",
-                    ratio,
-                    1.0,
-                    20.0,
-                    "its stalled torque times its free speed is more than its electrical power; give both at the same shaft, in N m and revolutions per minute",
-                )?;
-                k2 = constant(
-                    "k2",
-                    ratio / through / OTHER_EFFICIENCY,
-                    "",
-                    EFFICIENCY_SIGMA,
-                    Provenance::DataSheet,
-                    format!(
-                        "U I / (ω_0 T η_o) of torque and current at stall and speed without load, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
-                    ),
-                );
-            }
-            let sigma = (4.0 * TORQUE_CONSTANT_SIGMA.powi(2) + RESISTANCE_SIGMA.powi(2)).sqrt();
-            let sigma = if gear_ratio == 1.0 { sigma } else { sheet_sigma };
-            (
-                constant(
-                    "k1",
-                    k1_of(voltage_v / current_a, torque),
-                    K1_UNIT,
-                    sigma,
-                    Provenance::DataSheet,
-                    because,
-                ),
-                Some(torque),
-            )
-        }
-        MotorSheet::RatedPower { power_w } => {
-            let k1 = COPPER_SHARE * load.max_wheel_speed_mps.powi(2) / (n * power_w);
             let because = format!(
-                "c u² / (n P), P = {power_w} W at top speed u = {} m/s, n = {n}, of which c = {COPPER_SHARE} heats the winding (assumed)",
-                load.max_wheel_speed_mps
+                "R r² / (n K²), R = U / I = {ohm:.3} Ω and K = T / I = {torque:.3} N m/A at the wheel of a stalled motor, r = {r_m} m, n = {n}"
             );
-            (constant("k1", k1, K1_UNIT, COPPER_SHARE_SIGMA, Provenance::Borrowed, because), None)
+            (ohm, torque, if gear_ratio == 1.0 { 0.0 } else { eta_sigma }, because)
         }
-        MotorSheet::Unknown => {
-            let power_w = SPECIFIC_POWER * load.mass_kg * load.max_wheel_speed_mps;
-            let k1 = COPPER_SHARE * load.max_wheel_speed_mps.powi(2) / power_w;
-            let because = format!(
-                "c u² / P, a side's P = {power_w:.0} W at top speed u = {} m/s taken from mass and speed, of which c = {COPPER_SHARE} heats the winding (assumed): give the motors' data sheet",
-                load.max_wheel_speed_mps
-            );
-            (constant("k1", k1, K1_UNIT, SPECIFIC_POWER_SIGMA, Provenance::Borrowed, because), None)
-        }
+        MotorSheet::RatedPower { .. } | MotorSheet::Unknown => return (k1_of_size(load), None),
     };
-    let force_n_per_a = torque_nm_per_a.map(|torque| torque / r_m);
-    let motor = Motor { k1_w_per_n2: k1.value, k2: k2.value, force_n_per_a, idle_current_a: None };
-    Ok(DriveConstants { motor, k1, k2 })
+    let k1 = resistance_ohm * r_m.powi(2) / (n * torque.powi(2));
+    let sigma =
+        (4.0 * (TORQUE_CONSTANT_SIGMA.powi(2) + gear_sigma.powi(2)) + RESISTANCE_SIGMA.powi(2)).sqrt();
+    (constant("k1", k1, K1_UNIT, sigma, Provenance::DataSheet, because), Some(torque))
+}
+
+/// k1 of motors that heat by [`COPPER_SHARE`] of their rated power at top speed.
+fn k1_of_rated_power(drive: &Drive, load: Load, power_w: f64) -> Constant {
+    let (n, top_mps) = (f64::from(drive.motors_per_side), load.max_wheel_speed_mps);
+    let because = format!(
+        "c u² / (n P), P = {power_w} W at top speed u = {top_mps} m/s, n = {n}, of which c = {COPPER_SHARE} heats the winding (assumed)"
+    );
+    let k1 = COPPER_SHARE * top_mps.powi(2) / (n * power_w);
+    constant("k1", k1, K1_UNIT, COPPER_SHARE_SIGMA, Provenance::Borrowed, because)
+}
+
+/// k1 of motors of [`SPECIFIC_POWER`].
+fn k1_of_size(load: Load) -> Constant {
+    let top_mps = load.max_wheel_speed_mps;
+    let power_w = SPECIFIC_POWER * load.mass_kg * top_mps;
+    let because = format!(
+        "c u² / P, a side's P = {power_w:.0} W at top speed u = {top_mps} m/s taken from mass and speed, of which c = {COPPER_SHARE} heats the winding (assumed): give the motors' data sheet"
+    );
+    let k1 = COPPER_SHARE * top_mps.powi(2) / power_w;
+    constant("k1", k1, K1_UNIT, SPECIFIC_POWER_SIGMA, Provenance::Borrowed, because)
 }
 
 const K1_UNIT: &str = "W/N²";

@@ -106,7 +106,7 @@ fn doubts(robot: &Robot, written: &Value) -> Vec<Doubt> {
     let mut found = Vec::new();
     let mut add = |field: &str, detail: String| found.push(Doubt { field: field.to_owned(), detail });
     let husky = builtin::husky_a200();
-    if robot.provenance.is_empty() && robot.posterior.is_none() {
+    if written.is_object() && robot.provenance.is_empty() && robot.posterior.is_none() {
         add("provenance", "nothing says where the constants come from; give `measured`, `fitted`, `data-sheet` or `borrowed` for each".into());
     }
     if written.is_object() && written.get("uncertainty").is_none() && robot.posterior.is_none() {

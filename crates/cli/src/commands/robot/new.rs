@@ -152,7 +152,7 @@ impl FromStr for GroundArgument {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let sheet = arguments.sheet()?;
-    let found = sheet.describe().map_err(|error| BadInput(format!("--{error}").replace('_', "-")))?;
+    let found = sheet.describe().map_err(|error| BadInput(format!("data sheet: {error}")))?;
     let path = &arguments.out;
     std::fs::write(path, serde_json::to_string_pretty(&found.robot)? + "\n")
         .with_context(|| format!("cannot write the robot to {}", path.display()))?;
