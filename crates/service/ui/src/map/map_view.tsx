@@ -120,7 +120,7 @@ function followFit(): () => void {
 function areaHint(): string {
   if (areas.mode.value === "select") return areas.selected.value === null ? "Click an area to select it" : "Drag the area or its corners";
   const count = areas.corners.value.length;
-  if (count === 0) return `Click the corners of a ${areas.mode.value}; double-click ends it`;
+  if (count === 0) return `Click the corners of a ${areas.mode.value}`;
   return canFinish() ? "Double-click or Enter ends the shape" : "Click the next corner";
 }
 
