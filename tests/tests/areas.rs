@@ -104,6 +104,18 @@ fn areas_in_degrees_lie_where_the_map_does() {
     let crossed =
         answer["poses"].as_array().unwrap().iter().find(|pose| number(&pose["x_m"]) > 512_014.4).unwrap();
     assert!(number(&crossed["y_m"]) > 5_422_986.0, "{crossed}");
+    let mut stored = request["map"].clone();
+    stored["areas"] = request["areas"].clone();
+    let stored = server.post_json("/v1/maps", &stored).json();
+    let address = format!("/v1/maps/{}/areas", stored["id"].as_str().unwrap());
+    assert_eq!(server.get(&address).json(), request["areas"]);
+    let placed = server.get(&format!("{address}?frame=map")).json();
+    assert_eq!(placed["crs"], Value::Null);
+    let corner = &placed["features"][0]["geometry"]["coordinates"][0][2];
+    assert!((number(&corner[0]) - 512_015.0).abs() < 0.01, "{corner}");
+    assert!((number(&corner[1]) - 5_422_986.0).abs() < 0.01, "{corner}");
+    let unknown = server.get(&format!("{address}?frame=moon"));
+    assert!(unknown.status == 400 && unknown.text.contains("frame"), "{}", unknown.text);
 }
 
 #[test]

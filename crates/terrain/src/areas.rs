@@ -2,6 +2,7 @@
 
 mod effect;
 mod error;
+mod map_frame;
 mod parse;
 mod placing;
 mod raster;

@@ -1,6 +1,7 @@
 /** Puts the page together and starts it. */
 import { render } from "preact";
 import { App } from "./app";
+import { followAreas } from "./areas/changes";
 import { followJobs } from "./diagnose/state";
 import { followEarth } from "./map/earth";
 import { keepLink, readLink } from "./plan/link";
@@ -12,6 +13,7 @@ import "./style/tokens.css";
 import "./style/base.css";
 import "./style/controls.css";
 import "./style/map.css";
+import "./style/areas.css";
 import "./style/answer.css";
 import "./style/plan.css";
 import "./style/robots.css";
@@ -20,6 +22,7 @@ import "./style/report.css";
 
 readLink();
 followMap();
+followAreas();
 followEarth();
 followQuestion();
 followReach();

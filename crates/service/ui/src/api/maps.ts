@@ -21,6 +21,8 @@ export interface MapSummary {
   elevation_range_m: [number, number];
   passable_fraction: number;
   surfaces: string[];
+  /** Number of areas over it. */
+  areas: number;
   warnings: Warning[];
 }
 

@@ -1,6 +1,7 @@
 /** What `/v1/compare` and `/v1/plan` take and answer; names are those of /openapi.json. */
 import type { Warning } from "./maps";
 import { ask, type Asking } from "./ask";
+import { Problem } from "./problem";
 import type { Robot } from "./robots";
 
 export interface Place {
@@ -9,12 +10,23 @@ export interface Place {
   heading_rad?: number;
 }
 
-export interface PlanQuestion {
+/** How a path is steered; what is absent is as the service takes it. */
+export interface Steering {
+  reverse?: true;
+  forbid?: "spin"[];
+  /** No turn is tighter. */
+  least_radius_m?: number;
+  prices?: { stops: true };
+  /** As near to the goal as can be, where no path leads to it. */
+  partial?: true;
+}
+
+export interface PlanQuestion extends Steering {
   map_id: string;
   /** A built-in name, a stored id, or the robot itself. */
   robot: string | Robot;
   start: Place;
-  goal: Place;
+  goal: Place & { heading?: "either" };
   speed_mps?: number;
   bound?: number;
   refine?: boolean;
@@ -38,6 +50,8 @@ export interface Plan {
   duration_s: number;
   distance_m: number;
   climb_m: number;
+  /** How far from the goal a partial path ends. */
+  short_of_goal_m?: number;
   recovered_j: number;
   poses: Pose[];
   snapped: { start: { distance_m: number }; goal: { distance_m: number } };
@@ -51,5 +65,15 @@ export type Objective = (typeof OBJECTIVES)[number];
 
 export type Comparison = Record<Objective, Plan> & { saving_fraction: number };
 
-/** Asks for the energy-minimal, shortest and fastest paths. */
-export const compare = (question: PlanQuestion, asking: Asking = {}) => ask<Comparison>("/v1/compare", { ...asking, json: question });
+/** Asks for the energy-minimal, shortest and fastest paths; partial ones where that is asked for and no path leads to the goal. */
+export async function compare({ partial, ...question }: PlanQuestion, asking: Asking = {}): Promise<Comparison> {
+  try {
+    return await ask<Comparison>("/v1/compare", { ...asking, json: question });
+  } catch (thrown) {
+    if (!partial || !(thrown instanceof Problem) || thrown.document.type.split("/").at(-1) !== "no-path") throw thrown;
+    const plan = (objective: Objective) => ask<Plan>("/v1/plan", { ...asking, json: { ...question, partial, objective } });
+    const [energy, distance, time] = await Promise.all([plan("energy"), plan("distance"), plan("time")]);
+    const saved_j = distance.energy_j - energy.energy_j;
+    return { energy, distance, time, saving_fraction: saved_j === 0 ? 0 : saved_j / Math.abs(distance.energy_j) };
+  }
+}

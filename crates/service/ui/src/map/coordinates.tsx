@@ -1,6 +1,6 @@
 /** Where the pointer or the keyboard's cursor is. */
 import { degreesOf, degreesWords } from "./earth";
-import { cursor } from "./keys";
+import { cursor } from "./cursor";
 import { pointedAt } from "./pointed";
 
 /** Map metres to the decimetre. */

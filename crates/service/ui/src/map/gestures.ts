@@ -1,5 +1,7 @@
 /** Mouse and touch on the map: place ends, drag them, turn them, pan, zoom, and point at paths. */
 import { OBJECTIVES } from "../api/plans";
+import { moved, pressed, released, type AreaPress } from "../areas/gestures";
+import { preview } from "../areas/state";
 import * as state from "../plan/state";
 import { nearest } from "./along";
 import { handleAt } from "./draw";
@@ -16,7 +18,11 @@ export interface Board {
 }
 
 type Doing =
-  { kind: "pan" } | { kind: "move"; end: End } | { kind: "turn"; end: End; isPlacing: boolean } | { kind: "pinch"; apart: number };
+  | { kind: "pan" }
+  | { kind: "move"; end: End }
+  | { kind: "turn"; end: End; isPlacing: boolean }
+  | { kind: "pinch"; apart: number }
+  | AreaPress;
 
 /** Pixels within which something is hit; fingers are wider than pointers. */
 const reach = (event: PointerEvent) => (event.pointerType === "touch" ? 26 : 15);
@@ -43,6 +49,7 @@ export function listen(board: Board, signal: AbortSignal): void {
     element.setPointerCapture(event.pointerId);
     last = pointOf(event);
     fingers.set(event.pointerId, last);
+    if (fingers.size === 2) preview.value = null;
     doing = fingers.size === 2 ? { kind: "pinch", apart: apart(fingers) } : begun(board, view, event, last);
     if (doing.kind === "move") state.isDragging.value = true;
   });
@@ -56,6 +63,7 @@ export function listen(board: Board, signal: AbortSignal): void {
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, point);
     if (!doing) pointAt(view, size, point, reach(event));
     else if (doing.kind === "pinch") doing.apart = pinch(board, view, fingers, doing.apart);
+    else if (doing.kind === "corner" || doing.kind === "drag") doing = moved(doing, point) ? { kind: "pan" } : doing;
     else if (doing.kind === "pan") board.show(panned(view, point.x - last.x, point.y - last.y));
     else drag(view, size, point, doing);
     last = point;
@@ -64,6 +72,7 @@ export function listen(board: Board, signal: AbortSignal): void {
   const end = (event: PointerEvent) => {
     fingers.delete(event.pointerId);
     if (doing?.kind === "move" || doing?.kind === "turn") settle(doing.end);
+    if (doing?.kind === "corner" || doing?.kind === "drag") endArea(event, doing);
     doing = null;
     state.isDragging.value = false;
   };
@@ -80,11 +89,21 @@ export function listen(board: Board, signal: AbortSignal): void {
   });
 }
 
+/** A press that the browser takes away changes nothing. */
+function endArea(event: PointerEvent, doing: AreaPress): void {
+  if (event.type === "pointerup") released(doing);
+  else preview.value = null;
+}
+
 /** What a press begins: a heading's handle, an end, a placing, or a pan. */
 function begun(board: Board, view: View, event: PointerEvent, point: Point): Doing {
   const size = board.size();
   const near = (at: Point) => Math.hypot(at.x - point.x, at.y - point.y) <= reach(event);
   const placing = state.tool.value;
+  if (placing === "areas") {
+    const press = { view, size, point, within: reach(event) };
+    return (event.button === 0 && pressed(press)) || { kind: "pan" };
+  }
   for (const end of ["start", "goal"] as const) {
     const place = state[end].value;
     if (!place) continue;

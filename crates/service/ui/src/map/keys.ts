@@ -1,14 +1,13 @@
 /** The map by keyboard: arrows move a cursor, Enter places what is to be placed. */
-import { signal } from "@preact/signals";
 import { announce } from "../announce";
 import type { Place } from "../api/plans";
+import { pressArea } from "../areas/keys";
+import { isEditing } from "../areas/state";
 import * as state from "../plan/state";
+import { cursor } from "./cursor";
 import { onMap, placeWords, setEnd, settle, turn } from "./ends";
 import { pointedAt } from "./pointed";
 import { fitted, toPixel, zoomed, type Size, type View } from "./view";
-
-/** Where the keyboard's cursor is; null while the map has not the focus. */
-export const cursor = signal<Place | null>(null);
 
 const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -25,6 +24,7 @@ export function press(event: KeyboardEvent, view: View, size: Size, show: (view:
     move(at, arrow, event.shiftKey ? 60 : 10, view, size, show);
     return true;
   }
+  if (isEditing.value && pressArea(event, view, size)) return true;
   const about = toPixel(view, size, at.x_m, at.y_m);
   const place = (end: "start" | "goal") => {
     setEnd(end, { ...at });

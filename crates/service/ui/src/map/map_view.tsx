@@ -2,16 +2,24 @@
 import { effect, signal, useComputed } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Cells } from "../api/maps";
+import { DraftButtons } from "../areas/draft_buttons";
+import { canFinish } from "../areas/edit";
+import { drawAreas, drawDraft } from "../areas/draw";
+import { AREA_KEYS } from "../areas/keys";
+import { AreasLegend } from "../areas/legend";
+import * as areas from "../areas/state";
 import * as state from "../plan/state";
 import { color, theme } from "../theme";
 import { poseAt } from "./along";
 import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
+import { cursor } from "./cursor";
 import { Coordinates } from "./coordinates";
 import { earth } from "./earth";
 import { listen } from "./gestures";
-import { cursor, KEYS, press } from "./keys";
+import { KEYS, press } from "./keys";
 import { Legend } from "./legend";
 import { NorthArrow } from "./north_arrow";
+import { pointedAt } from "./pointed";
 import { relief, scaleOf, slopesOf } from "./relief";
 import { ScaleBar } from "./scale_bar";
 import { drawTiles, missing, tileSource } from "./tiles";
@@ -79,26 +87,43 @@ function drawOver(canvas: HTMLCanvasElement): void {
   void theme.value;
   if (!context || !shown) return;
   const scene: Scene = { context, view: shown, size: size.value, color };
+  const [selected, preview] = [areas.selected.value, areas.preview.value];
+  const shapes = areas.areas.value.map((area, i) => (preview && i === selected ? { ...area, geometry: preview } : area));
+  drawAreas(scene, shapes, areas.isEditing.value ? selected : null);
   drawContours(scene, state.contours.value);
   if (plans) drawPaths(scene, plans, state.former.value, state.focus.value);
   if (state.goal.value) drawEnd(scene, state.goal.value, "G");
   if (state.start.value) drawEnd(scene, state.start.value, "S");
   const pose = plans && state.along_m.value !== null ? poseAt(plans[state.focus.value].poses, state.along_m.value) : null;
   if (pose) drawRobot(scene, pose);
+  if (areas.isEditing.value && areas.corners.value.length > 0) {
+    drawDraft(scene, areas.corners.value, areas.nextKind.value, cursor.value ?? pointedAt.value);
+  }
   if (cursor.value) drawCrosshair(scene, cursor.value);
 }
 
 /** Shows the whole of a map when another one is chosen. */
 function followFit(): () => void {
   let fittedFor = "";
+  let fittedAs: View | null = null;
   return effect(() => {
     const [map, { width, height }] = [state.map.value, size.value];
     if (!map || width === 0) return;
-    const key = `${map.id} ${Math.round(width / 40)} ${Math.round(height / 40)}`;
-    if (key === fittedFor) return;
+    // A map with other areas is the same ground: the view stays.
+    const key = `${Object.values(extentOf(map))} ${Math.round(width / 40)} ${Math.round(height / 40)}`;
+    // A view that nobody has moved fits whatever room there is.
+    if (key === fittedFor && view.peek() !== fittedAs) return;
     fittedFor = key;
-    view.value = fitted(map, { width, height });
+    view.value = fittedAs = fitted(map, { width, height });
   });
+}
+
+/** What a click does while areas are edited. */
+function areaHint(): string {
+  if (areas.mode.value === "select") return areas.selected.value === null ? "Click an area to select it" : "Drag the area or its corners";
+  const count = areas.corners.value.length;
+  if (count === 0) return `Click the corners of a ${areas.mode.value}`;
+  return canFinish() ? "Double-click or Enter ends the shape" : "Click the next corner";
 }
 
 /** Whom the tiles are from, and how many did not come. */
@@ -132,6 +157,7 @@ export function MapView() {
   }, []);
 
   const hint = useComputed(() => {
+    if (state.tool.value === "areas") return areaHint();
     if (state.tool.value === "start") return "Click where the robot starts; drag to set its heading";
     return state.tool.value === "goal" ? "Click where it is to go" : "";
   });
@@ -147,7 +173,7 @@ export function MapView() {
   };
 
   return (
-    <div class="map" data-tool={state.tool.value}>
+    <div class="map" data-tool={areas.isEditing.value && areas.mode.value === "select" ? "move" : state.tool.value}>
       <div
         ref={frame}
         class="map-frame"
@@ -164,9 +190,10 @@ export function MapView() {
         <canvas ref={above} class="map-over" aria-hidden="true" />
       </div>
       <p id="map-keys" class="map-keys">
-        {KEYS}
+        {areas.isEditing.value ? AREA_KEYS : KEYS}
       </p>
       {hint.value && <p class="map-hint">{hint}</p>}
+      <DraftButtons />
       <div class="map-zoom" role="group" aria-label="Zoom">
         <button type="button" aria-label="Zoom in" title="Zoom in" onClick={zoom(1.5)}>
           +
@@ -180,7 +207,10 @@ export function MapView() {
       </div>
       {state.map.value && <NorthArrow />}
       <div class="map-foot">
-        {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
+        <div class="map-legends">
+          <AreasLegend />
+          {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
+        </div>
         <div class="map-where">
           <Coordinates />
           <Attribution />

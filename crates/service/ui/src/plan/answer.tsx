@@ -85,18 +85,24 @@ function Headline() {
   const further_m = best.distance_m - shortest.distance_m;
   const saved = plans.saving_fraction;
   const detour = further_m > 0.5 ? `by driving ${metres(further_m)} further` : "at the same length";
-  const small = saved < 0.0005;
+  const small = Math.abs(saved) < 0.0005;
+  const isMore = saved <= -0.0005;
   return (
     <header class="answer-head">
       <p class="answer-big">
         <span class="number">{energy(best.energy_j)}</span>
-        {!small && <span class="answer-saving">{percent(saved)} less</span>}
+        {!small && !isMore && <span class="answer-saving">{percent(saved)} less</span>}
       </p>
       <p>
-        {small
-          ? "The shortest path is also the energy-minimal one."
-          : `The energy-minimal path saves ${energy(shortest.energy_j - best.energy_j)} against the shortest, ${detour}.`}
+        {isMore
+          ? `This path takes ${energy(best.energy_j - shortest.energy_j)} more than the shortest: areas or options weigh more than energy alone.`
+          : small
+            ? "The shortest path is also the energy-minimal one."
+            : `The energy-minimal path saves ${energy(shortest.energy_j - best.energy_j)} against the shortest, ${detour}.`}
       </p>
+      {best.short_of_goal_m !== undefined && (
+        <p class="short-of-goal">No path leads to the goal: this one ends {metres(best.short_of_goal_m)} short of it.</p>
+      )}
       <Correction now={best} />
     </header>
   );

@@ -4,6 +4,7 @@ import type { Place } from "../api/plans";
 import { job } from "../diagnose/state";
 import { tab, type Tab, TABS } from "../tab";
 import * as state from "./state";
+import * as steering from "./steering";
 
 const number = (text: string | null) => (text !== null && text !== "" && Number.isFinite(Number(text)) ? Number(text) : null);
 const rounded = (value: number, places = 3) => String(Number(value.toFixed(places)));
@@ -16,6 +17,15 @@ function place(text: string | null): Place | null {
 
 const written = ({ x_m, y_m, heading_rad }: Place) =>
   [rounded(x_m), rounded(y_m), ...(heading_rad === undefined ? [] : [rounded(heading_rad, 4)])].join(",");
+
+/** Steering that is on or off, by its names in the address. */
+const SWITCHES = [
+  ["reverse", steering.mayReverse],
+  ["no_spin", steering.forbidsSpin],
+  ["stops", steering.weighsStops],
+  ["partial", steering.isPartial],
+  ["either_way", steering.isEitherWay],
+] as const;
 
 /** Takes up what the address says. */
 export function readLink(): void {
@@ -31,6 +41,9 @@ export function readLink(): void {
   state.payload_kg.value = number(said.get("payload_kg")) ?? 0;
   state.charge.value = number(said.get("charge")) ?? 1;
   state.surface.value = said.get("surface");
+  for (const [name, of] of SWITCHES) of.value = said.has(name);
+  const least_m = number(said.get("least_radius_m"));
+  steering.leastRadius_m.value = least_m !== null && least_m >= 0 ? least_m : null;
   const layer = said.get("layer");
   if (layer === "slope" || layer === "surface") state.layer.value = layer;
   state.is3d.value = said.has("3d");
@@ -53,6 +66,8 @@ function link(): string {
   say("payload_kg", state.payload_kg.value ? rounded(state.payload_kg.value) : null);
   say("charge", state.charge.value < 1 ? rounded(state.charge.value) : null);
   say("surface", state.surface.value);
+  for (const [name, of] of SWITCHES) if (of.value) said.set(name, "");
+  say("least_radius_m", steering.leastRadius_m.value !== null ? rounded(steering.leastRadius_m.value) : null);
   say("layer", state.layer.value === "elevation" ? null : state.layer.value);
   if (state.is3d.value) said.set("3d", "");
   if (state.hasTiles.value) said.set("tiles", "");

@@ -1,10 +1,11 @@
 /** Brings maps and robots in at the start, cells when a map is chosen, and a map that is dropped. */
-import { effect, signal } from "@preact/signals";
+import { batch, effect, signal } from "@preact/signals";
 import { readSettings } from "../api/earth";
 import { listMaps, readCells, storeMap, type MapSummary } from "../api/maps";
 import { problemOf, type Problem } from "../api/problem";
 import { listRobots } from "../api/robots";
 import { mapType } from "../api/upload";
+import { earth } from "../map/earth";
 import { setEnd } from "../map/ends";
 import { tileSource } from "../map/tiles";
 import { readingQuery } from "./reading_options";
@@ -46,6 +47,19 @@ export function chooseMap(id: string): void {
   state.tool.value = "start";
   state.problem.value = null;
   state.mapId.value = id;
+}
+
+/** Puts a changed map in the place of the one that it was made from. Its ground is the same, and so are the ends. */
+export function replaceMap(id: string, changed: MapSummary): void {
+  const known = state.maps.value ?? [];
+  const at = known.findIndex((map) => map.id === id);
+  const others = known.filter((map) => map.id !== changed.id && map.id !== id);
+  batch(() => {
+    if (state.cells.value?.mapId === id) state.cells.value.mapId = changed.id;
+    if (earth.value?.mapId === id) earth.value.mapId = changed.id;
+    state.maps.value = at < 0 ? [...others, changed] : [...others.slice(0, at), changed, ...others.slice(at)];
+    state.mapId.value = changed.id;
+  });
 }
 
 function added(map: MapSummary): void {

@@ -11,8 +11,9 @@ import { ReadingOptions } from "./reading_options";
 import * as state from "./state";
 
 /** What a map is called, and how large it is; one without a name has its id. */
-function title({ id, name, rows, columns, cell_size_m, elevation_range_m: [low, high] }: MapSummary): string {
-  const extent = `${metres(columns * cell_size_m)} × ${metres(rows * cell_size_m)}, ${metres(high - low)} relief`;
+function title({ id, name, rows, columns, cell_size_m, elevation_range_m: [low, high], areas }: MapSummary): string {
+  const over = areas > 0 ? `, ${areas} ${areas === 1 ? "area" : "areas"}` : "";
+  const extent = `${metres(columns * cell_size_m)} × ${metres(rows * cell_size_m)}, ${metres(high - low)} relief${over}`;
   return name ? `${name} · ${extent}` : `${extent} · ${id.slice(0, 6)}`;
 }
 
@@ -51,6 +52,7 @@ export function MapBar() {
           { value: "start", name: "Start" },
           { value: "goal", name: "Goal" },
           { value: "move", name: "Move" },
+          { value: "areas", name: "Areas" },
         ]}
       />
       <Choice

@@ -1,4 +1,6 @@
 /** The Plan tab: the map, the answer, the question, the charts. */
+import { isEditing, problem as areasProblem } from "../areas/state";
+import { AreaTools } from "../areas/tools";
 import { MapView } from "../map/map_view";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
@@ -20,6 +22,8 @@ export function PlanTab() {
     <div class="plan">
       <section class="plan-map" aria-label="Map" onDragOver={(event) => event.preventDefault()} onDrop={drop}>
         {!isEmpty && <MapBar />}
+        {!isEmpty && isEditing.value && <AreaTools />}
+        {areasProblem.value && <ProblemCard problem={areasProblem.value} close={() => (areasProblem.value = null)} />}
         {loadProblem.value && <ProblemCard problem={loadProblem.value} close={() => (loadProblem.value = null)} />}
         {sending.value !== null && <Progress label="Sending the map" share={sending.value < 1 ? sending.value : null} />}
         <Warnings label="Doubts about the map" list={state.map.value?.warnings ?? []} />

@@ -4,6 +4,7 @@ import { RobotSelect } from "../widgets/robot_select";
 import { Slider } from "../widgets/slider";
 import { PlaceField } from "./place_field";
 import * as state from "./state";
+import { SteeringOptions } from "./steering";
 
 /** No robot is loaded with more than this share of its own mass here. */
 const MOST_PAYLOAD = 0.8;
@@ -51,6 +52,7 @@ export function Question() {
         />
       )}
       <Ground />
+      <SteeringOptions />
       <Along />
     </section>
   );

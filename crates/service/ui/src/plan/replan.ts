@@ -5,6 +5,7 @@ import { isAbort } from "../api/ask";
 import { compare, type PlanQuestion } from "../api/plans";
 import { problemOf } from "../api/problem";
 import { percent, energy } from "../format";
+import { steeredGoal, steering } from "./steering";
 import * as state from "./state";
 
 /** While a slider moves, paths within 5 % of the least will do: they come at once. */
@@ -19,8 +20,9 @@ export function question(known = state.robot.value): PlanQuestion | null {
     map_id: map.id,
     robot: state.loaded(known),
     start,
-    goal,
+    goal: steeredGoal(goal),
     refine: false,
+    ...steering.value,
     ...(speed_mps !== null && { speed_mps: Math.min(speed_mps, known.robot.max_wheel_speed_mps) }),
   };
 }

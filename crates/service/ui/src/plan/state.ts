@@ -7,7 +7,7 @@ import type { Contour, ReachKind } from "../api/reachable";
 import type { KnownRobot, Robot } from "../api/robots";
 
 export type Layer = "elevation" | "slope" | "surface";
-export type Tool = "start" | "goal" | "move";
+export type Tool = "start" | "goal" | "move" | "areas";
 
 export const maps = signal<MapSummary[] | null>(null);
 export const mapId = signal<string | null>(null);
