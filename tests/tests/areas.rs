@@ -1,6 +1,6 @@
 //! Areas over a map and the ways to steer a path, asked of the service and of the command line.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::needless_pass_by_value)]
 
 use std::{fs, process::Command};
 

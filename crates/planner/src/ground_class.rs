@@ -131,7 +131,7 @@ impl GroundClasses {
         let surfaces: Vec<Surface> = surfaces.collect::<Result<_, Error>>()?;
         match terrain.zones() {
             Some(zones) if zones.rules.len() > 1 => {
-                let mut classes = Self::with_rules(terrain, surfaces, zones)?;
+                let mut classes = Self::with_rules(terrain, &surfaces, zones)?;
                 if !settings.heed_preferences {
                     classes.forget_preferences();
                 }
@@ -146,7 +146,7 @@ impl GroundClasses {
     }
 
     /// The pairs of surfaces and rules that occur.
-    fn with_rules(terrain: &Terrain, surfaces: Vec<Surface>, zones: &Zones) -> Result<Self, Error> {
+    fn with_rules(terrain: &Terrain, surfaces: &[Surface], zones: &Zones) -> Result<Self, Error> {
         let rules = zones.rules.len();
         let mut occurs = vec![false; surfaces.len() * rules];
         for (index, rule) in zones.rule.iter().enumerate() {

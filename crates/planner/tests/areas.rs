@@ -1,6 +1,6 @@
 //! What areas, prices and bans do to a path, by looking at the path alone.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::needless_pass_by_value)]
 
 use std::f64::consts::PI;
 

@@ -49,7 +49,7 @@ impl Areas {
         let mut areas = Vec::with_capacity(drawn.len());
         for (feature, shapes) in drawn.into_iter().enumerate() {
             let at = format!("features[{feature}]");
-            let effect = effect(&features[feature], &at, &mut others)?;
+            let effect = effect(features[feature], &at, &mut others)?;
             let shapes = placed(shapes, &placing, terrain, &at)?;
             areas.push(Area { feature, shapes, effect });
         }
@@ -210,6 +210,7 @@ fn placed(
 }
 
 #[cfg(test)]
+#[allow(clippy::needless_pass_by_value)]
 mod tests {
     use serde_json::json;
 

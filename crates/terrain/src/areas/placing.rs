@@ -10,9 +10,9 @@ pub(super) enum Placing {
     /// They are the map's.
     Map,
     /// Longitude and latitude of WGS 84, and the way to the map.
-    Degrees(Earth),
-    /// Those of another projected system, by way of WGS 84.
-    Other { from: Earth, to: Earth },
+    Degrees(Box<Earth>),
+    /// Those of another projected system, by way of WGS 84: its own way there, and the map's.
+    Other(Box<[Earth; 2]>),
 }
 
 /// Names of WGS 84 in longitude and latitude, as files write them.
@@ -38,7 +38,7 @@ impl Placing {
             return Ok((Placing::Map, None));
         }
         match terrain.earth() {
-            Ok(earth) => Ok((Placing::Degrees(earth), None)),
+            Ok(earth) => Ok((Placing::Degrees(Box::new(earth)), None)),
             Err(error) => Err(AreaError::new(
                 "",
                 format!(
@@ -63,13 +63,13 @@ impl Placing {
         let placed = |error: crate::crs::EarthError| AreaError::new("crs", format!("is {name}, but {error}"));
         let to = terrain.earth().map_err(placed)?;
         if DEGREES.contains(&name) {
-            return Ok((Placing::Degrees(to), None));
+            return Ok((Placing::Degrees(Box::new(to)), None));
         }
         let from = Earth::of(&short).map_err(placed)?;
         let own = terrain.crs.as_deref().unwrap_or_default();
         let own: String = own.chars().take(60).collect();
         let note = format!("the areas' coordinates were brought from {short} to the map's {own}");
-        Ok((Placing::Other { from, to }, Some(note)))
+        Ok((Placing::Other(Box::new([from, to])), Some(note)))
     }
 
     /// A place on the map [m].
@@ -77,7 +77,9 @@ impl Placing {
         let placed = match self {
             Placing::Map => Ok(point),
             Placing::Degrees(earth) => earth.place_m(point),
-            Placing::Other { from, to } => from.place_deg(point).and_then(|place_deg| to.place_m(place_deg)),
+            Placing::Other(earths) => {
+                earths[0].place_deg(point).and_then(|place_deg| earths[1].place_m(place_deg))
+            }
         };
         placed.map_err(|error| error.to_string())
     }
@@ -87,7 +89,7 @@ impl Placing {
         match self {
             Placing::Map => "the map's metres",
             Placing::Degrees(_) => "longitude and latitude",
-            Placing::Other { .. } => "the system that its crs names",
+            Placing::Other(_) => "the system that its crs names",
         }
     }
 }

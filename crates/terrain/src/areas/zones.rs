@@ -178,6 +178,7 @@ impl Terrain {
 }
 
 #[cfg(test)]
+#[allow(clippy::needless_pass_by_value)]
 mod tests {
     use serde_json::{Value, json};
 
@@ -230,7 +231,7 @@ mod tests {
         let terrain = laid(fence);
         // From the north-west nothing steps, even diagonally, to the south-east.
         let mut reached = vec![Cell { row: 9, column: 0 }];
-        let mut seen = vec![false; 100];
+        let mut seen = [false; 100];
         while let Some(cell) = reached.pop() {
             for (row, column) in (cell.row.saturating_sub(1)..=(cell.row + 1).min(9)).flat_map(|row| {
                 (cell.column.saturating_sub(1)..=(cell.column + 1).min(9)).map(move |c| (row, c))
