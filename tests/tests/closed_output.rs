@@ -61,10 +61,11 @@ const COMMANDS: [&[&str]; 13] = [
     &["calibrate", "--recording", "drive.csv", "--out", "robot.json"],
     &["simulate", "--world", "world.json", "--drive", "drive.json", "--out", "made.csv"],
     &["bench", "--size", "60"],
+    &["robot", "list"],
     &["demo", "--out", "demo.svg"],
 ];
 /// What takes minutes, and the service, which prints before it serves. All print by the same function.
-const OTHERS: [&str; 3] = ["diagnose", "prove", "serve"];
+const OTHERS: [&str; 4] = ["diagnose", "prove", "schema", "serve"];
 
 #[test]
 fn every_command_ends_without_a_word_when_nobody_reads() {

@@ -85,7 +85,10 @@ fn a_collar_is_doubted_on_standard_error_and_mended_by_nodata() {
 fn both_ends_in_one_coarse_cell_are_said() {
     let folder = tempfile::tempdir().unwrap();
     let map = written(&folder, "coarse.asc", grid(ground).replace("cellsize 1", "cellsize 30"));
-    let found = plan(&map, &["--start", "500101,5000127", "--goal", "500101,5000143"]);
+    let ends = ["--start", "500101,5000127", "--goal", "500101,5000143"];
+    let exact = plan(&map, &ends);
+    assert!(exact.status.success() && !said(&exact).contains("one cell of 30 m"), "{}", said(&exact));
+    let found = plan(&map, &[&ends[..], &["--snapped-ends"]].concat());
     assert_eq!(found.status.code(), Some(0), "{}", said(&found));
     assert!(
         said(&found).contains("one cell of 30 m") && said(&found).contains("16.0 m between them"),

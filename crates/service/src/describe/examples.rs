@@ -57,11 +57,16 @@ pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
 pub(super) fn parameter(operation_id: &str, name: &str) -> Option<Value> {
     Some(match (operation_id, name) {
         ("readRobot", "id") => ROBOT.into(),
-        (_, "id") if operation_id.ends_with("Map") || operation_id == "readMapEarth" => map_id()?.into(),
+        (_, "id")
+            if operation_id.ends_with("Map") || ["readMapEarth", "readMapAreas"].contains(&operation_id) =>
+        {
+            map_id()?.into()
+        }
         (_, "id") if operation_id.ends_with("Robot") => robot_id()?.into(),
         (_, "id") if operation_id.ends_with("Recording") => drive_id().into(),
         (_, "id") => "5b7c1f0e9a3d4c2b8e6f7a1d0c9b8a7f".into(),
         (_, "max_cells") => 10_000.into(),
+        (_, "frame") => "map".into(),
         (_, "fill_voids_m") => 0.5.into(),
         (_, "nodata_m") => (-9999.0).into(),
         (_, "map") => columns().to_string().into(),
