@@ -48,7 +48,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 /// A command line for each command that prints an answer.
-const COMMANDS: [&[&str]; 13] = [
+const COMMANDS: [&[&str]; 14] = [
     &["inspect", "drive.csv"],
     &["plan", "--map", "map.json", "--start", "4,4", "--goal", "15,15"],
     &["compare", "--map", "map.json", "--start", "4,4", "--goal", "15,15"],
