@@ -50,7 +50,7 @@ pub(crate) struct Arguments {
     /// other name than localhost is answered [default: none]
     #[arg(long, env = "JOULEPATH_HOST", value_delimiter = ',', value_name = "NAME")]
     host: Vec<String>,
-    /// Tiles of pictures that the page may lay under paths, as https://tiles.example.org/{z}/{x}/{y}.png in Web Mercator; who looks at
+    /// Tiles of pictures that the page may lay under paths, as `https://tiles.example.org/{z}/{x}/{y}.png` in Web Mercator; who looks at
     /// the page asks that host for them [default: none]
     #[arg(long, env = "JOULEPATH_TILES", value_name = "URL")]
     tiles: Option<String>,

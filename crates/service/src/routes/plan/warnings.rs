@@ -25,6 +25,7 @@ impl PlanAnswer {
         answer.warnings = map_warnings(planner);
         let own = [
             moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
+            one_coarse_cell(&answer, &lattice.terrain, lattice.robot.wheelbase_m),
             filled_ground(&lattice.terrain, &answer.poses),
             stops(&answer, request),
             borrowed_constants(&lattice.robot),
@@ -41,6 +42,21 @@ fn coarse_cells(terrain: &Terrain, wheelbase_m: f64) -> Option<Warning> {
             "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell; use a finer map"
         );
         Warning::new(WarningKind::CoarseCells, detail)
+    })
+}
+
+/// A warning where a path begins and ends in one cell far larger than the robot, of which the map knows a single slope.
+fn one_coarse_cell(answer: &PlanAnswer, terrain: &Terrain, wheelbase_m: f64) -> Option<Warning> {
+    let (cell_size_m, (first, last)) =
+        (terrain.grid.cell_size_m, (answer.poses.first()?, answer.poses.last()?));
+    let cell = |pose: &PoseAnswer| terrain.grid.cell_at(pose.x_m, pose.y_m);
+    let apart_m = (last.x_m - first.x_m).hypot(last.y_m - first.y_m);
+    let is_one = cell(first) == cell(last) && apart_m > 0.0;
+    (is_one && cell_size_m > COARSE_WHEELBASES * wheelbase_m).then(|| {
+        let detail = format!(
+            "both ends lie in one cell of {cell_size_m} m: of the {apart_m:.1} m between them the map knows a single slope; use a map of finer cells"
+        );
+        Warning::new(WarningKind::MovedEnds, detail)
     })
 }
 
