@@ -217,6 +217,7 @@ fn a_path_is_steered_as_asked() {
 fn steering_that_contradicts_itself_is_refused() {
     let server = Server::start();
     for (more, pointer) in [
+        (json!({ "partial": true, "max_energy_j": 100.0 }), "/max_energy_j"),
         (json!({ "goals": [{"x_m": 1, "y_m": 1}] }), "/goals"),
         (json!({ "reverse": true, "forbid": ["reverse"] }), "/forbid"),
         (json!({ "goal": {"x_m": 9, "y_m": 9, "heading": "either"} }), "/goal/heading"),
@@ -224,6 +225,15 @@ fn steering_that_contradicts_itself_is_refused() {
     ] {
         refused(&server.post_json("/v1/plan", &across(more)), pointer);
     }
+    let mut beyond = across(json!({ "goals": [{"x_m": 9, "y_m": 9}, {"x_m": 99, "y_m": 9}] }));
+    beyond.as_object_mut().unwrap().remove("goal");
+    let answer = server.post_json("/v1/plan", &beyond);
+    assert!(refused(&answer, "/goals/1").contains("outside the map"));
+    assert_eq!(answer.json()["type"].as_str().unwrap().rsplit('/').next(), Some("goal-outside-map"));
+    let ten_times: Vec<Value> =
+        (0..10).map(|_| rectangle([4.0, 3.0, 9.0, 8.0], json!({ "cost_factor": 10 }))).collect();
+    let answer = server.post_json("/v1/plan", &across(json!({ "areas": collection(json!(ten_times)) })));
+    assert!(refused(&answer, "/areas").contains("cost factors that lie over each other"), "{}", answer.text);
     let mut nowhere = across(json!({}));
     nowhere.as_object_mut().unwrap().remove("goal");
     assert!(refused(&server.post_json("/v1/plan", &nowhere), "/goal").contains("missing field `goal`"));

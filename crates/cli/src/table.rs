@@ -12,9 +12,9 @@ pub(crate) fn plan(answer: &PlanAnswer, objective: ObjectiveName) -> String {
     let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
     let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
-        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nclearance  {:.2} m{}\nsearch     {} states in {:.0} ms, {}{refined}",
+        "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nclearance  {}{}\nsearch     {} states in {:.0} ms, {}{refined}",
         answer.descent_m,
-        answer.clearance_m,
+        answer.clearance_m.map_or("no time was left to look".to_owned(), |room_m| format!("{room_m:.2} m")),
         steered(answer, objective),
         answer.search.expanded,
         answer.search.duration_ms,

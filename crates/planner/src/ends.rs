@@ -33,8 +33,10 @@ impl Ends {
         let mut found: Option<Ends> = None;
         let mut blocked = None;
         for (index, goal) in query.goals().enumerate() {
-            let place =
-                if index == 0 { Place::Goal } else { Place::Listed { list: "goals", index: index - 1 } };
+            let place = match query.other_goals.is_empty() {
+                true => Place::Goal,
+                false => Place::Listed { list: "goals", index },
+            };
             let asked = asked_goal(lattice, query, (place, goal));
             let snapped = match snap(lattice, &asked, &query.patience) {
                 Ok(snapped) => snapped,

@@ -258,7 +258,7 @@ impl Problem {
             E::OutsideMap { place: end, .. } => {
                 let kind = match end {
                     Place::Start => ProblemType::StartOutsideMap,
-                    Place::Goal => ProblemType::GoalOutsideMap,
+                    Place::Goal | Place::Listed { list: "goals", .. } => ProblemType::GoalOutsideMap,
                     Place::Listed { .. } => ProblemType::WaypointOutsideMap,
                 };
                 (kind, Some(place(end)))
@@ -266,7 +266,7 @@ impl Problem {
             E::PlaceBlocked { place: end, .. } => {
                 let kind = match end {
                     Place::Start => ProblemType::StartBlocked,
-                    Place::Goal => ProblemType::GoalBlocked,
+                    Place::Goal | Place::Listed { list: "goals", .. } => ProblemType::GoalBlocked,
                     Place::Listed { .. } => ProblemType::WaypointBlocked,
                 };
                 (kind, Some(place(end)))
@@ -280,6 +280,8 @@ impl Problem {
             E::Heading { place: end, .. } => (ProblemType::InvalidRequest, Some(place(end) + "/heading_rad")),
             E::CellsTooFine { .. } => (ProblemType::InvalidMap, Some("/map/cell_size_m".into())),
             E::TooManyStates { .. } => (ProblemType::TooLarge, Some("/map".into())),
+            E::Areas(_) => (ProblemType::InvalidRequest, Some("/areas".into())),
+            E::TooManyGrounds { .. } => (ProblemType::TooLarge, Some("/areas".into())),
             E::TooManySurfaces { .. } => (ProblemType::TooLarge, Some("/map/surface".into())),
             _ => (ProblemType::Internal, None),
         };

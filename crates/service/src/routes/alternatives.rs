@@ -187,7 +187,7 @@ pub fn answer(
         .map_err(|error| plan.no_routing(planner, &error))?;
     let path = |found| PlanAnswer::of(found, planner, plan, patience);
     Ok(AlternativesAnswer {
-        alternatives: found.plans.iter().map(path).collect::<Result<_, Problem>>()?,
+        alternatives: found.plans.iter().map(path).collect(),
         complete: found.complete,
         epsilon: request.epsilon,
         timed_out: found.timed_out,

@@ -74,8 +74,8 @@ pub fn answer(
     };
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
-        energy: path(&found.energy, ObjectiveName::Energy)?,
-        distance: path(&found.distance, ObjectiveName::Distance)?,
-        time: path(&found.time, ObjectiveName::Time)?,
+        energy: path(&found.energy, ObjectiveName::Energy),
+        distance: path(&found.distance, ObjectiveName::Distance),
+        time: path(&found.time, ObjectiveName::Time),
     })
 }

@@ -283,7 +283,7 @@ pub fn answer(planner: &Planner, request: &PlanRequest, patience: &Patience) -> 
     let found = found
         .map_err(|error| request.no_routing(planner, &error))
         .map_err(|problem| request.too_steep(planner, problem, patience))?;
-    PlanAnswer::of(&found, planner, request, patience)
+    Ok(PlanAnswer::of(&found, planner, request, patience))
 }
 
 /// A time that a request allows; `None` where no clock counts that far, which is no limit.

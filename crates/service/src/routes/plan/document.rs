@@ -8,7 +8,6 @@ use terrain::{Terrain, Warning};
 use utoipa::ToSchema;
 
 use super::PlanRequest;
-use crate::problem::Problem;
 
 /// A path with its predicted energy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -51,9 +50,9 @@ pub struct PlanAnswer {
     /// Number of stops on the way: reversals, and turns on the spot between driving and driving on.
     #[serde(default)]
     pub stops: usize,
-    /// Least room on the way between the robot's outline and what it must not touch; at most 31 cells less half its diagonal [m].
+    /// Least room on the way between the robot's outline and what it must not touch; at most 31 cells less half its diagonal. Null where no time was left to look [m].
     #[serde(default)]
-    pub clearance_m: f64,
+    pub clearance_m: Option<f64>,
     /// What preferences add in comparisons, in the objective's unit: cost factors of areas, risks and prices; absent where none count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preferences: Option<f64>,
@@ -127,7 +126,8 @@ pub struct SearchAnswer {
     pub expanded: u64,
     /// Time for preparing and searching [ms].
     pub duration_ms: f64,
-    /// Whether the path is proven to be the best of the lattice, to the rounding of costs by 1/2048.
+    /// Whether the path is proven to be the best of the lattice, to the rounding of costs by 1/2048. This, `bound` and
+    /// `excess_at_most` are of the lattice's path, without the curves that lead from and to exact ends.
     pub optimal: bool,
     /// Proven: the path has at most so many times the least of its objective that the lattice allows, rounding included;
     /// null where the least may be nothing or a gain, which no factor bounds.
@@ -168,7 +168,7 @@ impl From<&Plan> for PlanAnswer {
             crs: None,
             stops_j: 0.0,
             stops: planner::stops(&plan.route),
-            clearance_m: 0.0,
+            clearance_m: None,
             preferences: None,
             reached_goal: None,
             short_of_goal_m: plan.short_of_goal_m,
@@ -179,28 +179,19 @@ impl From<&Plan> for PlanAnswer {
 
 impl PlanAnswer {
     /// The answer to a request: a path with its place on earth, what lies beside it, and doubts about it and its map.
-    ///
-    /// # Errors
-    /// Time that ran out.
-    pub(crate) fn of(
-        plan: &Plan,
-        planner: &Planner,
-        request: &PlanRequest,
-        patience: &Patience,
-    ) -> Result<Self, Problem> {
+    pub(crate) fn of(plan: &Plan, planner: &Planner, request: &PlanRequest, patience: &Patience) -> Self {
         let lattice = planner.lattice();
-        let late = || Problem::no_plan(&planner::Error::Timeout { expanded: plan.search.expanded });
         let objective: Objective = request.objective.into();
         let total = &plan.route.total;
         let added = objective.compared(total) - objective.amount(total);
         let answer = PlanAnswer {
             stops_j: planner::stops_j(&lattice.robot, &plan.route),
-            clearance_m: planner::least_room_m(lattice, &plan.route, patience).ok_or_else(late)?,
+            clearance_m: planner::least_room_m(lattice, &plan.route, patience),
             preferences: lattice.has_preferences().then_some(added),
             reached_goal: request.goals.as_ref().map(|_| plan.goal),
             ..PlanAnswer::from(plan)
         };
-        Ok(answer.warned(planner, request))
+        answer.warned(planner, request)
     }
 }
 

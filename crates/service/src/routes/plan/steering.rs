@@ -172,8 +172,13 @@ impl PlanRequest {
             ("max_energy_j", self.max_energy_j),
             ("max_distance_m", self.max_distance_m),
         ];
-        match limits.into_iter().find(|(_, limit)| limit.is_some() && has_preferences) {
+        match limits.into_iter().find(|(_, limit)| limit.is_some() && (has_preferences || self.partial)) {
             None => Ok(()),
+            Some((field, _)) if self.partial => {
+                let detail =
+                    format!("{field} is held over whole paths, but partial is true: leave out one of them");
+                Err(Problem::new(ProblemType::LimitsContradict, detail).at(format!("/{field}")))
+            }
             Some((field, _)) => {
                 let detail = format!(
                     "{field} cannot be held together with prices, cost factors of areas or a risk of unknown ground: leave out one of them"
