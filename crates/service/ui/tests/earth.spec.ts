@@ -16,6 +16,7 @@ test("the place under the pointer and under the cursor is told in degrees and me
   await service.storeMap("maps/minnesota.tif", "image/tiff");
   await page.goto(service.url);
   await expect(page.locator(".north-arrow")).toHaveAttribute("aria-label", "Grid north, 0.7° from true north");
+  await expect(page.getByRole("region", { name: "Paths compared" })).toBeVisible();
   const box = (await paths(page).boundingBox())!;
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   const told = page.locator(".map-coordinates");
@@ -28,6 +29,28 @@ test("the place under the pointer and under the cursor is told in degrees and me
   await page.keyboard.press("ArrowRight");
   await expect(told).toHaveText(/46\.50604\d°.N/);
   await expect(page.locator("p[role=status]")).toHaveText(/46\.50604\d°.N, 93\.919\d+°.W/);
+});
+
+test("a pointer that rests where a map appears is told its place, and another one when the view moves", async ({ page, service }, info) => {
+  test.skip(info.project.name === "phone", "phones have no pointer that rests");
+  await service.storeMap("maps/minnesota.tif", "image/tiff");
+  let come = () => {};
+  const wanted = new Promise<void>((resolve) => (come = resolve));
+  await page.route("**/v1/maps", async (route) => {
+    await wanted;
+    await route.continue();
+  });
+  await page.goto(service.url);
+  const box = (await paths(page).boundingBox())!;
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 4);
+  come();
+  const told = page.locator(".map-coordinates");
+  await expect(told).toHaveText(/x 429\d{3}\.\d, y 515\d{4}\.\d.m/);
+  const before = (await told.textContent())!;
+  await page.getByRole("button", { name: "Zoom in" }).focus();
+  await page.keyboard.press("Enter");
+  await expect(told).not.toHaveText(before);
+  await expect(told).toHaveText(/x 429\d{3}\.\d, y 515\d{4}\.\d.m/);
 });
 
 test("start and goal are typed in metres, parts and degrees, and what is wrong is said at the field", async ({ page, service }) => {

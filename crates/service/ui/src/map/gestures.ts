@@ -6,7 +6,7 @@ import * as state from "../plan/state";
 import { nearest } from "./along";
 import { handleAt } from "./draw";
 import { setEnd, settle, type End } from "./ends";
-import { pointedAt } from "./pointed";
+import { pointer } from "./pointed";
 import { panned, toMetres, toPixel, zoomed, type Point, type Size, type View } from "./view";
 
 /** What a gesture works on. */
@@ -58,8 +58,8 @@ export function listen(board: Board, signal: AbortSignal): void {
     const view = board.view();
     const size = board.size();
     const point = pointOf(event);
+    pointer.value = point;
     if (!view) return;
-    pointedAt.value = toMetres(view, size, point);
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, point);
     if (!doing) pointAt(view, size, point, reach(event));
     else if (doing.kind === "pinch") doing.apart = pinch(board, view, fingers, doing.apart);
@@ -76,7 +76,7 @@ export function listen(board: Board, signal: AbortSignal): void {
     doing = null;
     state.isDragging.value = false;
   };
-  on("pointerleave", () => (pointedAt.value = null));
+  on("pointerleave", () => (pointer.value = null));
   on("pointerup", end);
   on("pointercancel", end);
 

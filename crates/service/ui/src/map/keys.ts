@@ -6,7 +6,7 @@ import { isEditing } from "../areas/state";
 import * as state from "../plan/state";
 import { cursor } from "./cursor";
 import { onMap, placeWords, setEnd, settle, turn } from "./ends";
-import { pointedAt } from "./pointed";
+import { pointer } from "./pointed";
 import { fitted, toPixel, zoomed, type Size, type View } from "./view";
 
 const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -49,7 +49,7 @@ export function press(event: KeyboardEvent, view: View, size: Size, show: (view:
 function move(at: Place, [dx, dy]: [number, number], pixels: number, view: View, size: Size, show: (view: View) => void): void {
   const next = onMap({ x_m: at.x_m + (dx * pixels) / view.px_per_m, y_m: at.y_m + (dy * pixels) / view.px_per_m });
   cursor.value = next;
-  pointedAt.value = null;
+  pointer.value = null;
   announce(placeWords(next));
   const { x, y } = toPixel(view, size, next.x_m, next.y_m);
   const isInside = x > 30 && y > 30 && x < size.width - 30 && y < size.height - 30;

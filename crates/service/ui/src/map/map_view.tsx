@@ -22,11 +22,9 @@ import { NorthArrow } from "./north_arrow";
 import { pointedAt } from "./pointed";
 import { relief, scaleOf, slopesOf } from "./relief";
 import { ScaleBar } from "./scale_bar";
+import { size, view } from "./shown";
 import { drawTiles, missing, tileSource } from "./tiles";
-import { extentOf, fitted, toPixel, zoomed, type Size, type View } from "./view";
-
-export const view = signal<View | null>(null);
-const size = signal<Size>({ width: 0, height: 0 });
+import { extentOf, fitted, toPixel, zoomed, type View } from "./view";
 
 /** The picture of the ground with what its colours mean. */
 const ground = signal<{ picture: HTMLCanvasElement; least: number; greatest: number } | null>(null);
