@@ -5,6 +5,7 @@
 pub mod churn;
 pub mod extremes;
 pub mod folder_store;
+pub mod form;
 pub mod kills;
 pub mod s3;
 

@@ -4,7 +4,7 @@
 
 use std::{fs, process::Command};
 
-use joulepath_tests::{Answer, Server, program};
+use joulepath_tests::{Answer, Server, form::form, program};
 use serde_json::{Value, json};
 
 fn field() -> Value {
@@ -299,4 +299,77 @@ fn the_command_line_takes_areas_and_steering() {
     let said = String::from_utf8_lossy(&bad.stderr).into_owned();
     assert_eq!(bad.status.code(), Some(2), "{said}");
     assert!(said.contains("bad.geojson: areas.features[0].geometry.type is missing"), "{said}");
+}
+
+/// A GeoTIFF of classes, 5 m a pixel: a lake (80) over the middle of the field but for its north, meadow (30) around it.
+fn land_cover() -> Vec<u8> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).unwrap();
+    let mut image = encoder.new_image::<tiff::encoder::colortype::Gray8>(6, 4).unwrap();
+    image.encoder().write_tag(tiff::tags::Tag::ModelPixelScaleTag, &[5.0, 5.0, 0.0][..]).unwrap();
+    image
+        .encoder()
+        .write_tag(tiff::tags::Tag::ModelTiepointTag, &[0.0, 0.0, 0.0, 0.0, 20.0, 0.0][..])
+        .unwrap();
+    let classes: Vec<u8> =
+        (0..24).map(|pixel| if pixel / 6 > 0 && (2..4).contains(&(pixel % 6)) { 80 } else { 30 }).collect();
+    image.write_data(&classes).unwrap();
+    file.into_inner()
+}
+
+#[test]
+fn a_raster_of_classes_becomes_areas() {
+    let (server, folder) = (Server::start(), tempfile::tempdir().unwrap());
+    let id = server.post_json("/v1/maps", &field()).json()["id"].as_str().unwrap().to_owned();
+    let path = format!("/v1/maps/{id}/areas");
+    let post =
+        |parts: &[(&str, &[u8])]| server.post(&path, "multipart/form-data; boundary=edge", &form(parts));
+    let cover = land_cover();
+    let table = br#"{"80": {"keep_out": true}}"#;
+    let answer = post(&[("raster", &cover), ("classes", table)]);
+    assert_eq!(answer.status, 200, "{}", answer.text);
+    let areas = answer.json();
+    assert_eq!(areas["notes"][0], "classes 30 lie over the map, but not in the table: they change nothing");
+    assert_eq!(
+        areas["features"][0]["geometry"]["coordinates"],
+        json!([[[[10.0, 0.0], [20.0, 0.0], [20.0, 15.0], [10.0, 15.0], [10.0, 0.0]]]])
+    );
+    let plan = server.post_json("/v1/plan", &across(json!({ "areas": areas }))).json();
+    let around = |poses: &Value| {
+        let poses = poses.as_array().unwrap();
+        let inside =
+            |pose: &&Value| (10.0..20.0).contains(&number(&pose["x_m"])) && number(&pose["y_m"]) < 15.0;
+        poses.iter().find(inside).is_none()
+    };
+    assert!(around(&plan["poses"]), "the path leads around the lake");
+    let wrong = post(&[("raster", &cover), ("classes", br#"{"80": {"keep_out": 1}}"#)]);
+    assert!(refused(&wrong, "/classes").contains("classes.80.keep_out is 1"), "{}", wrong.text);
+    assert!(
+        refused(&post(&[("raster", b"no TIFF"), ("classes", table)]), "/raster")
+            .contains("raster of classes")
+    );
+    assert_eq!(server.post_json(&path, &areas).status, 415);
+
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path.display().to_string()
+    };
+    let (map, cover, table) = (
+        file("map.json", field().to_string().as_bytes()),
+        file("cover.tif", &cover),
+        file("table.json", table),
+    );
+    let ask = |more: &[&str]| {
+        let ends = ["plan", "--map", &map, "--start", "3.1,5.2", "--goal", "26.3,5.4", "--json"];
+        Command::new(program()).args(ends).args(["--areas", &cover]).args(more).output().unwrap()
+    };
+    let output = ask(&["--area-classes", &table]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("classes 30 lie over the map"), "{said}");
+    let by_command: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(around(&by_command["poses"]));
+    let bare = ask(&[]);
+    let said = String::from_utf8_lossy(&bare.stderr);
+    assert!(bare.status.code() == Some(2) && said.contains("--area-classes"), "{said}");
 }

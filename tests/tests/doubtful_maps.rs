@@ -7,7 +7,7 @@ use std::{
     process::{Command, Output},
 };
 
-use joulepath_tests::{Server, program};
+use joulepath_tests::{Server, form::form, program};
 use serde_json::{Value, json};
 
 fn plan(map: &Path, arguments: &[&str]) -> Output {
@@ -153,21 +153,6 @@ fn a_service_may_fill_all_maps_and_a_request_still_says_otherwise() {
 }
 
 const ROS_MAP: &str = "image: elsewhere/map.png\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: false\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
-
-/// A form of parts with their names.
-fn form(parts: &[(&str, &[u8])]) -> Vec<u8> {
-    let mut body = Vec::new();
-    for (name, bytes) in parts {
-        body.extend(
-            format!("--edge\r\nContent-Disposition: form-data; name=\"{name}\"; filename=\"f\"\r\n\r\n")
-                .bytes(),
-        );
-        body.extend(*bytes);
-        body.extend(b"\r\n");
-    }
-    body.extend(b"--edge--\r\n");
-    body
-}
 
 #[test]
 fn a_map_of_a_robot_comes_as_a_form_of_its_two_files() {

@@ -11,13 +11,10 @@ use service::{
         robots::RobotChoice,
     },
 };
-use terrain::{
-    Terrain, Warning,
-    areas::{Areas, UnknownGround},
-    io,
-};
+use terrain::{Terrain, Warning, areas::UnknownGround, io};
 
 use crate::{
+    areas_file,
     failure::{BadInput, Refused},
     output,
     steering::Steering,
@@ -152,9 +149,12 @@ pub(crate) struct MapArguments {
     #[command(flatten)]
     reading: MapReading,
     /// Areas over the map, in place of those that it has: a GeoJSON file of polygons and lines whose properties may be surface,
-    /// keep_out, max_speed_mps, cost_factor and one_way_rad
+    /// keep_out, max_speed_mps, cost_factor and one_way_rad; or a GeoTIFF of classes, as ESA WorldCover, with --area-classes
     #[arg(long, value_name = "FILE")]
     areas: Option<PathBuf>,
+    /// What the classes of a raster change, for --areas: a JSON file from class to properties, as {"80": {"keep_out": true}}
+    #[arg(long, value_name = "FILE", requires = "areas")]
+    area_classes: Option<PathBuf>,
     /// Open unknown ground to the robot, as this surface of it
     #[arg(long, value_name = "SURFACE", num_args = 0..=1, default_missing_value = "")]
     unknown_ground: Option<String>,
@@ -197,10 +197,7 @@ impl MapArguments {
     /// The map with the areas of a file over it, and unknown ground opened if that is asked for.
     fn with_areas(&self, mut terrain: Terrain) -> anyhow::Result<Terrain> {
         if let Some(path) = &self.areas {
-            let named = |why: &dyn std::fmt::Display| BadInput(format!("{}: {why}", path.display()));
-            let text = fs::read_to_string(path).map_err(|error| named(&error))?;
-            let document = serde_json::from_str(&text).map_err(|error| named(&error))?;
-            let areas = Areas::of(&document, &terrain).map_err(|error| named(&error))?;
+            let areas = areas_file::read(path, self.area_classes.as_deref(), &terrain)?;
             terrain = terrain.with_areas(areas);
         }
         if let Some(surface) = &self.unknown_ground {

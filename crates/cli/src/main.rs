@@ -4,6 +4,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod allocator;
+mod areas_file;
 mod arguments;
 mod commands;
 mod config;

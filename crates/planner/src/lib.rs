@@ -14,6 +14,7 @@ mod blocked;
 mod changes;
 mod changing;
 mod clearance;
+mod coarse;
 mod connected;
 mod connection;
 mod cost;
@@ -86,6 +87,7 @@ mod window;
 
 pub use astar::{Found, Outcome, Search, search};
 pub use clearance::Clearance;
+pub use coarse::is_coarse;
 pub use edge::Edge;
 pub use ends::Ends;
 pub use error::{Blocked, Error, Place};

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::path::Path;
+
 use approx::assert_relative_eq;
 use model::{Robot, builtin, robot::Uncertainty};
 use planner::{Goal, Objective, Patience, Plan, Query, Settings, Start, plan};
 use proptest::prelude::*;
-use terrain::{Grid, Terrain};
+use terrain::{Cell, Grid, Terrain};
 
 const CERTAIN: Uncertainty =
     Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0, hotel_power_w: 0.0 };
@@ -19,6 +21,65 @@ fn across(robot: &Robot, height_m: impl Fn(f64, f64) -> f64) -> Plan {
 /// Straight ahead over level ground, which is the best way whatever the robot.
 fn ahead(robot: &Robot) -> Plan {
     over(robot, 2.5, |_, _| 0.0)
+}
+
+/// The shipped lidar map in cells of so many of its own, each of their mean height.
+fn coarsened(fine: &Terrain, factor: usize) -> Terrain {
+    let (rows, columns) = (fine.grid.rows / factor, fine.grid.columns / factor);
+    let grid = Grid { rows, columns, cell_size_m: fine.grid.cell_size_m * factor as f64, ..fine.grid };
+    let mean = |index: usize| {
+        let Cell { row, column } = grid.cell(index);
+        let inside = (0..factor * factor)
+            .map(|i| Cell { row: row * factor + i / factor, column: column * factor + i % factor });
+        inside.map(|cell| fine.elevation_m(cell).unwrap()).sum::<f64>() / (factor * factor) as f64
+    };
+    Terrain::new(grid, &(0..grid.cells()).map(mean).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn the_interval_over_coarse_cells_holds_what_the_fine_ground_takes() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../maps/minnesota.tif");
+    let fine = terrain::io::read_path(&path).unwrap();
+    let coarse = coarsened(&fine, 20);
+    let mut robot = builtin::husky_a200();
+    robot.uncertainty = CERTAIN;
+    let [west_m, south_m] = fine.grid.origin_m;
+    let shortest = |terrain: &Terrain, row: usize, is_east: bool| {
+        let (y_m, ends_m) = (south_m + 20.0 * row as f64 + 10.0, [west_m + 50.0, west_m + 350.0]);
+        let [from_m, to_m] = if is_east { ends_m } else { [ends_m[1], ends_m[0]] };
+        let query = Query {
+            start: Start { x_m: from_m, y_m, heading_rad: None },
+            goal: Goal { x_m: to_m, y_m, heading_rad: None, either_way: false, tolerance_m: 0.0 },
+            settings: Settings::of(&robot),
+            other_goals: Vec::new(),
+            snap_radius_m: None,
+            bound: 1.0,
+            refine: false,
+            exact_ends: false,
+            patience: Patience::default(),
+        };
+        plan(terrain, &robot, &query, Objective::Distance).ok()
+    };
+    let (mut held, mut asked) = (0, 0);
+    for row in (2..18).step_by(3) {
+        for is_east in [true, false] {
+            let (Some(told), Some(true_one)) =
+                (shortest(&coarse, row, is_east), shortest(&fine, row, is_east))
+            else {
+                continue;
+            };
+            let ([low_j, high_j], took_j) = (told.energy_interval_j, true_one.route.total.energy_j);
+            assert_relative_eq!(low_j, told.route.total.energy_j, max_relative = 1e-12);
+            assert!(high_j > low_j, "coarse cells are a doubt");
+            asked += 1;
+            held += usize::from((low_j * 0.98..=high_j).contains(&took_j));
+            println!("row {row}: told {low_j:.0} to {high_j:.0} J, took {took_j:.0} J");
+        }
+    }
+    assert!(
+        asked >= 8 && held * 6 >= asked * 5,
+        "{held} of {asked} intervals hold what the fine ground takes"
+    );
 }
 
 fn over(robot: &Robot, to_y_m: f64, height_m: impl Fn(f64, f64) -> f64) -> Plan {

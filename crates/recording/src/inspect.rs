@@ -11,7 +11,8 @@ use self::guess::{guess, time_unit};
 use crate::{
     Channel, Error, Map, Recording,
     format::Format,
-    reading::{read_part, read_path},
+    map::Place,
+    reading::{Reading, read_part, read_path},
     report::ReadingReport,
 };
 
@@ -197,13 +198,41 @@ impl Candidate {
     }
 }
 
+/// Names of the topics of a log, as one reading of it tells them; none where it tells none.
+fn topic_names(read: &Result<Reading, Error>) -> Vec<String> {
+    let first_word = |name: &String| name.split_whitespace().next().unwrap_or_default().to_owned();
+    match read {
+        Ok(Reading { report, .. }) => {
+            let read = report.streams.iter().map(|stream| stream.topic.clone());
+            read.chain(report.ignored.iter().map(|ignored| first_word(&ignored.name))).collect()
+        }
+        Err(error) => error.found().unwrap_or_default().iter().map(first_word).collect(),
+    }
+}
+
+/// Whether a map names any of some topics.
+fn names_any(map: &Map, topics: &[String]) -> bool {
+    map.sources.iter().any(|source| match &source.place {
+        Place::Topic { topic: pattern, .. } => topics.iter().any(|topic| Map::topic_matches(pattern, topic)),
+        Place::Columns(_) => false,
+    })
+}
+
 /// The built-in map that reads most of a log, and why it was taken; of several the one that is made for robots of this name, else the first.
+/// The log is read once for each map that names one of its topics: what the first reading tells rules the others out.
 fn best_map(path: &Path) -> Result<(Candidate, String), Error> {
     let mut first_error = None;
-    let mut read = Vec::new();
+    let (mut read, mut topics) = (Vec::new(), Vec::new());
     for name in Map::BUILT_IN {
         let Some(map) = Map::built_in(name).filter(|map| !map.names_columns()) else { continue };
-        match read_path(path, Some(&map)) {
+        if !topics.is_empty() && !names_any(&map, &topics) {
+            continue;
+        }
+        let reading = read_path(path, Some(&map));
+        if topics.is_empty() {
+            topics = topic_names(&reading);
+        }
+        match reading {
             Ok(reading) => read.push(Candidate { name, report: reading.report }),
             Err(error) => first_error = first_error.or(Some(error)),
         }

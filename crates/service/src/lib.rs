@@ -15,6 +15,7 @@ mod connections;
 mod describe;
 mod engine;
 mod exchange;
+mod form;
 mod geojson;
 mod hosts;
 mod job;

@@ -1,13 +1,13 @@
 //! From the body of a request to a map.
 
-use axum::{body::Bytes, extract::Request};
-use futures_util::{FutureExt, stream};
+use axum::extract::Request;
 use serde::Deserialize;
 use terrain::{MapFile, Terrain, io};
 use utoipa::ToSchema;
 
 use crate::{
     body::{Content, content_type, from_json},
+    form,
     problem::{Problem, ProblemType},
     routes::maps::terrain_from,
 };
@@ -21,9 +21,6 @@ const TIFF_CELL_BYTES: u64 = 8 + 1 + 8 + 4;
 const PIXEL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8 + 2;
 /// Bytes of a cell while holes are filled: two sums, two marks and its place in a hole.
 const FILLING_CELL_BYTES: u64 = 4 + 4 + 1 + 1 + 8;
-/// Parts of a form that are looked at.
-const MOST_PARTS: usize = 8;
-
 /// The two files of a ROS `map_server` map.
 #[derive(Debug, Deserialize, ToSchema)]
 #[allow(dead_code)]
@@ -60,12 +57,7 @@ impl MapReader {
             "application/json" => MapReader::Json,
             "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => MapReader::Ascii,
             "image/tiff" | "image/geotiff" | "application/geotiff" => MapReader::GeoTiff,
-            "multipart/form-data" => {
-                let whole = request.headers().get(axum::http::header::CONTENT_TYPE);
-                let whole = whole.and_then(|value| value.to_str().ok()).unwrap_or_default();
-                let boundary = multer::parse_boundary(whole).map_err(|error| unreadable(&error))?;
-                MapReader::RosMap(boundary)
-            }
+            "multipart/form-data" => MapReader::RosMap(form::boundary_of(request)?),
             _ => {
                 let detail = format!(
                     "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
@@ -103,71 +95,15 @@ impl MapReader {
             }
             MapReader::RosMap(boundary) => {
                 let Content { bytes, mut reserved } = content;
-                let form = Form::read(bytes.into(), boundary)?;
-                let pixels = io::ros_map::pixels_of(&form.image).min(options.most_cells);
+                let example = "-F yaml=@map.yaml -F image=@map.pgm";
+                let [yaml, image] = form::two_files(bytes.into(), boundary, ["yaml", "image"], example)?;
+                let pixels = io::ros_map::pixels_of(&image).min(options.most_cells);
                 reserved.grow_to(length + (PIXEL_BYTES + filling) * pixels)?;
-                io::read_ros_map(&form.yaml, options, |_| Ok(form.image.to_vec()))
+                io::read_ros_map(&yaml, options, |_| Ok(image.to_vec()))
             }
         };
         read.map(|terrain| Read { terrain, name: None }).map_err(|error| invalid(&error))
     }
-}
-
-/// The parts of a form, which share the memory of its body.
-struct Form {
-    yaml: Bytes,
-    image: Bytes,
-}
-
-impl Form {
-    fn read(body: Bytes, boundary: &str) -> Result<Self, Problem> {
-        // All of the body is there, so that nothing is waited for.
-        let parts = parts(body, boundary).now_or_never();
-        let parts =
-            parts.unwrap_or(Err(multer::Error::IncompleteStream)).map_err(|error| unreadable(&error))?;
-        let (mut yaml, mut image) = (None, None);
-        for (name, bytes) in parts {
-            match name.as_str() {
-                "yaml" => yaml = Some(bytes),
-                "image" => image = Some(bytes),
-                other => {
-                    let shown: String = other.chars().take(40).collect();
-                    return Err(form_problem(&format!(
-                        "the form has a part `{shown}`, but takes `yaml` and `image`"
-                    )));
-                }
-            }
-        }
-        let missing = |part: &str| {
-            form_problem(&format!(
-                "the form has no part `{part}`: send both files of the map, as by `curl -F yaml=@map.yaml -F image=@map.pgm`"
-            ))
-        };
-        Ok(Form { yaml: yaml.ok_or_else(|| missing("yaml"))?, image: image.ok_or_else(|| missing("image"))? })
-    }
-}
-
-/// Parts by name; of a form with more of them than are looked at, so many.
-async fn parts(body: Bytes, boundary: &str) -> Result<Vec<(String, Bytes)>, multer::Error> {
-    let body = stream::once(async { Ok::<Bytes, std::convert::Infallible>(body) });
-    let mut form = multer::Multipart::new(body, boundary);
-    let mut parts = Vec::new();
-    while let Some(part) = form.next_field().await? {
-        let name = part.name().unwrap_or_default().to_owned();
-        parts.push((name, part.bytes().await?));
-        if parts.len() == MOST_PARTS {
-            break;
-        }
-    }
-    Ok(parts)
-}
-
-fn unreadable(error: &multer::Error) -> Problem {
-    form_problem(&format!("the form cannot be read: {error}"))
-}
-
-fn form_problem(detail: &str) -> Problem {
-    Problem::new(ProblemType::InvalidRequest, detail)
 }
 
 /// The YAML of a ROS map that came without its image.

@@ -17,8 +17,8 @@ use crate::{
     layers::{layered, needs_token},
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, earth, health, jobs, maps, matrix, metrics, mission,
-        page, plan, range, reachable, recordings, robots, status,
+        alternatives, calibrate, compare, diagnose, earth, health, jobs, map_areas, maps, matrix, metrics,
+        mission, page, plan, range, reachable, recordings, robots, status,
     },
     schemas,
 };
@@ -53,7 +53,7 @@ fn guarded() -> OpenApiRouter<Engine> {
         .routes(routes!(mission::handler))
         .routes(routes!(maps::create, maps::list))
         .routes(routes!(maps::read, maps::change, maps::remove))
-        .routes(routes!(maps::read_areas))
+        .routes(routes!(map_areas::read_areas, map_areas::areas_of_classes))
         .routes(routes!(earth::read))
         .routes(routes!(robots::create, robots::list))
         .routes(routes!(robots::read, robots::remove))

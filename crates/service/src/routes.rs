@@ -7,6 +7,7 @@ pub mod diagnose;
 pub mod earth;
 pub mod health;
 pub mod jobs;
+pub mod map_areas;
 pub mod maps;
 pub mod matrix;
 pub(crate) mod metrics;

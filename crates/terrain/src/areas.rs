@@ -1,5 +1,7 @@
 //! Areas of a map: what people know of the ground and want of the robot there, as GeoJSON.
 
+mod class_table;
+mod classes;
 mod effect;
 mod error;
 mod map_frame;
@@ -12,6 +14,7 @@ mod zones;
 
 use self::shape::Shape;
 pub use self::{
+    classes::{ClassAreas, ClassesError},
     effect::Effect,
     error::AreaError,
     unknown_ground::UnknownGround,

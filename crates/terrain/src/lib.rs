@@ -12,6 +12,7 @@ pub mod fill_value;
 pub mod fill_voids;
 pub mod gaps;
 mod grid;
+pub mod hidden_relief;
 pub mod hillshade;
 pub mod io;
 mod nodata;

@@ -27,7 +27,7 @@ impl Affine {
     }
 
     /// The place in the raster with some coordinates, as column and row.
-    fn inverse(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn inverse(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (dx, dy) = (x - self.origin[0], y - self.origin[1]);
         let area = self.area();
         [(dx * self.row[1] - dy * self.row[0]) / area, (dy * self.column[0] - dx * self.column[1]) / area]

@@ -58,7 +58,8 @@ pub(super) fn parameter(operation_id: &str, name: &str) -> Option<Value> {
     Some(match (operation_id, name) {
         ("readRobot", "id") => ROBOT.into(),
         (_, "id")
-            if operation_id.ends_with("Map") || ["readMapEarth", "readMapAreas"].contains(&operation_id) =>
+            if operation_id.ends_with("Map")
+                || ["readMapEarth", "readMapAreas", "mapareas"].contains(&operation_id) =>
         {
             map_id()?.into()
         }

@@ -290,7 +290,7 @@ fn cells_query(uri: &Uri) -> Result<CellsQuery, Problem> {
 }
 
 /// The query of a request; `fields` are those that it may hold.
-fn query<T: DeserializeOwned>(uri: &Uri, fields: &str) -> Result<T, Problem> {
+pub(super) fn query<T: DeserializeOwned>(uri: &Uri, fields: &str) -> Result<T, Problem> {
     Query::<T>::try_from_uri(uri)
         .map(|Query(query)| query)
         .map_err(|error| unreadable_query(&format!("{error}; it may hold `{fields}`")))
@@ -298,54 +298,6 @@ fn query<T: DeserializeOwned>(uri: &Uri, fields: &str) -> Result<T, Problem> {
 
 fn unreadable_query(why: &str) -> Problem {
     Problem::new(ProblemType::InvalidRequest, format!("the query cannot be read: {why}"))
-}
-
-/// The system of coordinates in which areas are answered.
-#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum FrameName {
-    /// The map's metres, with `"crs": null`.
-    Map,
-}
-
-/// How areas are to be answered.
-#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-#[serde(deny_unknown_fields)]
-pub struct AreasQuery {
-    /// `map`: in the map's metres, with `"crs": null`. Default: as they were given.
-    #[param(inline)]
-    pub frame: Option<FrameName>,
-}
-
-/// The areas over a map, as they were given or in the map's metres.
-#[utoipa::path(
-    get, path = "/v1/maps/{id}/areas", tag = "maps",
-    params(("id" = String, Path, description = "Content hash of the map"), AreasQuery),
-    responses(
-        (status = 200, description = "The areas; a feature collection without features where there are none", body = Object, content_type = "application/geo+json"),
-        (status = 400, body = Problem, content_type = "application/problem+json"),
-        (status = 404, body = Problem, content_type = "application/problem+json"),
-        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
-    )
-)]
-pub(crate) async fn read_areas(
-    State(engine): State<Engine>,
-    tenant: Tenant,
-    Id(id): Id,
-    uri: Uri,
-) -> Result<Response, Problem> {
-    const NONE: &str = r#"{"type":"FeatureCollection","features":[]}"#;
-    let AreasQuery { frame } = query(&uri, "frame")?;
-    let map = engine.maps().get(&tenant, &id).await?;
-    let text = map.areas().map_or_else(
-        || NONE.to_owned(),
-        |areas| match frame {
-            Some(FrameName::Map) => areas.in_map_metres().to_string(),
-            None => areas.text().to_owned(),
-        },
-    );
-    Ok(([(header::CONTENT_TYPE, "application/geo+json")], text).into_response())
 }
 
 /// Change a rectangle of a map's cells, or the areas over it. The changed map is stored beside the other, under its own id; what has been worked

@@ -4,6 +4,7 @@
 //! (`sample`), masked (`masks`) and scaled (`metadata`, `heights`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
 
 mod aux_xml;
+mod classes;
 mod codec;
 mod directory;
 mod frame;
@@ -20,6 +21,7 @@ mod sidecars;
 mod system_keys;
 mod write;
 
+pub(crate) use self::classes::ClassRaster;
 use self::{
     directory::TiffFile,
     geokeys::GeoKeys,

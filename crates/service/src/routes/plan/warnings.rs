@@ -1,19 +1,15 @@
 //! What is doubtful about a path because of the map it lies on and of the robot that takes it.
 
 use model::{Robot, worth::remedy};
-use planner::Planner;
+use planner::{Lattice, Planner, is_coarse};
 use terrain::{Terrain, Warning, WarningKind};
 
 use super::{PlanAnswer, PlanRequest, PoseAnswer};
 
-/// Cells that are longer than so many wheelbases are said to be coarse: an order of magnitude, from which on a cell's one slope
-/// stands for ground that the robot climbs and descends many times over.
-const COARSE_WHEELBASES: f64 = 10.0;
-
 /// Doubts about a planner's map that hold for every path over it.
 pub(crate) fn map_warnings(planner: &Planner) -> Vec<Warning> {
     let lattice = planner.lattice();
-    let coarse = coarse_cells(&lattice.terrain, lattice.robot.wheelbase_m);
+    let coarse = coarse_cells(lattice);
     lattice.terrain.warnings().iter().cloned().chain(coarse).collect()
 }
 
@@ -25,7 +21,7 @@ impl PlanAnswer {
         answer.warnings = map_warnings(planner);
         let own = [
             moved_ends(&answer, request, lattice.terrain.grid.cell_size_m),
-            one_coarse_cell(&answer, &lattice.terrain, lattice.robot.wheelbase_m),
+            one_coarse_cell(&answer, lattice),
             filled_ground(&lattice.terrain, &answer.poses),
             stops(&answer, request),
             borrowed_constants(&lattice.robot),
@@ -35,24 +31,24 @@ impl PlanAnswer {
     }
 }
 
-fn coarse_cells(terrain: &Terrain, wheelbase_m: f64) -> Option<Warning> {
-    let cell_size_m = terrain.grid.cell_size_m;
-    (cell_size_m > COARSE_WHEELBASES * wheelbase_m).then(|| {
+fn coarse_cells(lattice: &Lattice) -> Option<Warning> {
+    is_coarse(lattice).then(|| {
+        let (cell_size_m, wheelbase_m) = (lattice.terrain.grid.cell_size_m, lattice.robot.wheelbase_m);
         let detail = format!(
-            "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell; use a finer map"
+            "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell, and the upper end of a path's interval takes them to be as steep as neighbouring cells differ; use a finer map"
         );
         Warning::new(WarningKind::CoarseCells, detail)
     })
 }
 
 /// A warning where a path begins and ends in one cell far larger than the robot, of which the map knows a single slope.
-fn one_coarse_cell(answer: &PlanAnswer, terrain: &Terrain, wheelbase_m: f64) -> Option<Warning> {
-    let (cell_size_m, (first, last)) =
-        (terrain.grid.cell_size_m, (answer.poses.first()?, answer.poses.last()?));
-    let cell = |pose: &PoseAnswer| terrain.grid.cell_at(pose.x_m, pose.y_m);
+fn one_coarse_cell(answer: &PlanAnswer, lattice: &Lattice) -> Option<Warning> {
+    let grid = &lattice.terrain.grid;
+    let (cell_size_m, first, last) = (grid.cell_size_m, answer.poses.first()?, answer.poses.last()?);
+    let cell = |pose: &PoseAnswer| grid.cell_at(pose.x_m, pose.y_m);
     let apart_m = (last.x_m - first.x_m).hypot(last.y_m - first.y_m);
     let is_one = cell(first) == cell(last) && apart_m > 0.0;
-    (is_one && cell_size_m > COARSE_WHEELBASES * wheelbase_m).then(|| {
+    (is_one && is_coarse(lattice)).then(|| {
         let detail = format!(
             "both ends lie in one cell of {cell_size_m} m: of the {apart_m:.1} m between them the map knows a single slope; use a map of finer cells"
         );

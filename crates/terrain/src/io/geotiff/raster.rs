@@ -53,6 +53,24 @@ impl Band<'_> {
         Ok(samples)
     }
 
+    /// The samples of one block that was written, row-major, cut off at `size` rows and columns.
+    ///
+    /// # Errors
+    /// A block that ends early or is damaged.
+    pub(super) fn block<T: Number + Default>(
+        &self,
+        block: (u64, u64),
+        [rows, columns]: [usize; 2],
+    ) -> Result<Vec<T>, Error> {
+        let mut samples = vec![T::default(); rows * columns];
+        let lines = samples.chunks_mut(columns);
+        match self.layout.compression {
+            Compression::Lerc(_) => lerc::read(self, block, T::default(), lines)?,
+            _ => self.read_block(block, &mut Scratch::default(), lines)?,
+        }
+        Ok(samples)
+    }
+
     /// The compressed bytes of a block.
     pub(super) fn bytes_of(&self, (offset, count): (u64, u64)) -> Result<&[u8], Error> {
         let (start, end) = (offset, offset.saturating_add(count));
