@@ -6,6 +6,7 @@ pub mod churn;
 pub mod extremes;
 pub mod folder_store;
 pub mod kills;
+pub mod published;
 pub mod s3;
 
 use std::{

@@ -16,6 +16,7 @@ mod describe;
 mod engine;
 mod exchange;
 mod geojson;
+mod guide;
 mod hosts;
 mod job;
 mod job_records;
