@@ -133,7 +133,13 @@ fn every_page_with_commands_is_run() {
 #[test]
 fn every_block_is_run_or_says_why_not() {
     for page in pages() {
-        for block in blocks(&read(&page)) {
+        let source = read(&page);
+        for block in blocks(&source) {
+            if let Some(name) = &block.file {
+                let above = source[..block.range.start].lines().rev().skip(1).find(|line| !line.is_empty());
+                let is_named = above.is_some_and(|line| line.contains(&format!("`{name}`")));
+                assert!(is_named, "{page}:{}: the line above does not name `{name}`", block.line);
+            }
             let place = format!("{page}:{}", block.line);
             match (block.language.as_str(), block.needs.as_deref()) {
                 (language, Some(needs)) => {
