@@ -3,7 +3,7 @@
 use std::{fs, path::PathBuf, str::FromStr, time::Instant};
 
 use clap::Args;
-use model::{PowerModel, robot::RobotFile};
+use model::PowerModel;
 use service::{
     Limits, Patience,
     routes::{
@@ -20,6 +20,7 @@ use terrain::{
 use crate::{
     failure::{BadInput, Refused},
     output,
+    robot_arguments::RobotArguments,
     steering::Steering,
 };
 
@@ -231,9 +232,8 @@ pub(crate) fn warn_of_answer(warnings: &[Warning], terrain: &Terrain) {
 pub(crate) struct Driving {
     #[command(flatten)]
     map: MapArguments,
-    /// Name of a built-in robot, or a robot file
-    #[arg(long, default_value = "husky-a200")]
-    robot: String,
+    #[command(flatten)]
+    robot: RobotArguments,
     /// Forward speed [m/s]; default half the wheels' top speed
     #[arg(long)]
     pub(crate) speed_mps: Option<f64>,
@@ -257,7 +257,7 @@ pub(crate) struct Driving {
 impl Driving {
     /// Reads the map and the robot.
     pub(crate) fn read(&self) -> anyhow::Result<(Terrain, RobotChoice)> {
-        Ok((self.map.read()?, read_robot(&self.robot)?))
+        Ok((self.map.read()?, self.robot.read()?))
     }
 }
 
@@ -374,17 +374,6 @@ impl Question {
 pub(crate) fn patience() -> Patience {
     const PATIENCE: u32 = 10;
     Patience::until(Instant::now() + Limits::default().plan_time * PATIENCE)
-}
-
-/// A built-in robot's name stays a name; anything else is a file.
-pub(crate) fn read_robot(name: &str) -> anyhow::Result<RobotChoice> {
-    let is_file = name.ends_with(".json") || name.contains(std::path::MAIN_SEPARATOR);
-    if !is_file {
-        return Ok(RobotChoice::Name(name.to_owned()));
-    }
-    let text = fs::read_to_string(name).map_err(|error| BadInput(format!("{name}: {error}")))?;
-    let robot = model::Robot::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))?;
-    Ok(RobotChoice::File(Box::new(RobotFile::from(robot))))
 }
 
 #[cfg(test)]

@@ -8,13 +8,19 @@ mod arguments;
 mod commands;
 mod config;
 mod failure;
+mod files;
+mod interrupt;
 mod limit_arguments;
+mod out_file;
 mod output;
 mod picture;
 mod progress;
+mod raster;
 mod reach_picture;
 mod real_scored;
 mod recorded;
+mod robot_arguments;
+mod scenes;
 mod scored;
 mod steering;
 mod table;
@@ -23,9 +29,12 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+/// The version, and the commit where it is known.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("JOULEPATH_COMMIT_SUFFIX"));
+
 /// Energy-minimal paths for skid-steered robots, and what they will cost.
 #[derive(Parser)]
-#[command(version, max_term_width = 100)]
+#[command(version = VERSION, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -65,10 +74,16 @@ enum Command {
     Robot(commands::robot::Arguments),
     /// Print the JSON Schema of a robot, map, recording map or world file
     Schema(commands::schema::Arguments),
+    /// Open the page with maps, robots and recordings
+    Open(commands::open::Arguments),
     /// Serve the HTTP API
     Serve(Box<commands::serve::Arguments>),
     /// Start the service, compare paths over real terrain, and draw them
     Demo(commands::demo::Arguments),
+    /// Print what completes commands in a shell
+    Completions(commands::completions::Arguments),
+    /// Print the manual page
+    Man(commands::man::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -84,6 +99,10 @@ fn main() -> ExitCode {
 }
 
 fn run(command: &Command) -> anyhow::Result<()> {
+    // What serves has its own way to end.
+    if !matches!(command, Command::Serve(_) | Command::Open(_)) {
+        interrupt::end_on_interrupt();
+    }
     match command {
         Command::Plan(arguments) => commands::plan::run(arguments),
         Command::Compare(arguments) => commands::compare::run(arguments),
@@ -101,7 +120,10 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Bench(arguments) => commands::bench::run(arguments),
         Command::Robot(arguments) => commands::robot::run(arguments),
         Command::Schema(arguments) => commands::schema::run(arguments),
+        Command::Open(arguments) => commands::open::run(arguments),
         Command::Serve(arguments) => commands::serve::run(arguments),
         Command::Demo(arguments) => commands::demo::run(arguments),
+        Command::Completions(arguments) => commands::completions::run(arguments),
+        Command::Man(arguments) => commands::man::run(arguments),
     }
 }

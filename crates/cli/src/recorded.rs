@@ -18,9 +18,9 @@ pub(crate) struct Recorded {
     /// drive on time
     #[arg(long, required = true, num_args = 1..)]
     recording: Vec<PathBuf>,
-    /// Map file that names columns or topics and their units, or a built-in one: husky, clearpath-a200, clearpath-j100, jackal, scout, px4, borealtc
-    #[arg(long, visible_alias = "columns")]
-    map: Option<String>,
+    /// File that names columns or topics and their units (a log map), or a built-in one: husky, clearpath-a200, clearpath-j100, jackal, scout, px4, borealtc
+    #[arg(long, visible_alias = "map", value_name = "FILE")]
+    columns: Option<String>,
     /// The surface of ground that the recordings do not label, instead of the robot's default one
     #[arg(long)]
     surface: Option<String>,
@@ -43,7 +43,7 @@ impl Recorded {
     /// Reads other recordings in the same way.
     pub(crate) fn read_files(&self, files: &[PathBuf], robot: &Robot) -> anyhow::Result<Recording> {
         // Topics are a Husky's where nothing else is said, on the wheels of the robot at hand.
-        let map = match self.map.as_deref() {
+        let map = match self.columns.as_deref() {
             Some(name) => Some(map(name, robot)?),
             None => {
                 let is_px4 = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "ulg");
@@ -124,7 +124,7 @@ fn map(name: &str, robot: &Robot) -> Result<Map, BadInput> {
     }
     let known = Map::BUILT_IN.join(", ");
     let text = text(name).map_err(|error| {
-        BadInput(format!("--map {error}; give a map file, or one of the built-in {known}"))
+        BadInput(format!("--columns {error}; give a log map, or one of the built-in {known}"))
     })?;
     Map::from_json(&text).map_err(|error| BadInput(format!("{name}: {error}")))
 }

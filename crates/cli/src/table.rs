@@ -83,13 +83,9 @@ fn quality(answer: &PlanAnswer, objective: ObjectiveName) -> String {
 
 /// Three paths as a table, and what the energy-minimal one saves.
 pub(crate) fn compare(answer: &CompareAnswer) -> String {
-    let rows = [
-        HEAD.map(str::to_owned),
-        cells("energy-minimal", &answer.energy),
-        cells("shortest", &answer.distance),
-        cells("fastest", &answer.time),
-    ];
-    let mut text = aligned(&rows);
+    let rows = compared(answer).map(|(name, path)| cells(name, path));
+    let head = [HEAD.map(str::to_owned)];
+    let mut text = aligned(&[&head[..], &rows].concat());
     let (least, shortest) = (&answer.energy, &answer.distance);
     let saved = energy(shortest.energy_j - least.energy_j);
     let further_m = least.distance_m - shortest.distance_m;
@@ -99,6 +95,26 @@ pub(crate) fn compare(answer: &CompareAnswer) -> String {
     }
     text.push_str(&format!(" by driving {further_m:.1} m further."));
     text
+}
+
+/// Paths of a comparison with their names.
+pub(crate) fn compared(answer: &CompareAnswer) -> [(&'static str, &PlanAnswer); 3] {
+    [("energy-minimal", &answer.energy), ("shortest", &answer.distance), ("fastest", &answer.time)]
+}
+
+/// What a path with least of an objective is called.
+pub(crate) fn path_name(objective: ObjectiveName) -> &'static str {
+    match objective {
+        ObjectiveName::Energy => "energy-minimal",
+        ObjectiveName::Distance => "shortest",
+        ObjectiveName::Time => "fastest",
+    }
+}
+
+/// Figures of paths, a heading first.
+pub(crate) fn path_rows(paths: &[(&str, &PlanAnswer)]) -> Vec<Vec<String>> {
+    let rows = paths.iter().map(|(name, path)| cells(name, path).to_vec());
+    std::iter::once(HEAD.map(str::to_owned).to_vec()).chain(rows).collect()
 }
 
 /// Rows under each other, the first column to the left, the others to the right.

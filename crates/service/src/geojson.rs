@@ -5,29 +5,35 @@ use std::io::{self, Write};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use crate::routes::plan::{PlanAnswer, PoseAnswer};
+use crate::{
+    routes::{mission::StopAnswer, plan::PoseAnswer},
+    tracks::{Track, Tracks},
+};
 
-/// Writes a path with its totals: a 3-D line string or, where start and goal are one place, a point. A line has two positions or
-/// more (RFC 7946, 3.1.4). Where nothing says where on earth the map lies, coordinates are its own metres, and a member `crs`
-/// says so: with the name of the system, as GeoJSON had it before RFC 7946, or null.
-pub(crate) fn path(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
-    let properties = json!({
-        "energy_j": plan.energy_j,
-        "energy_interval_j": plan.energy_interval_j,
-        "duration_s": plan.duration_s,
-        "distance_m": plan.distance_m,
-        "climb_m": plan.climb_m,
-        "descent_m": plan.descent_m,
-        "recovered_j": plan.recovered_j,
-        "warnings": plan.warnings,
-    });
+/// Writes paths with their totals, each a 3-D line string or, where start and goal are one place, a point, and stops as points. A line has
+/// two positions or more (RFC 7946, 3.1.4). Where nothing says where on earth the map lies, coordinates are its own metres, and a member
+/// `crs` says so: with the name of the system, as GeoJSON had it before RFC 7946, or null.
+pub(crate) fn write(found: &Tracks<'_>, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(br#"{"type":"FeatureCollection","#)?;
-    if plan.poses.first().is_some_and(|pose| pose.lon_deg.is_none()) {
-        let named = |name: &String| json!({ "type": "name", "properties": { "name": name } });
-        write!(out, "\"crs\":{},", json!(plan.crs.as_ref().map(named)))?;
+    let first = found.tracks.iter().find_map(|track| track.poses.first());
+    if first.is_some_and(|pose| pose.lon_deg.is_none()) {
+        let named = |name: &&str| json!({ "type": "name", "properties": { "name": name } });
+        write!(out, "\"crs\":{},", json!(found.crs.as_ref().map(named)))?;
     }
-    out.write_all(br#""features":[{"type":"Feature","geometry":"#)?;
-    match plan.poses.as_slice() {
+    out.write_all(br#""features":["#)?;
+    for (i, track) in found.tracks.iter().enumerate() {
+        out.write_all(if i > 0 { b"," } else { b"" })?;
+        path(track, out)?;
+    }
+    for feature in found.stops.iter().map(stop) {
+        write!(out, ",{feature}")?;
+    }
+    out.write_all(b"]}")
+}
+
+fn path(track: &Track<'_>, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(br#"{"type":"Feature","geometry":"#)?;
+    match track.poses {
         [pose] => write!(out, "{}", json!({ "type": "Point", "coordinates": position(pose) }))?,
         poses => {
             out.write_all(br#"{"type":"LineString","coordinates":"#)?;
@@ -36,8 +42,28 @@ pub(crate) fn path(plan: &PlanAnswer, out: &mut dyn Write) -> io::Result<()> {
         }
     }
     out.write_all(br#","properties":"#)?;
-    serde_json::to_writer(&mut *out, &properties)?;
-    out.write_all(b"}]}")
+    serde_json::to_writer(&mut *out, &track.properties())?;
+    out.write_all(b"}")
+}
+
+fn stop(stop: &StopAnswer) -> serde_json::Value {
+    let coordinates = match (stop.lon_deg, stop.lat_deg) {
+        (Some(lon_deg), Some(lat_deg)) => [lon_deg, lat_deg],
+        _ => [stop.x_m, stop.y_m],
+    };
+    json!({
+        "type": "Feature",
+        "geometry": { "type": "Point", "coordinates": coordinates },
+        "properties": {
+            "name": stop.name(),
+            "kind": stop.kind,
+            "arrival_s": stop.arrival_s,
+            "departure_s": stop.departure_s,
+            "energy_j": stop.energy_j,
+            "arrival_charge": stop.arrival_charge,
+            "departure_charge": stop.departure_charge,
+        },
+    })
 }
 
 /// Poses as positions.

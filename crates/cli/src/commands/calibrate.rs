@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
 use calibration::{Calibration, Method, Options, lift};
 use clap::{Args, ValueEnum};
 use diagnosis::taught;
@@ -10,7 +9,7 @@ use recording::unwatched;
 
 use crate::{
     failure::BadInput,
-    output, progress,
+    files, output, progress,
     recorded::{Recorded, text},
 };
 
@@ -65,8 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let found = found.map_err(|error| arguments.recorded.refuse(&error))?;
     let file = serde_json::to_string_pretty(&found.robot)?;
     let out = &arguments.out;
-    std::fs::write(out, file + "\n")
-        .with_context(|| format!("cannot write the robot to {}", out.display()))?;
+    files::write(out, file + "\n")?;
     found.coverage.words_by_run().iter().for_each(output::note);
     if arguments.recorded.json {
         output::json(&found)?;

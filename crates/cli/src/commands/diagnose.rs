@@ -6,12 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::Context;
 use clap::{Args, builder::PossibleValuesParser};
 use diagnosis::{Diagnosis, Question, diagnose, report::Finding};
 use model::mechanism;
 
-use crate::{failure::BadInput, output, progress, recorded::Recorded};
+use crate::{failure::BadInput, files, interrupt, output, progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -33,7 +32,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let is_new = make_folder(&arguments.out)?;
+    let kept = is_new.then(|| interrupt::forget_on_interrupt(&arguments.out));
     let done = diagnosed(arguments);
+    drop(kept);
     if done.is_err() && is_new {
         // Nothing is left of what failed; what somebody else put there meanwhile stays.
         let _ = fs::remove_dir(&arguments.out);
@@ -60,13 +61,11 @@ fn diagnosed(arguments: &Arguments) -> anyhow::Result<()> {
     let found = diagnose(&question, &told);
     bar.finish_and_clear();
     let found = found.map_err(|error| recorded.refuse(&error))?;
-    let write = |name: &str, text: String| {
-        let path = out.join(name);
-        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
-    };
-    write("report.json", serde_json::to_string_pretty(&found)? + "\n")?;
-    write("report.html", report::diagnosis_page(&found, &robot.name))?;
+    let write = |name: &str, text: String| files::write(&out.join(name), text);
     write("corrected-robot.json", serde_json::to_string_pretty(&found.corrected_robot)? + "\n")?;
+    write("report.html", report::diagnosis_page(&found, &robot.name))?;
+    // Last, so that whoever waits for it finds the others.
+    write("report.json", serde_json::to_string_pretty(&found)? + "\n")?;
     found.coverage.words_by_run().iter().for_each(output::note);
     if recorded.json {
         output::json(&found)?;

@@ -2,17 +2,16 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
 use recording::inspect::{InspectedField, inspect};
 
-use crate::{failure::BadInput, output};
+use crate::{failure::BadInput, files, output};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The log: .csv, .parquet, .mcap, .db3, .bag or .ulg, or a folder of `ros2 bag record`
     log: PathBuf,
-    /// Where to write the proposed map, to look at, change, and give as `--map`
+    /// Where to write the proposed map, to look at, change, and give as `--columns`
     #[arg(long, value_name = "FILE")]
     write_map: Option<PathBuf>,
     /// Print the answer as a JSON document
@@ -29,8 +28,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 BadInput(format!("{}: no map can be proposed: {why}", arguments.log.display())).into()
             );
         }
-        std::fs::write(path, serde_json::to_string_pretty(&found.map)? + "\n")
-            .with_context(|| format!("cannot write the map to {}", path.display()))?;
+        files::write(path, serde_json::to_string_pretty(&found.map)? + "\n")?;
     }
     if arguments.json {
         return output::json(&found);

@@ -1,14 +1,22 @@
 //! `joulepath mission`.
 
 use clap::Args;
-use service::routes::mission::{
-    ChargerRequest, MissionAnswer, MissionRequest, OrderName, WaypointRequest, answer,
+use model::Robot;
+use service::{
+    Tracks,
+    routes::mission::{
+        ChargerRequest, MissionAnswer, MissionRequest, OrderName, StopAnswer, WaypointRequest, answer,
+    },
 };
+use terrain::Terrain;
 
 use crate::{
-    arguments::{MapArguments, Place, patience, read_robot, warn_of_answer},
+    arguments::{MapArguments, Place, patience, warn_of_answer},
     failure::{OutOfCharge, Refused},
-    output,
+    out_file::{Answer, OutFile, details},
+    output, progress,
+    robot_arguments::RobotArguments,
+    scenes,
     table::{energy, time},
 };
 
@@ -16,9 +24,8 @@ use crate::{
 pub(crate) struct Arguments {
     #[command(flatten)]
     map: MapArguments,
-    /// Name of a built-in robot, or a robot file; it needs a battery
-    #[arg(long, default_value = "husky-a200")]
-    robot: String,
+    #[command(flatten)]
+    robot: RobotArguments,
     /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
@@ -67,6 +74,9 @@ pub(crate) struct Arguments {
     /// Print the answer as the JSON document that the HTTP API returns
     #[arg(long)]
     json: bool,
+    /// Write the answer to this file, in the form of its ending: .geojson, .gpx, .kml, .csv, .png, .svg, .html or .json
+    #[arg(long, value_name = "FILE")]
+    out: Option<OutFile>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -95,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         unknown_ground: None,
         map: None,
         map_id: None,
-        robot: read_robot(&arguments.robot)?,
+        robot: arguments.robot.read()?,
         start: arguments.start.pose_on(&terrain)?,
         waypoints: arguments.waypoint.iter().map(waypoint).collect::<anyhow::Result<_>>()?,
         chargers: arguments.charger.iter().map(charger).collect::<anyhow::Result<_>>()?,
@@ -111,11 +121,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         snap_radius_m: arguments.snap_radius_m,
         timeout_s: arguments.timeout_s,
     };
+    arguments.out.as_ref().map_or(Ok(()), |out| out.check(&terrain))?;
     let plan = request.plan();
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let sign = progress::working("planning");
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
+    sign.finish_and_clear();
     warn_of_answer(&found.warnings, &terrain);
+    if let Some(out) = &arguments.out {
+        write(out, &terrain, &planner.lattice().robot, &found)?;
+    }
     if arguments.json {
         output::json(&found)?;
     } else {
@@ -132,13 +148,25 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Err(OutOfCharge(format!("{why}; add chargers, charge or time, or drop waypoints")).into())
 }
 
+fn write(out: &OutFile, terrain: &Terrain, robot: &Robot, found: &MissionAnswer) -> anyhow::Result<()> {
+    let head = ["stop", "arrival", "energy so far", "charge on arrival"].map(str::to_owned).to_vec();
+    let row = |stop: &StopAnswer| {
+        let charge = format!("{:.1} %", 100.0 * stop.arrival_charge);
+        vec![stop.name(), time(stop.arrival_s), energy(stop.energy_j), charge]
+    };
+    out.write(Answer {
+        document: found,
+        tracks: &|form, out| Ok(Tracks::of_mission(found, terrain.crs.as_deref()).write(form, out)?),
+        scene: scenes::mission(terrain, robot, found),
+        table: std::iter::once(head).chain(found.stops.iter().map(row)).collect(),
+        warnings: details(&found.warnings),
+    })
+}
+
 fn summary(found: &MissionAnswer) -> String {
     let mut text = String::new();
     for stop in &found.stops {
-        let name = match stop.index {
-            Some(index) => format!("{} {index}", stop.kind),
-            None => stop.kind.clone(),
-        };
+        let name = stop.name();
         text += &format!(
             "{name:<12} at {:>10}  {:>10}  {:5.1} % of charge\n",
             time(stop.arrival_s),

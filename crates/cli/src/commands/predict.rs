@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use calibration::{RunPrediction, predict};
 use clap::Args;
 
-use crate::{output, progress, recorded::Recorded};
+use crate::{files, output, progress, recorded::Recorded};
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -32,8 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if let Some(path) = &arguments.html {
         let page = report::prediction_page(&robot, &found);
-        std::fs::write(path, page)
-            .with_context(|| format!("cannot write the report to {}", path.display()))?;
+        files::write(path, page)?;
     }
     if arguments.recorded.json {
         output::json(&found.prediction)?;

@@ -14,7 +14,7 @@ use model::Robot;
 use prove::{Diagnosis, FileBeside, Kind, PeerAnswer, REFERENCE, ROBOT, Scoreboard, Trial, Way};
 use recording::read_paths;
 
-use crate::{failure::BadInput, output, progress::Cases, recorded::robot, scored::summary};
+use crate::{failure::BadInput, files, output, progress::Cases, recorded::robot, scored::summary};
 
 /// Shares of power that effects can be given.
 const SHARES: [f64; 2] = [0.002, 0.5];
@@ -132,8 +132,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let boards = trial.run()?;
     let page = out.join("scoreboard.html");
-    std::fs::write(&page, report::scoreboard_page(&boards.most))
-        .with_context(|| format!("cannot write {}", page.display()))?;
+    files::write(&page, report::scoreboard_page(&boards.most))?;
     bar.end();
     let columns: Vec<(&str, &Scoreboard)> =
         boards.ways.iter().map(|one| (one.way.words(), &one.board)).collect();

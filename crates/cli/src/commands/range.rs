@@ -8,9 +8,10 @@ use service::routes::{
 };
 
 use crate::{
-    arguments::{MapArguments, Place, patience, read_robot, warn_of_answer},
+    arguments::{MapArguments, Place, patience, warn_of_answer},
     failure::{OutOfCharge, Refused},
     output,
+    robot_arguments::RobotArguments,
     table::{energy, time},
 };
 
@@ -18,9 +19,8 @@ use crate::{
 pub(crate) struct Arguments {
     #[command(flatten)]
     map: MapArguments,
-    /// Name of a built-in robot, or a robot file; it needs a battery
-    #[arg(long, default_value = "husky-a200")]
-    robot: String,
+    #[command(flatten)]
+    robot: RobotArguments,
     /// X,Y[,HEADING_DEG] in metres of the map, @FX,FY[,HEADING_DEG] in fractions of it, or 46.5046N,93.9217W[,HEADING_DEG]
     #[arg(long, allow_hyphen_values = true)]
     start: Place,
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         unknown_ground: None,
         map: None,
         map_id: None,
-        robot: read_robot(&arguments.robot)?,
+        robot: arguments.robot.read()?,
         start: arguments.start.pose_on(&terrain)?,
         goal: arguments.goal.map(goal).transpose()?,
         back: arguments.back,

@@ -1,16 +1,19 @@
 //! `joulepath reachable`.
 
-use std::{fs, path::PathBuf, time::Instant};
+use std::{path::PathBuf, time::Instant};
 
-use anyhow::Context;
 use clap::{Args, ValueEnum};
-use service::routes::reachable::{Found, KindName, ReachableRequest};
+use service::routes::reachable::{Found, KindName, ReachableAnswer, ReachableRequest};
+use terrain::Terrain;
 
 use crate::{
     arguments::{Driving, Place, patience, warn_of_answer},
     failure::Refused,
-    output,
+    files,
+    out_file::{Answer, OutFile, details},
+    output, progress,
     reach_picture::draw,
+    scenes,
     table::energy,
 };
 
@@ -36,6 +39,9 @@ pub(crate) struct Arguments {
     /// Write the contours over shaded relief as a picture
     #[arg(long)]
     png: Option<PathBuf>,
+    /// Write the contours to this file, in the form of its ending: .geojson, .gpx, .kml, .csv, .png, .svg, .html or .json
+    #[arg(long, value_name = "FILE")]
+    out: Option<OutFile>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -70,38 +76,64 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         snap_radius_m: driving.snap_radius_m,
         timeout_s: driving.timeout_s,
     };
+    arguments.out.as_ref().map_or(Ok(()), |out| out.check(&terrain))?;
+    for path in [&arguments.tiff, &arguments.png].into_iter().flatten() {
+        files::check(path)?;
+    }
     let plan = request.plan();
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let sign = progress::working("searching");
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let began = Instant::now();
     let found = Found::of(&planner, &request, &patience).map_err(Refused)?;
     let contours = found.contours(&patience).map_err(Refused)?;
-    warn_of_answer(&contours.warnings, &terrain);
     let taken_s = began.elapsed().as_secs_f64();
+    sign.finish_and_clear();
+    warn_of_answer(&contours.warnings, &terrain);
     if let Some(path) = &arguments.tiff {
         let raster = found.raster().map_err(Refused)?;
-        fs::write(path, raster).with_context(|| path.display().to_string())?;
+        files::write(path, raster)?;
     }
     if let Some(path) = &arguments.png {
         let levels_j: Vec<f64> = contours.features.iter().map(|f| f.properties.energy_j).collect();
         let picture = draw(&terrain, &found.reach, &levels_j, [start.x_m, start.y_m])?;
-        fs::write(path, picture).with_context(|| path.display().to_string())?;
+        files::write(path, picture)?;
+    }
+    let start_m = [start.x_m, start.y_m];
+    if let Some(out) = &arguments.out {
+        out.write(Answer {
+            document: &contours,
+            tracks: &|form, out| Ok(found.write(form, &contours, out)?),
+            scene: scenes::reachable(&terrain, &planner.lattice().robot, &contours, &found.reach, start_m),
+            table: rows(&contours, &terrain),
+            warnings: details(&contours.warnings),
+        })?;
     }
     if driving.json {
         output::json(&contours)?;
         return Ok(());
     }
-    let whole_m2 = terrain.grid.cells() as f64 * terrain.grid.cell_size_m.powi(2);
-    for feature in &contours.features {
-        let properties = &feature.properties;
-        let charge = properties.charge.map_or(String::new(), |charge| format!("charge {charge:<5} "));
-        output::line(format_args!(
-            "{charge}{:>12}  {:>10.0} m²  {:>5.1} % of the map",
-            energy(properties.energy_j),
-            properties.area_m2,
-            100.0 * properties.area_m2 / whole_m2
-        ))?;
+    for row in rows(&contours, &terrain).iter().skip(1) {
+        let [energy, area, share, charge] = &row[..] else { continue };
+        let charge = if charge.is_empty() { String::new() } else { format!("charge {charge:<5} ") };
+        output::line(format_args!("{charge}{energy:>12}  {area:>13}  {share:>5} of the map"))?;
     }
     output::line(format_args!("in {:.0} ms", 1e3 * taken_s))?;
     Ok(())
+}
+
+/// Figures of contours, a heading first.
+fn rows(contours: &ReachableAnswer, terrain: &Terrain) -> Vec<Vec<String>> {
+    let whole_m2 = terrain.grid.cells() as f64 * terrain.grid.cell_size_m.powi(2);
+    let head = ["within", "area", "share of the map", "charge"].map(str::to_owned).to_vec();
+    let row = |feature: &service::routes::reachable::ContourFeature| {
+        let properties = &feature.properties;
+        vec![
+            energy(properties.energy_j),
+            format!("{:.0} m²", properties.area_m2),
+            format!("{:.1} %", 100.0 * properties.area_m2 / whole_m2),
+            properties.charge.map_or(String::new(), |charge| charge.to_string()),
+        ]
+    };
+    std::iter::once(head).chain(contours.features.iter().map(row)).collect()
 }

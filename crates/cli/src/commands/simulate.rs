@@ -1,18 +1,13 @@
 //! `joulepath simulate`.
 
-use std::{
-    fs::File,
-    io::BufWriter,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use anyhow::Context;
 use clap::Args;
 use world::{Drive, Key, RobotFile, World, simulate};
 
 use crate::{
     failure::BadInput,
-    output,
+    files, output,
     recorded::{robot, text},
 };
 
@@ -43,14 +38,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         None => world,
     };
     let drive = read(&arguments.drive, Drive::from_json)?;
+    [Some(&arguments.out), arguments.key.as_ref()]
+        .into_iter()
+        .flatten()
+        .try_for_each(|path| files::check(path))?;
     let log = simulate(&world, &robot, &drive).map_err(|error| BadInput(error.to_string()))?;
-    let unwritable = |path: &Path| format!("cannot write {}", path.display());
-    let file = File::create(&arguments.out).with_context(|| unwritable(&arguments.out))?;
-    log.write_csv(BufWriter::new(file)).with_context(|| unwritable(&arguments.out))?;
+    files::write_with(&arguments.out, |out| Ok(log.write_csv(out)?))?;
     if let Some(path) = &arguments.key {
         let key = Key::of(&world, &robot, &drive).map_err(|error| BadInput(error.to_string()))?;
         let file = serde_json::to_string_pretty(&key)? + "\n";
-        std::fs::write(path, file).with_context(|| unwritable(path))?;
+        files::write(path, file)?;
     }
     output::line(format_args!("{}: {} rows", arguments.out.display(), log.rows.len()))?;
     Ok(())

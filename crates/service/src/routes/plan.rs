@@ -25,11 +25,10 @@ use crate::{
     accept::preferred,
     answer::Written,
     body::JsonBody,
-    geojson,
     metrics::CacheLabels,
     place::{Place, absent, settle_all},
     problem::{Problem, ProblemType},
-    route_file,
+    tracks::{TrackForm, Tracks},
 };
 
 pub(crate) use document::place_all;
@@ -227,34 +226,19 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Written, Problem> {
-    const FORMS: [&str; 5] =
-        ["application/json", "application/geo+json", "text/csv", "application/gpx+xml", route_file::KML];
-    let form = preferred(&headers, &FORMS);
+    let [geojson, csv, gpx, kml] = TrackForm::ALL.map(TrackForm::media_type);
+    let media_type = preferred(&headers, &["application/json", geojson, csv, gpx, kml]);
+    let form = TrackForm::ALL.into_iter().find(|form| form.media_type() == media_type);
     let planned = with_planner(&engine, &tenant, &mut request, move |planner, request, patience| {
-        if form == route_file::KML {
-            refuse_unplaced(&planner.lattice().terrain)?;
-        }
+        form.map_or(Ok(()), |form| form.check(&planner.lattice().terrain))?;
         answer(planner, request, patience)
     });
     let found = planned.await?;
     engine.metrics().expansions.inc_by(found.search.expanded);
-    Ok(Written::new(form, move |out| match form {
-        "application/geo+json" => geojson::path(&found, out),
-        "text/csv" => route_file::csv(&found, out),
-        "application/gpx+xml" => route_file::gpx(&found, out),
-        route_file::KML => route_file::kml(&found, out),
-        _ => Ok(serde_json::to_writer(out, &found)?),
+    Ok(Written::new(media_type, move |out| match form {
+        Some(form) => Tracks::from(&found).write(form, out),
+        None => Ok(serde_json::to_writer(out, &found)?),
     }))
-}
-
-/// Refuses a map whose paths cannot be told in longitude and latitude.
-fn refuse_unplaced(terrain: &Terrain) -> Result<(), Problem> {
-    terrain.earth().map(drop).map_err(|error| {
-        let detail = format!(
-            "KML is longitude and latitude, and {error}: send the map with a `crs` that is placed on earth, as EPSG:32632, or ask for application/json, application/geo+json or text/csv"
-        );
-        Problem::new(ProblemType::InvalidMap, detail).at("/map")
-    })
 }
 
 /// Largest limit on slopes: π/2, a vertical wall, rounded up [rad]. Degrees are nearly always beyond it.

@@ -27,8 +27,10 @@ use crate::{
     accept::preferred,
     answer::Pieces,
     body::JsonBody,
+    contour_file,
     place::Place,
     problem::{Problem, ProblemType},
+    tracks::TrackForm,
 };
 
 /// What to find the reach of.
@@ -313,6 +315,14 @@ impl Found {
             features,
             warnings: self.warnings.clone(),
         })
+    }
+
+    /// Writes contours, as [`Found::contours`] gave them, in a file format.
+    ///
+    /// # Errors
+    /// An output that cannot be written to, or GPX and KML of a map that does not say where on earth it lies.
+    pub fn write(&self, form: TrackForm, contours: &ReachableAnswer, out: &mut dyn Write) -> io::Result<()> {
+        contour_file::write(form, contours, &self.reach, out)
     }
 
     /// The ground within an energy, which may stand for a charge.

@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::Context;
 use prove::{
     CALIBRATED, Diagnosis, FileBeside, PeerAnswer, ROBOT,
     real::{Ground, RealTrial, STRENGTHS_Z},
 };
 
 use super::{Arguments, at_once, check, peers_by, program, ways};
-use crate::{failure::BadInput, output, progress::Cases, real_scored::summary, recorded::robot};
+use crate::{failure::BadInput, files, output, progress::Cases, real_scored::summary, recorded::robot};
 
 /// Strengths that changes can be given: below, no detector sees them; above, none of a robot's size is as strong.
 const RANGE_Z: [f64; 2] = [1.0, 1000.0];
@@ -43,8 +42,7 @@ pub(super) fn run(arguments: &Arguments, out: &Path) -> anyhow::Result<()> {
     };
     let boards = trial.run()?;
     let page = out.join("scoreboard.html");
-    std::fs::write(&page, report::real_scoreboard_page(&boards))
-        .with_context(|| format!("cannot write {}", page.display()))?;
+    files::write(&page, report::real_scoreboard_page(&boards))?;
     bar.end();
     output::line(summary(&boards))?;
     output::line(page.display())?;

@@ -2,7 +2,6 @@
 
 use std::{path::PathBuf, str::FromStr};
 
-use anyhow::Context;
 use clap::{Args, ValueEnum};
 use model::data_sheet::{
     BatterySheet, Constant, DataSheet, Description, Drive, GROUNDS, GroundSheet, MotorSheet,
@@ -10,7 +9,7 @@ use model::data_sheet::{
 use serde_json::json;
 
 use super::{ask, check};
-use crate::{failure::BadInput, output};
+use crate::{failure::BadInput, files, output};
 
 /// Revolutions per minute in a radian per second.
 const RPM_PER_RADPS: f64 = 60.0 / std::f64::consts::TAU;
@@ -154,8 +153,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let sheet = arguments.sheet()?;
     let found = sheet.describe().map_err(|error| BadInput(format!("data sheet: {error}")))?;
     let path = &arguments.out;
-    std::fs::write(path, serde_json::to_string_pretty(&found.robot)? + "\n")
-        .with_context(|| format!("cannot write the robot to {}", path.display()))?;
+    files::write(path, serde_json::to_string_pretty(&found.robot)? + "\n")?;
     if arguments.json {
         let constants: Vec<_> = found.constants.iter().map(constant).collect();
         return output::json(&json!({ "file": path, "robot": found.robot, "constants": constants }));
