@@ -83,7 +83,8 @@ pub fn with_results(page: &str) -> std::io::Result<String> {
     for part in parts {
         let name = part.split(' ').next().unwrap_or_default();
         let rest = part.split_once("<!-- end -->").map(|(_, rest)| rest);
-        let rest = rest.ok_or_else(|| std::io::Error::other(format!("no `<!-- end -->` behind result {name}")))?;
+        let rest =
+            rest.ok_or_else(|| std::io::Error::other(format!("no `<!-- end -->` behind result {name}")))?;
         shown += &format!("<!-- result {name} -->\n\n{}\n<!-- end -->{rest}", result(name)?.shown());
     }
     Ok(shown)

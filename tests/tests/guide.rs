@@ -18,7 +18,9 @@ fn attribute<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
 fn targets(markdown: &str) -> Vec<String> {
     Parser::new_ext(markdown, Options::ENABLE_TABLES)
         .filter_map(|event| match event {
-            Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => Some(dest_url.to_string()),
+            Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
+                Some(dest_url.to_string())
+            }
             _ => None,
         })
         .collect()
@@ -68,7 +70,7 @@ fn the_guide_runs_nothing_and_loads_nothing_from_elsewhere() {
         assert!(!source.contains("//"), "{source}");
     }
     let tag = page.header("etag").to_owned();
-    assert_eq!(server.get_with("/docs/guide/", &[("if-none-match", &tag)]).status, 304);
+    assert_eq!(server.ask("GET", "/docs/guide/", &[("if-none-match", &tag)], b"").status, 304);
     server.get("/docs/guide/nowhere.html").problem(404, "not-found");
     server.get("/docs/guide/../../Cargo.toml").problem(404, "not-found");
 }

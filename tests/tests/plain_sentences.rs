@@ -57,7 +57,8 @@ fn no_sentence_has_more_than_25_words() {
     for page in pages {
         let text = fs::read_to_string(file(&page)).unwrap();
         for paragraph in paragraphs(&text) {
-            for sentence in sentences(&paragraph).into_iter().filter(|sentence| words(sentence) > MOST_WORDS) {
+            for sentence in sentences(&paragraph).into_iter().filter(|sentence| words(sentence) > MOST_WORDS)
+            {
                 long.push(format!("{page}: {} words: {}", words(sentence), sentence.trim()));
             }
         }

@@ -56,7 +56,10 @@ fn files() -> BTreeMap<String, GuideFile> {
         whole += &body;
     }
     found.insert(WHOLE.into(), html_file(&page(&chapters, None, &PreEscaped(whole))));
-    found.insert("guide.css".into(), GuideFile { content_type: "text/css; charset=utf-8", bytes: STYLE.into() });
+    found.insert(
+        "guide.css".into(),
+        GuideFile { content_type: "text/css; charset=utf-8", bytes: STYLE.into() },
+    );
     for name in Sources::iter() {
         let content_type = match name.rsplit('.').next() {
             Some("png") => "image/png",
@@ -86,7 +89,10 @@ fn chapters(summary: &str) -> Vec<Chapter> {
         match event {
             Event::Start(Tag::Link { dest_url, .. }) => {
                 let name = dest_url.trim_end_matches(".md").trim_start_matches("./").to_owned();
-                found.push(Chapter { name: if name == "README" { "index".into() } else { name }, title: String::new() });
+                found.push(Chapter {
+                    name: if name == "README" { "index".into() } else { name },
+                    title: String::new(),
+                });
                 inside = true;
             }
             Event::End(TagEnd::Link) => inside = false,

@@ -17,8 +17,8 @@ use crate::{
     layers::{layered, needs_token},
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, earth, guide, health, jobs, maps, matrix, metrics, mission,
-        page, plan, range, reachable, recordings, robots, status,
+        alternatives, calibrate, compare, diagnose, earth, guide, health, jobs, maps, matrix, metrics,
+        mission, page, plan, range, reachable, recordings, robots, status,
     },
     schemas,
 };

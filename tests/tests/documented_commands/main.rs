@@ -126,7 +126,10 @@ pages_are_true! {
 fn every_page_with_commands_is_run() {
     for page in pages() {
         let runs = blocks(&read(&page)).iter().any(is_run);
-        assert!(!runs || CHECKED.contains(&page.as_str()), "{page} holds commands and no test here runs them");
+        assert!(
+            !runs || CHECKED.contains(&page.as_str()),
+            "{page} holds commands and no test here runs them"
+        );
     }
 }
 

@@ -50,7 +50,8 @@ pub(crate) fn run(blocks: &[Block]) -> Vec<Vec<Printed>> {
             let commands = if is_run(block) { steps(&block.text).len() } else { 0 };
             (0..commands)
                 .map(|_| {
-                    let output = parts.next().unwrap_or_else(|| panic!("the session ended early:\n{printed}"));
+                    let output =
+                        parts.next().unwrap_or_else(|| panic!("the session ended early:\n{printed}"));
                     let status = parts.next().and_then(|status| status.trim().parse().ok()).unwrap_or(-1);
                     Printed { output: output.strip_prefix('\n').unwrap_or(output).to_owned(), status }
                 })
@@ -92,7 +93,10 @@ fn script(blocks: &[Block]) -> String {
         for step in steps(&block.text) {
             let command = step.command.replace("cargo run --release -- ", "joulepath ");
             let command = if starts_service(&command) { in_background(&command) } else { command };
-            let _ = write!(script, "printf '{MARK}\\n'; (exit ${{last:-0}})\n{command}\nlast=$?; printf '{MARK}%s\\n' $last\n");
+            let _ = write!(
+                script,
+                "printf '{MARK}\\n'; (exit ${{last:-0}})\n{command}\nlast=$?; printf '{MARK}%s\\n' $last\n"
+            );
         }
     }
     script + "exit 0\n"
