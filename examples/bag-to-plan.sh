@@ -22,10 +22,10 @@ mkdir -p "$folder"
 "$joulepath" inspect "$1" --write-map "$folder/log-map.json"
 
 # 2. How the robot as its file has it predicts these drives. What is doubtful about the logs is said here.
-"$joulepath" predict --robot "$robot" --map "$folder/log-map.json" --recording "$@"
+"$joulepath" predict --robot "$robot" --columns "$folder/log-map.json" --recording "$@"
 
 # 3. The robot fitted to the drives. It is written only where nothing doubtful would explain the fit.
-"$joulepath" calibrate --robot "$robot" --map "$folder/log-map.json" --recording "$@" --out "$folder/robot.json"
+"$joulepath" calibrate --robot "$robot" --columns "$folder/log-map.json" --recording "$@" --out "$folder/robot.json"
 
 # 4. A plan with the fitted robot, and what it will cost.
 "$joulepath" plan --map "$terrain" --robot "$folder/robot.json" --start "$start" --goal "$goal" --json > "$folder/plan.json"

@@ -119,7 +119,8 @@ fn wrong_input_ends_with_2_and_one_line_that_says_what_where_and_how_to_mend_it(
         ("predict --recording drive.csv --robot r2d2", ["r2d2", "husky-a200"]),
         ("predict --recording drive.csv --robot robot.json", ["robot.json: ", "mass_kg"]),
         ("predict --recording drive.csv --map map.json", ["map.json: map, sources[0].unit: `A`", "W, kW"]),
-        ("predict --recording drive.csv --map rover", ["--map rover", "husky, clearpath-a200"]),
+        ("predict --recording drive.csv --columns rover", ["--columns rover", "husky, clearpath-a200"]),
+        ("predict --recording drive.csv --map rover", ["--columns rover", "husky, clearpath-a200"]),
         (
             "calibrate --method dogru-marques --recording one.csv --out o.json",
             ["one.csv: ", "constant wheel speeds"],

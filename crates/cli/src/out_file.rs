@@ -80,16 +80,27 @@ impl OutFile {
     /// # Errors
     /// A missing folder, or a form that needs a place on earth which the map does not have.
     pub(crate) fn check(&self, terrain: &Terrain) -> Result<(), BadInput> {
+        self.check_of(terrain, &[TrackForm::Kml])
+    }
+
+    /// The same for contours, which GPX has no local metres for.
+    ///
+    /// # Errors
+    /// As [`OutFile::check`].
+    pub(crate) fn check_contours(&self, terrain: &Terrain) -> Result<(), BadInput> {
+        self.check_of(terrain, &[TrackForm::Kml, TrackForm::Gpx])
+    }
+
+    fn check_of(&self, terrain: &Terrain, placed: &[TrackForm]) -> Result<(), BadInput> {
         files::check(&self.path).map_err(|BadInput(why)| BadInput(format!("--out {why}")))?;
-        if self.form == Form::Tracks(TrackForm::Kml) {
-            terrain.earth().map(drop).map_err(|error| {
-                let path = self.path.display();
-                BadInput(format!(
-                    "--out {path}: KML is longitude and latitude, and {error}: give the map a `crs`, as EPSG:32632, or write .geojson or .csv"
-                ))
-            })?;
+        let path = self.path.display();
+        let needs_earth = placed.iter().any(|form| self.form == Form::Tracks(*form));
+        match terrain.earth() {
+            Err(error) if needs_earth => Err(BadInput(format!(
+                "--out {path}: this form is longitude and latitude, and {error}: give the map a `crs`, as EPSG:32632, or write .geojson or .csv"
+            ))),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Writes an answer, and says where to.

@@ -151,7 +151,7 @@ impl Scene<'_> {
         if !self.lines.is_empty() {
             let (elevation, power) = lower.split_vertically(frame::PROFILE_HEIGHT);
             profile::draw(&elevation, "Elevation along the path [m]", self, |p| p.z_m)?;
-            profile::draw(&power, "Power from the battery [W], averaged over 10 m", self, |p| p.power_w)?;
+            profile::draw(&power, "Power from the battery [W]", self, |p| p.power_w)?;
         }
         Ok(at)
     }

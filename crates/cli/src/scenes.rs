@@ -131,13 +131,25 @@ pub(crate) fn mission<'a>(terrain: &'a Terrain, robot: &Robot, found: &MissionAn
             format!("{success:.1} % of the draws keep the reserve"),
         ],
     };
-    let marks = found.stops.iter().map(|stop| Mark { place_m: [stop.x_m, stop.y_m], name: stop.name() });
     let headline = format!("{} over {} stops", energy(found.energy_j.p50), found.order.len());
     Scene {
         lines: vec![Line { entry, is_dashed: false, poses: Cow::Owned(poses) }],
-        marks: marks.collect(),
+        marks: stops(found),
         ..empty(terrain, robot, headline)
     }
+}
+
+/// The stops of a mission, those in one place under all their names.
+fn stops(found: &MissionAnswer) -> Vec<Mark> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for stop in &found.stops {
+        let place_m = [stop.x_m, stop.y_m];
+        match marks.iter_mut().find(|mark| mark.place_m == place_m) {
+            Some(mark) => mark.name = format!("{}, {}", mark.name, stop.name()),
+            None => marks.push(Mark { place_m, name: stop.name() }),
+        }
+    }
+    marks
 }
 
 /// The legs of a mission as one path: lengths and times go on from leg to leg.

@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         snap_radius_m: driving.snap_radius_m,
         timeout_s: driving.timeout_s,
     };
-    arguments.out.as_ref().map_or(Ok(()), |out| out.check(&terrain))?;
+    arguments.out.as_ref().map_or(Ok(()), |out| out.check_contours(&terrain))?;
     for path in [&arguments.tiff, &arguments.png].into_iter().flatten() {
         files::check(path)?;
     }

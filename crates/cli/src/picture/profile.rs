@@ -17,6 +17,10 @@ pub(super) fn draw<DB: DrawingBackend>(
 ) -> Drawn<(), DB> {
     let profiles: Vec<Vec<(f64, f64)>> =
         scene.lines.iter().map(|line| stretches(&line.poses, &value)).collect();
+    let caption = match scene.lines.iter().any(|line| is_long(&line.poses)) {
+        true => format!("{caption}, averaged over {STRETCH_M} m"),
+        false => caption.to_owned(),
+    };
     let points = || profiles.iter().flatten();
     let longest_m = points().map(|p| p.0).fold(1.0, f64::max);
     let (low, high) = points().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p.1), h.max(p.1)));
@@ -52,8 +56,11 @@ fn label(value: f64, span: f64) -> String {
     if span >= 6.0 { whole(&value) } else { format!("{value:.1}") }
 }
 
-/// Time-weighted means over stretches of the path, at their middle. A path of one stretch or less has its values at its poses.
+/// Time-weighted means over stretches of the path, at their middle; values at the poses of a path that is too short for them.
 fn stretches(poses: &[PoseAnswer], value: &impl Fn(&PoseAnswer) -> f64) -> Vec<(f64, f64)> {
+    if !is_long(poses) {
+        return poses.iter().skip(1).map(|pose| (pose.distance_m, value(pose))).collect();
+    }
     let mut line = Vec::new();
     let (mut from_m, mut sum, mut time_s) = (0.0, 0.0, 0.0);
     for [before, now] in poses.array_windows() {
@@ -65,8 +72,11 @@ fn stretches(poses: &[PoseAnswer], value: &impl Fn(&PoseAnswer) -> f64) -> Vec<(
             (from_m, sum, time_s) = (now.distance_m, 0.0, 0.0);
         }
     }
-    if line.len() < 2 {
-        return poses.iter().skip(1).map(|pose| (pose.distance_m, value(pose))).collect();
-    }
     line
+}
+
+/// Whether a path has stretches enough to show how a quantity goes along it.
+fn is_long(poses: &[PoseAnswer]) -> bool {
+    const LEAST_STRETCHES: f64 = 5.0;
+    poses.last().is_some_and(|last| last.distance_m >= LEAST_STRETCHES * STRETCH_M)
 }
