@@ -1,5 +1,7 @@
 //! The guide that the service shows is whole, needs nothing from elsewhere, and its links lead somewhere.
 
+#![allow(clippy::unwrap_used)]
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,

@@ -1,5 +1,7 @@
 //! Sentences of the README and the guide are short enough to be read once.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 
 use joulepath_tests::file;
