@@ -1,5 +1,6 @@
-//! Has the page embedded anew when its files change.
+//! Has the page and the guide embedded anew when their files change.
 
 fn main() {
     println!("cargo::rerun-if-changed=ui/dist");
+    println!("cargo::rerun-if-changed=../../docs");
 }

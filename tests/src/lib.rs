@@ -7,6 +7,7 @@ pub mod extremes;
 pub mod folder_store;
 pub mod form;
 pub mod kills;
+pub mod published;
 pub mod s3;
 
 use std::{

@@ -18,6 +18,7 @@ mod engine;
 mod exchange;
 mod form;
 mod geojson;
+mod guide;
 mod hosts;
 mod job;
 mod job_records;

@@ -17,8 +17,8 @@ use crate::{
     layers::{layered, needs_token},
     problem::{Problem, ProblemType},
     routes::{
-        alternatives, calibrate, compare, diagnose, earth, health, jobs, map_areas, maps, matrix, metrics,
-        mission, page, plan, range, reachable, recordings, robots, status,
+        alternatives, calibrate, compare, diagnose, earth, guide, health, jobs, map_areas, maps, matrix,
+        metrics, mission, page, plan, range, reachable, recordings, robots, status,
     },
     schemas,
 };
@@ -104,6 +104,7 @@ pub fn router(engine: Engine, access: &Access) -> Router {
         .merge(page::routes(access))
         .merge(page::settings(access).route_layer(from_fn_with_state(access.tokens.clone(), needs_token)))
         .merge(schemas::routes())
+        .merge(guide::routes())
         .merge(reference)
         .route(
             "/openapi.json",

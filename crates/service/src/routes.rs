@@ -5,6 +5,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod diagnose;
 pub mod earth;
+pub(crate) mod guide;
 pub mod health;
 pub mod jobs;
 pub mod map_areas;
