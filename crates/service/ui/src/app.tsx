@@ -1,5 +1,6 @@
 /** The frame of the page: its name, its tabs, and what screen readers hear. */
 import { announcement } from "./announce";
+import { CalibrateTab } from "./calibrate/calibrate_tab";
 import { DiagnoseTab } from "./diagnose/diagnose_tab";
 import { PlanTab } from "./plan/plan_tab";
 import { RobotsTab } from "./robots/robots_tab";
@@ -40,6 +41,7 @@ export function App() {
       <main id="main" tabIndex={-1}>
         {tab.value === "plan" && <PlanTab />}
         {tab.value === "robots" && <RobotsTab />}
+        {tab.value === "calibrate" && <CalibrateTab />}
         {tab.value === "diagnose" && <DiagnoseTab />}
       </main>
       <p class="unseen" role="status" aria-live="polite">

@@ -2,10 +2,12 @@
 import { render } from "preact";
 import { App } from "./app";
 import { followAreas } from "./areas/changes";
-import { followJobs } from "./diagnose/state";
+import { followCalibration } from "./calibrate/state";
+import { followDiagnosis } from "./diagnose/state";
 import { followEarth } from "./map/earth";
 import { keepLink, readLink } from "./plan/link";
 import { followMap, loadAll } from "./plan/load";
+import { followMission } from "./plan/mission";
 import { followReach } from "./plan/reach";
 import { followQuestion } from "./plan/replan";
 import "uplot/dist/uPlot.min.css";
@@ -19,6 +21,7 @@ import "./style/plan.css";
 import "./style/robots.css";
 import "./style/diagnose.css";
 import "./style/report.css";
+import "./style/columns.css";
 
 readLink();
 followMap();
@@ -26,7 +29,9 @@ followAreas();
 followEarth();
 followQuestion();
 followReach();
-followJobs();
+followMission();
+followDiagnosis();
+followCalibration();
 keepLink();
 addEventListener("hashchange", () => {
   readLink();

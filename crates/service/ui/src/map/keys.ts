@@ -7,6 +7,7 @@ import * as state from "../plan/state";
 import { cursor } from "./cursor";
 import { onMap, placeWords, setEnd, settle, turn } from "./ends";
 import { pointer } from "./pointed";
+import { addStop } from "./stops";
 import { fitted, toPixel, zoomed, type Size, type View } from "./view";
 
 const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -31,7 +32,7 @@ export function press(event: KeyboardEvent, view: View, size: Size, show: (view:
     settle(end);
   };
   const acts: Record<string, () => void> = {
-    Enter: () => place(state.tool.value === "start" ? "start" : "goal"),
+    Enter: () => (state.tool.value === "stops" ? addStop({ ...at }) : place(state.tool.value === "start" ? "start" : "goal")),
     s: () => place("start"),
     g: () => place("goal"),
     "[": () => turn("start", 1),

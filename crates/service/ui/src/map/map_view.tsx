@@ -8,10 +8,13 @@ import { drawAreas, drawDraft } from "../areas/draw";
 import { AREA_KEYS } from "../areas/keys";
 import { AreasLegend } from "../areas/legend";
 import * as areas from "../areas/state";
+import { backdrops, focusedPath, followedPaths } from "../plan/shown_paths";
 import * as state from "../plan/state";
 import { color, theme } from "../theme";
 import { poseAt } from "./along";
 import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
+import { markers } from "./markers";
+import { ReachLegend } from "./reach_legend";
 import { cursor } from "./cursor";
 import { Coordinates } from "./coordinates";
 import { earth } from "./earth";
@@ -81,7 +84,7 @@ function drawPictures(canvas: HTMLCanvasElement): void {
 
 function drawOver(canvas: HTMLCanvasElement): void {
   const context = sized(canvas);
-  const [shown, plans] = [view.value, state.comparison.value];
+  const [shown, followed] = [view.value, focusedPath.value];
   void theme.value;
   if (!context || !shown) return;
   const scene: Scene = { context, view: shown, size: size.value, color };
@@ -89,10 +92,9 @@ function drawOver(canvas: HTMLCanvasElement): void {
   const shapes = areas.areas.value.map((area, i) => (preview && i === selected ? { ...area, geometry: preview } : area));
   drawAreas(scene, shapes, areas.isEditing.value ? selected : null);
   drawContours(scene, state.contours.value);
-  if (plans) drawPaths(scene, plans, state.former.value, state.focus.value);
-  if (state.goal.value) drawEnd(scene, state.goal.value, "G");
-  if (state.start.value) drawEnd(scene, state.start.value, "S");
-  const pose = plans && state.along_m.value !== null ? poseAt(plans[state.focus.value].poses, state.along_m.value) : null;
+  drawPaths(scene, backdrops.value, followedPaths.value);
+  for (const { place, letter } of markers.value) drawEnd(scene, place, letter);
+  const pose = followed && state.along_m.value !== null ? poseAt(followed.poses, state.along_m.value) : null;
   if (pose) drawRobot(scene, pose);
   if (areas.isEditing.value && areas.corners.value.length > 0) {
     drawDraft(scene, areas.corners.value, areas.nextKind.value, cursor.value ?? pointedAt.value);
@@ -157,6 +159,7 @@ export function MapView() {
   const hint = useComputed(() => {
     if (state.tool.value === "areas") return areaHint();
     if (state.tool.value === "start") return "Click where the robot starts; drag to set its heading";
+    if (state.tool.value === "stops") return state.stops.value.length === 0 ? "Click each place to visit" : "";
     return state.tool.value === "goal" ? "Click where it is to go" : "";
   });
   const onKey = (event: KeyboardEvent) => {
@@ -207,6 +210,7 @@ export function MapView() {
       <div class="map-foot">
         <div class="map-legends">
           <AreasLegend />
+          <ReachLegend />
           {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
         </div>
         <div class="map-where">

@@ -1,6 +1,7 @@
 /** The question as part of the page's address, so that a link shows the same. */
 import { effect } from "@preact/signals";
 import type { Place } from "../api/plans";
+import * as calibrate from "../calibrate/state";
 import { job } from "../diagnose/state";
 import { tab, type Tab, TABS } from "../tab";
 import * as state from "./state";
@@ -37,6 +38,11 @@ export function readLink(): void {
   state.formerId.value = said.get("former");
   state.start.value = place(said.get("start")) ?? state.start.value;
   state.goal.value = place(said.get("goal")) ?? state.goal.value;
+  state.stops.value = (said.get("stops") ?? "").split(";").flatMap((text) => place(text || null) ?? []);
+  state.journey.value = said.has("stops") ? "stops" : "goal";
+  state.returnsHome.value = said.has("return");
+  const range = said.get("range");
+  state.rangeKind.value = range === "there" || range === "return" ? range : null;
   state.speed_mps.value = number(said.get("speed_mps"));
   state.payload_kg.value = number(said.get("payload_kg")) ?? 0;
   state.charge.value = number(said.get("charge")) ?? 1;
@@ -49,8 +55,11 @@ export function readLink(): void {
   state.is3d.value = said.has("3d");
   state.hasTiles.value = said.has("tiles");
   const reach = said.get("reach");
-  state.reach.value = reach === "outward" || reach === "out-and-back" ? reach : null;
-  if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
+  state.reach.value = reach === "outward" || reach === "homeward" || reach === "out-and-back" ? reach : null;
+  if (state.start.value && state.journey.value === "stops") state.tool.value = "stops";
+  else if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
+  const calibration = said.get("calibration");
+  if (calibration && calibration !== calibrate.job.value?.id) calibrate.job.value = { id: calibration, state: "queued" };
   if (said.has("job")) job.value = { id: said.get("job") ?? "", state: "queued" };
 }
 
@@ -62,6 +71,9 @@ function link(): string {
   say("former", state.formerId.value);
   say("start", state.start.value && written(state.start.value));
   say("goal", state.goal.value && written(state.goal.value));
+  if (state.journey.value === "stops") said.set("stops", state.stops.value.map(written).join(";"));
+  if (state.returnsHome.value) said.set("return", "");
+  say("range", state.rangeKind.value);
   say("speed_mps", state.speed_mps.value !== null ? rounded(state.speed_mps.value) : null);
   say("payload_kg", state.payload_kg.value ? rounded(state.payload_kg.value) : null);
   say("charge", state.charge.value < 1 ? rounded(state.charge.value) : null);
@@ -73,9 +85,11 @@ function link(): string {
   if (state.hasTiles.value) said.set("tiles", "");
   say("reach", state.reach.value);
   say("job", job.value?.id);
+  say("calibration", calibrate.job.value?.id);
   const query = said
     .toString()
     .replaceAll("%2C", ",")
+    .replaceAll("%3B", ";")
     .replace(/=(?=&|$)/g, "");
   return `#${tab.value}${query ? `?${query}` : ""}`;
 }

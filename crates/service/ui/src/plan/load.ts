@@ -32,7 +32,7 @@ export async function loadAll(): Promise<void> {
     if (!isKnown && state.mapId.value) {
       const detail = `The link shows a map (${state.mapId.value}) that this service does not have. Drop its file here, or choose another.`;
       loadProblem.value = problemOf(new Error(detail));
-      [state.mapId.value, state.start.value, state.goal.value] = [null, null, null];
+      [state.mapId.value, state.start.value, state.goal.value, state.stops.value] = [null, null, null, []];
     }
     state.mapId.value ??= maps[0]?.id ?? null;
   } catch (thrown) {
@@ -44,6 +44,7 @@ export async function loadAll(): Promise<void> {
 export function chooseMap(id: string): void {
   if (id === state.mapId.value) return;
   state.start.value = state.goal.value = null;
+  state.stops.value = [];
   state.tool.value = "start";
   state.problem.value = null;
   state.mapId.value = id;

@@ -50,7 +50,7 @@ export function MapBar() {
         choose={(tool) => (state.tool.value = tool)}
         options={[
           { value: "start", name: "Start" },
-          { value: "goal", name: "Goal" },
+          state.journey.value === "stops" ? { value: "stops", name: "Stop" } : { value: "goal", name: "Goal" },
           { value: "move", name: "Move" },
           { value: "areas", name: "Areas" },
         ]}
@@ -73,6 +73,7 @@ export function MapBar() {
         >
           <option value="">No contours</option>
           <option value="outward">Reach from start</option>
+          <option value="homeward">Reach to start</option>
           <option value="out-and-back">Reach and back</option>
         </select>
       )}
