@@ -1,12 +1,15 @@
 /** Puts the page together and starts it. */
 import { render } from "preact";
 import { App } from "./app";
+import { listenForHelp } from "./help";
 import { followAreas } from "./areas/changes";
+import { isEditing } from "./areas/state";
 import { followCalibration } from "./calibrate/state";
 import { followDiagnosis } from "./diagnose/state";
 import { followEarth } from "./map/earth";
 import { keepLink, readLink } from "./plan/link";
-import { followMap, loadAll } from "./plan/load";
+import { listenForUndo } from "./plan/history";
+import { followMap, isAllKnown, loadAll } from "./plan/load";
 import { followMission } from "./plan/mission";
 import { followReach } from "./plan/reach";
 import { followQuestion } from "./plan/replan";
@@ -33,9 +36,11 @@ followMission();
 followDiagnosis();
 followCalibration();
 keepLink();
+listenForHelp();
+listenForUndo(() => isEditing.value);
 addEventListener("hashchange", () => {
   readLink();
-  void loadAll();
+  if (!isAllKnown()) void loadAll();
 });
 void loadAll();
 

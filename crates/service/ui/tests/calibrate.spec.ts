@@ -1,4 +1,4 @@
-import { answered, checkAccessible, expect, openSample, picture, test } from "./service";
+import { answered, checkAccessible, expect, openSample, picture, test, PHONE_TOO } from "./service";
 
 const { readFileSync } = process.getBuiltinModule("node:fs");
 
@@ -35,42 +35,43 @@ function oddly(path: string): string {
   return [HEADER.join(";"), ...lines].join("\n");
 }
 
-test("from odd CSV files to a corrected plan: columns are picked once, the robot is fitted, and plans stand side by side", async ({
-  page,
-  service,
-}, info) => {
-  const world = { terrain: { rolling: { grade: 0.04 } }, robot_seed: 11 };
-  const files = [1, 2].map((seed) => ({
-    name: `tag-${seed}.csv`,
-    mimeType: "text/csv",
-    buffer: Buffer.from(oddly(service.simulate(`drive-${seed}`, { ...world, seed }, { kind: "rich", duration_s: 300, seed: 6 + seed }))),
-  }));
-  await openSample(page, service);
-  await page.getByRole("button", { name: "Calibrate" }).click();
-  await page.locator(".recordings input[type=file]").setInputFiles(files);
-  const picker = page.getByRole("region", { name: "Columns of the log" }).first();
-  await expect(picker.getByLabel(`${HEADER[2]} is`)).toHaveValue("v_left_mps");
-  await expect(picker.getByLabel(`Unit of ${HEADER[2]}`)).toHaveValue("rad/s");
-  await expect(picker.getByLabel(`${HEADER[3]} is`)).toHaveValue("power_w");
-  await expect(picker.getByLabel("Wheel radius")).toHaveValue(String(WHEEL_RADIUS_M));
-  await picker.getByLabel(`${HEADER[3]} is`).selectOption("");
-  await expect(picker.getByRole("status")).toContainText("Say which column is the power");
-  await expect(picker.getByRole("button", { name: "Read with these columns" })).toBeDisabled();
-  await picker.getByLabel(`${HEADER[3]} is`).selectOption("Battery power");
-  await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("kW");
-  await picture(page, `columns-${info.project.name}`);
-  await checkAccessible(page, "columns");
-  await picker.getByRole("button", { name: "Read with these columns" }).click();
-  // The other file has the same columns, and is read with them too.
-  await expect(page.getByText("3,000")).toHaveCount(2);
-  await page.locator(".diagnose-start").getByRole("button", { name: "Calibrate" }).click();
-  await expect(page.locator(".calibration .verdict")).toBeVisible({ timeout: 120_000 });
-  await expect(page.getByRole("region", { name: "Skill" })).toContainText("R², one-second averages");
-  await expect(page.getByRole("region", { name: "Parameters", exact: true })).toContainText("mu skid");
-  await picture(page, `calibrated-${info.project.name}`);
-  await checkAccessible(page, "calibration");
-  await expect.poll(() => page.url()).toContain("calibration=");
-  await page.getByRole("button", { name: "Save the fitted robot and plan with it" }).click();
-  await answered(page);
-  await expect(page.getByRole("row", { name: /^Before correction/ })).toBeVisible();
-});
+test(
+  "from odd CSV files to a corrected plan: columns are picked once, the robot is fitted, and plans stand side by side",
+  PHONE_TOO,
+  async ({ page, service }, info) => {
+    const world = { terrain: { rolling: { grade: 0.04 } }, robot_seed: 11 };
+    const files = [1, 2].map((seed) => ({
+      name: `tag-${seed}.csv`,
+      mimeType: "text/csv",
+      buffer: Buffer.from(oddly(service.simulate(`drive-${seed}`, { ...world, seed }, { kind: "rich", duration_s: 300, seed: 6 + seed }))),
+    }));
+    await openSample(page, service);
+    await page.getByRole("button", { name: "Calibrate" }).click();
+    await page.locator(".recordings input[type=file]").setInputFiles(files);
+    const picker = page.getByRole("region", { name: "Columns of the log" }).first();
+    await expect(picker.getByLabel(`${HEADER[2]} is`)).toHaveValue("v_left_mps");
+    await expect(picker.getByLabel(`Unit of ${HEADER[2]}`)).toHaveValue("rad/s");
+    await expect(picker.getByLabel(`${HEADER[3]} is`)).toHaveValue("power_w");
+    await expect(picker.getByLabel("Wheel radius")).toHaveValue(String(WHEEL_RADIUS_M));
+    await picker.getByLabel(`${HEADER[3]} is`).selectOption("");
+    await expect(picker.getByRole("status")).toContainText("Say which column is the power");
+    await expect(picker.getByRole("button", { name: "Read with these columns" })).toBeDisabled();
+    await picker.getByLabel(`${HEADER[3]} is`).selectOption("Battery power");
+    await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("kW");
+    await picture(page, `columns-${info.project.name}`);
+    await checkAccessible(page, "columns");
+    await picker.getByRole("button", { name: "Read with these columns" }).click();
+    // The other file has the same columns, and is read with them too.
+    await expect(page.getByText("3,000")).toHaveCount(2);
+    await page.locator(".diagnose-start").getByRole("button", { name: "Calibrate" }).click();
+    await expect(page.locator(".calibration .verdict")).toBeVisible({ timeout: 120_000 });
+    await expect(page.getByRole("region", { name: "Skill" })).toContainText("R², one-second averages");
+    await expect(page.getByRole("region", { name: "Parameters", exact: true })).toContainText("mu skid");
+    await picture(page, `calibrated-${info.project.name}`);
+    await checkAccessible(page, "calibration");
+    await expect.poll(() => page.url()).toContain("calibration=");
+    await page.getByRole("button", { name: "Save the fitted robot and plan with it" }).click();
+    await answered(page);
+    await expect(page.getByRole("row", { name: /^Before correction/ })).toBeVisible();
+  },
+);

@@ -101,15 +101,17 @@ function Row({ column: { name, cells }, pick, isLooked, look, set }: RowProps) {
         </select>
       </td>
       <td>
-        {units.length > 0 && (
-          <select aria-label={`Unit of ${name}`} value={pick.unit} onChange={(event) => set({ unit: event.currentTarget.value })}>
-            {units.map((unit) => (
-              <option key={unit} value={unit}>
-                {unit}
-              </option>
-            ))}
-          </select>
-        )}
+        {pick.channel === "t_s" && cells.some(isDate)
+          ? "dates"
+          : units.length > 0 && (
+              <select aria-label={`Unit of ${name}`} value={pick.unit} onChange={(event) => set({ unit: event.currentTarget.value })}>
+                {units.map((unit) => (
+                  <option key={unit} value={unit}>
+                    {unit}
+                  </option>
+                ))}
+              </select>
+            )}
       </td>
       <td>
         {pick.channel && pick.channel !== "t_s" && units.length > 0 && (

@@ -78,9 +78,10 @@ function Stored({ role }: { role: Role }) {
   return (
     <select class="stored" aria-label={`A stored recording as ${role}`} value="" onChange={(event) => choose(event.currentTarget.value)}>
       <option value="">or a stored one…</option>
-      {others.map(({ id, rows, format, bytes: size }) => (
+      {others.map(({ id, runs, rows, format, bytes: size }) => (
         <option key={id} value={id}>
-          {format} · {rows.toLocaleString("en")} rows · {bytes(size)} · {id.slice(0, 6)}
+          {runs.slice(0, 2).join(", ")}
+          {runs.length > 2 ? ", …" : ""} · {format} · {rows.toLocaleString("en")} rows · {bytes(size)}
         </option>
       ))}
     </select>

@@ -1,6 +1,7 @@
 /** Mouse and touch on the map: place ends, drag them, turn them, pan, zoom, and point at paths. */
 import { moved, pressed, released, type AreaPress } from "../areas/gestures";
 import { preview } from "../areas/state";
+import { points } from "../plan/measure";
 import { followedPaths } from "../plan/shown_paths";
 import * as state from "../plan/state";
 import { nearest } from "./along";
@@ -25,6 +26,7 @@ type Doing =
   | { kind: "pinch"; apart: number }
   | { kind: "stop"; index: number }
   | { kind: "new-stop"; from: Point }
+  | { kind: "point"; from: Point }
   | AreaPress;
 
 /** Pixels within which something is hit; fingers are wider than pointers. */
@@ -68,7 +70,7 @@ export function listen(board: Board, signal: AbortSignal): void {
     else if (doing.kind === "pinch") doing.apart = pinch(board, view, fingers, doing.apart);
     else if (doing.kind === "corner" || doing.kind === "drag") doing = moved(doing, point) ? { kind: "pan" } : doing;
     else if (doing.kind === "stop") moveStop(doing.index, toMetres(view, size, point));
-    else if (doing.kind === "new-stop") doing = isFar(doing.from, point) ? { kind: "pan" } : doing;
+    else if (doing.kind === "new-stop" || doing.kind === "point") doing = isFar(doing.from, point) ? { kind: "pan" } : doing;
     else if (doing.kind === "pan") board.show(panned(view, point.x - last.x, point.y - last.y));
     else drag(view, size, point, doing);
     last = point;
@@ -79,7 +81,11 @@ export function listen(board: Board, signal: AbortSignal): void {
     if (doing?.kind === "move" || doing?.kind === "turn") settle(doing.end);
     if (doing?.kind === "corner" || doing?.kind === "drag") endArea(event, doing);
     const view = board.view();
-    if (doing?.kind === "new-stop" && view && event.type === "pointerup") addStop(toMetres(view, board.size(), doing.from));
+    if ((doing?.kind === "new-stop" || doing?.kind === "point") && view && event.type === "pointerup") {
+      const place = toMetres(view, board.size(), doing.from);
+      if (doing.kind === "point") points.value = [...points.value, [place.x_m, place.y_m]];
+      else addStop(place);
+    }
     doing = null;
     state.isDragging.value = false;
   };
@@ -113,6 +119,7 @@ function begun(board: Board, view: View, event: PointerEvent, point: Point): Doi
     const press = { view, size, point, within: reach(event) };
     return (event.button === 0 && pressed(press)) || { kind: "pan" };
   }
+  if (placing === "measure" && event.button === 0) return { kind: "point", from: point };
   const isMission = state.journey.value === "stops";
   for (const end of isMission ? (["start"] as const) : (["start", "goal"] as const)) {
     const place = state[end].value;
@@ -128,8 +135,8 @@ function begun(board: Board, view: View, event: PointerEvent, point: Point): Doi
   const stop = isMission ? state.stops.value.findIndex(({ x_m, y_m }) => near(toPixel(view, size, x_m, y_m))) : -1;
   if (stop >= 0 && placing !== "start") return { kind: "stop", index: stop };
   if (placing === "move" || event.button === 1) return { kind: "pan" };
-  if (placing === "stops") return { kind: "new-stop", from: point };
   if (placing === "measure") return { kind: "pan" };
+  if (placing === "stops") return { kind: "new-stop", from: point };
   setEnd(placing, toMetres(view, size, point));
   return { kind: "turn", end: placing, isPlacing: true };
 }

@@ -14,6 +14,8 @@ import { color, theme } from "../theme";
 import { poseAt } from "./along";
 import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
 import { markers } from "./markers";
+import { drawMeasure } from "./draw_measure";
+import { measured, points } from "../plan/measure";
 import { ReachLegend } from "./reach_legend";
 import { cursor } from "./cursor";
 import { Coordinates } from "./coordinates";
@@ -99,6 +101,7 @@ function drawOver(canvas: HTMLCanvasElement): void {
   if (areas.isEditing.value && areas.corners.value.length > 0) {
     drawDraft(scene, areas.corners.value, areas.nextKind.value, cursor.value ?? pointedAt.value);
   }
+  if (state.tool.value === "measure") drawMeasure(scene, points.value, cursor.value ?? pointedAt.value);
   if (cursor.value) drawCrosshair(scene, cursor.value);
 }
 
@@ -158,6 +161,7 @@ export function MapView() {
 
   const hint = useComputed(() => {
     if (state.tool.value === "areas") return areaHint();
+    if (state.tool.value === "measure") return measured.value;
     if (state.tool.value === "start") return "Click where the robot starts; drag to set its heading";
     if (state.tool.value === "stops") return state.stops.value.length === 0 ? "Click each place to visit" : "";
     return state.tool.value === "goal" ? "Click where it is to go" : "";

@@ -1,4 +1,5 @@
 /** Which map, how it is drawn, and what a click on it does. */
+import { isEditing } from "../areas/state";
 import { metres } from "../format";
 import type { MapSummary } from "../api/maps";
 import type { ReachKind } from "../api/reachable";
@@ -6,7 +7,8 @@ import { earth } from "../map/earth";
 import { tileSource } from "../map/tiles";
 import { Choice } from "../widgets/choice";
 import { MAP_ENDINGS } from "./first_map";
-import { addMap, chooseMap } from "./load";
+import { canRedo, canUndo, redo, undo } from "./history";
+import { addMap, addSample, chooseMap, SAMPLE_NAME } from "./load";
 import { ReadingOptions } from "./reading_options";
 import * as state from "./state";
 
@@ -17,18 +19,25 @@ function title({ id, name, rows, columns, cell_size_m, elevation_range_m: [low, 
   return name ? `${name} · ${extent}` : `${extent} · ${id.slice(0, 6)}`;
 }
 
+/** The choice of the sample map, which is no map's id. */
+const SAMPLE = "sample";
+
 export function MapBar() {
   const hasSurfaces = (state.map.value?.surfaces.length ?? 0) > 0;
   return (
     <div class="map-bar">
       <label class="field map-choice">
         <span class="unseen">Map</span>
-        <select value={state.mapId.value ?? ""} onChange={(event) => chooseMap(event.currentTarget.value)}>
+        <select
+          value={state.mapId.value ?? ""}
+          onChange={(event) => (event.currentTarget.value === SAMPLE ? void addSample() : chooseMap(event.currentTarget.value))}
+        >
           {state.maps.value?.map((map) => (
             <option key={map.id} value={map.id}>
               {title(map)}
             </option>
           ))}
+          {!state.maps.value?.some(({ name }) => name === SAMPLE_NAME) && <option value={SAMPLE}>Sample map of Minnesota</option>}
         </select>
       </label>
       <label class="button file">
@@ -44,6 +53,16 @@ export function MapBar() {
         Add map…
       </label>
       <ReadingOptions />
+      {!isEditing.value && (
+        <div class="choice" role="group" aria-label="Steps">
+          <button type="button" aria-label="Step back" title="Undo the last change (Ctrl+Z)" disabled={!canUndo.value} onClick={undo}>
+            ↶
+          </button>
+          <button type="button" aria-label="Step forward" title="Do it again (Ctrl+Shift+Z)" disabled={!canRedo.value} onClick={redo}>
+            ↷
+          </button>
+        </div>
+      )}
       <Choice
         label="A click sets"
         value={state.tool.value}
@@ -53,6 +72,7 @@ export function MapBar() {
           state.journey.value === "stops" ? { value: "stops", name: "Stop" } : { value: "goal", name: "Goal" },
           { value: "move", name: "Move" },
           { value: "areas", name: "Areas" },
+          { value: "measure", name: "Measure" },
         ]}
       />
       <Choice

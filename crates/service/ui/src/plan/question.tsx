@@ -75,7 +75,6 @@ function RobotChoice() {
   const choose = (id: string) => {
     state.robotId.value = id;
     state.formerId.value = null;
-    state.surface.value = null;
   };
   return <RobotSelect label="Robot" value={state.robotId.value} choose={choose} />;
 }
@@ -88,7 +87,7 @@ function Ground() {
     <label class="field">
       <span>{isNamed ? "Ground the map leaves open" : "Ground"}</span>
       <select
-        value={state.surface.value ?? robot.default_surface}
+        value={state.surface.value !== null && state.surface.value in robot.surfaces ? state.surface.value : robot.default_surface}
         onChange={(event) => {
           const name = event.currentTarget.value;
           state.surface.value = name === robot.default_surface ? null : name;

@@ -25,6 +25,10 @@ export const robot = computed(() => robots.value?.find(({ id }) => id === robotI
 /** The robot before a correction was accepted: its path is shown beside. */
 export const formerId = signal<string | null>(null);
 
+export const formerRobot = computed(() => robots.value?.find(({ id }) => id === formerId.value) ?? null);
+/** Whether the robot beside is the same one before a diagnosis or a calibration. */
+export const isCorrection = computed(() => / (corrected|calibrated)$/.test(robot.value?.robot.name ?? ""));
+
 export const start = signal<Place | null>(null);
 export const goal = signal<Place | null>(null);
 export const journey = signal<Journey>("goal");

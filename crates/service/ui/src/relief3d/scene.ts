@@ -21,8 +21,11 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Cells } from "../api/maps";
 import type { Pose } from "../api/plans";
+import type { Contour } from "../api/reachable";
 import { STYLE } from "../map/draw";
+import type { Marker } from "../map/markers";
 import type { Backdrop, ShownPath } from "../plan/shown_paths";
+import { addContours, addMarkers, clearOverlays, type Ground } from "./overlays";
 
 /** Most cells along a side of the mesh. */
 const MESH_SIDE = 400;
@@ -30,6 +33,7 @@ const MESH_SIDE = 400;
 export interface Shown {
   ground: (cells: Cells, picture: HTMLCanvasElement, stretch: number, tint: string) => void;
   paths: (backdrops: Backdrop[], followed: ShownPath[], color: (name: string) => string) => void;
+  overlays: (markers: Marker[], contours: Contour[], z_m: Ground["z_m"], color: (name: string) => string) => void;
   robot: (pose: Pose | null) => void;
   end: () => void;
 }
@@ -69,9 +73,10 @@ export function showRelief(element: HTMLElement): Shown | null {
   let isPlaced = false;
   const terrain = new Group();
   const lines = new Group();
+  const overlays = new Group();
   const robot = new Mesh(new ConeGeometry(0.028, 0.08, 4), new MeshLambertMaterial({ color: 0xffb000 }));
   robot.visible = false;
-  scene.add(terrain, lines, robot);
+  scene.add(terrain, lines, overlays, robot);
 
   return {
     ground(cells, picture, stretch, tint) {
@@ -102,6 +107,12 @@ export function showRelief(element: HTMLElement): Shown | null {
       followed.forEach((path, i) => add(path, i === followed.length - 1 ? 0.008 : 0.0045));
       draw();
     },
+    overlays(markers, contours, z_m, color) {
+      clearOverlays(overlays);
+      addContours(overlays, contours, { z_m, toScene }, color);
+      addMarkers(overlays, markers, { z_m, toScene }, color);
+      draw();
+    },
     robot(pose) {
       robot.visible = pose !== null;
       if (pose) {
@@ -116,6 +127,7 @@ export function showRelief(element: HTMLElement): Shown | null {
       controls.dispose();
       clear(terrain);
       clear(lines);
+      clearOverlays(overlays);
       renderer.dispose();
       renderer.domElement.remove();
     },
