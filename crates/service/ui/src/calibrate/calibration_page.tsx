@@ -2,6 +2,7 @@
 import { duration, percent, plain, power, quantity } from "../format";
 import { Fact } from "../diagnose/recordings";
 import { saveFile } from "../plan/downloads";
+import { Marked } from "../widgets/marked";
 import * as plan from "../plan/state";
 import { read } from "../robots/pointer";
 import { robotId } from "../diagnose/state";
@@ -38,7 +39,9 @@ export function CalibrationPage({ found }: { found: Calibration }) {
           <h3>Read this first</h3>
           <ul>
             {notes.map((note) => (
-              <li key={note}>{note}</li>
+              <li key={note}>
+                <Marked text={note} />
+              </li>
             ))}
           </ul>
         </section>
@@ -58,7 +61,9 @@ export function CalibrationPage({ found }: { found: Calibration }) {
         {coverage && coverage.total.left_out.length > 0 && (
           <ul class="warnings">
             {coverage.total.left_out.map(({ duration_s, reason }) => (
-              <li key={reason}>{`${plain(duration_s)} s left out: ${reason}`}</li>
+              <li key={reason}>
+                {plain(duration_s)} s left out: <Marked text={reason} />
+              </li>
             ))}
           </ul>
         )}
@@ -91,7 +96,9 @@ export function CalibrationPage({ found }: { found: Calibration }) {
 /** The last note compares the file before with the file as it is now. */
 function sentence({ notes, held_out: heldOut }: Calibration): string {
   const compared = notes.find((note) => note.startsWith("the robot file as it was"));
-  if (compared) return compared.charAt(0).toUpperCase() + compared.slice(1) + ".";
+  // What follows is about noise, and stands among the notes.
+  const [before = ""] = compared?.split(";") ?? [];
+  if (before) return before.charAt(0).toUpperCase() + before.slice(1) + ".";
   return heldOut?.second_r2 === undefined
     ? "The robot is fitted to the drives."
     : `The fitted robot explains ${percent(heldOut.second_r2, 1)} of the variance of power in drives that it was not fitted to.`;

@@ -26,6 +26,7 @@ import { Legend } from "./legend";
 import { NorthArrow } from "./north_arrow";
 import { pointedAt } from "./pointed";
 import { relief, scaleOf, slopesOf } from "./relief";
+import { Steps } from "./steps";
 import { ScaleBar } from "./scale_bar";
 import { size, view } from "./shown";
 import { drawTiles, missing, tileSource } from "./tiles";
@@ -198,6 +199,7 @@ export function MapView() {
         {areas.isEditing.value ? AREA_KEYS : KEYS}
       </p>
       {hint.value && <p class="map-hint">{hint}</p>}
+      <Steps />
       <DraftButtons />
       <div class="map-zoom" role="group" aria-label="Zoom">
         <button type="button" aria-label="Zoom in" title="Zoom in" onClick={zoom(1.5)}>

@@ -42,7 +42,8 @@ export function keep(hash: string): void {
   const changed = changes(location.hash, hash);
   const now_ms = performance.now();
   const isSame = changed === changedLast && now_ms - changedAt_ms < ONE_STEP_MS;
-  const isFirst = history.state === null;
+  // A page without a map has nothing to come back to.
+  const isFirst = history.state === null || !location.hash.includes("map=");
   [changedLast, changedAt_ms] = [changed, now_ms];
   if (isFirst || isSame) history.replaceState({ depth: depthOf(history.state) }, "", hash);
   else {

@@ -1,5 +1,4 @@
 /** Which map, how it is drawn, and what a click on it does. */
-import { isEditing } from "../areas/state";
 import { metres } from "../format";
 import type { MapSummary } from "../api/maps";
 import type { ReachKind } from "../api/reachable";
@@ -7,7 +6,6 @@ import { earth } from "../map/earth";
 import { tileSource } from "../map/tiles";
 import { Choice } from "../widgets/choice";
 import { MAP_ENDINGS } from "./first_map";
-import { canRedo, canUndo, redo, undo } from "./history";
 import { addMap, addSample, chooseMap, SAMPLE_NAME } from "./load";
 import { ReadingOptions } from "./reading_options";
 import * as state from "./state";
@@ -53,16 +51,6 @@ export function MapBar() {
         Add map…
       </label>
       <ReadingOptions />
-      {!isEditing.value && (
-        <div class="choice" role="group" aria-label="Steps">
-          <button type="button" aria-label="Step back" title="Undo the last change (Ctrl+Z)" disabled={!canUndo.value} onClick={undo}>
-            ↶
-          </button>
-          <button type="button" aria-label="Step forward" title="Do it again (Ctrl+Shift+Z)" disabled={!canRedo.value} onClick={redo}>
-            ↷
-          </button>
-        </div>
-      )}
       <Choice
         label="A click sets"
         value={state.tool.value}

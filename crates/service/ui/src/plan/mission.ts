@@ -1,10 +1,11 @@
 /** Asks for the mission over several stops, and whether the battery lasts to one goal, whenever the question changes. */
-import { batch, effect, signal, type Signal } from "@preact/signals";
+import { batch, computed, effect, signal, type Signal } from "@preact/signals";
 import { announce } from "../announce";
 import { isAbort } from "../api/ask";
 import { findRange, planMission, type MissionQuestion, type RangeQuestion } from "../api/missions";
 import { problemOf, type Problem } from "../api/problem";
 import { duration, energy, percent } from "../format";
+import { USUAL_RESERVE } from "./charge";
 import { mayReverse } from "./steering";
 import * as state from "./state";
 
@@ -12,10 +13,20 @@ export const isMissionPlanning = signal(false);
 export const isRangePlanning = signal(false);
 export const rangeProblem = signal<Problem | null>(null);
 
+/** Why nothing can be driven on the charge, in words; null where something can. */
+export const chargeFault = computed<string | null>(() => {
+  const battery = state.robot.value?.robot.battery;
+  if (!battery) return "The robot's file has no battery: add one under Robots.";
+  const reserve = battery.reserve_fraction ?? USUAL_RESERVE;
+  return state.charge.value > reserve
+    ? null
+    : `The charge of ${percent(state.charge.value)} is not above the reserve of ${percent(reserve)} that must stay.`;
+});
+
 /** The parts that mission and range have in common; null while something is missing. */
 function onACharge() {
   const [map, known, start, speed_mps] = [state.map.value, state.robot.value, state.start.value, state.speed_mps.value];
-  if (!map || !known || !start) return null;
+  if (!map || !known || !start || chargeFault.value) return null;
   return {
     map_id: map.id,
     robot: state.loaded(known),

@@ -4,7 +4,7 @@ import { clock, duration, energy, metres, percent } from "../format";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
 import { Warnings } from "../widgets/warnings";
-import { isMissionPlanning } from "./mission";
+import { chargeFault, isMissionPlanning } from "./mission";
 import * as state from "./state";
 
 export function MissionAnswer() {
@@ -41,11 +41,13 @@ function NoMission() {
   }
   return (
     <section class="answer answer-none" aria-label="Mission">
-      <p class="answer-big">Where to?</p>
+      <p class="answer-big">{chargeFault.value ? "Too little charge" : "Where to?"}</p>
       <p>
-        {state.start.value
-          ? "Click two or more places to visit, or one and return to the start; the order is found."
-          : "Click the map where the robot starts."}
+        {chargeFault.value
+          ? chargeFault.value
+          : state.start.value
+            ? "Click two or more places to visit, or one and return to the start; the order is found."
+            : "Click the map where the robot starts."}
       </p>
     </section>
   );

@@ -7,7 +7,7 @@ import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
 import { Swatch } from "./answer";
 import { Lasts } from "./mission_answer";
-import { isRangePlanning, rangeProblem } from "./mission";
+import { chargeFault, isRangePlanning, rangeProblem } from "./mission";
 import * as state from "./state";
 
 export function RangeCard() {
@@ -29,6 +29,7 @@ export function RangeCard() {
       </div>
       {isRangePlanning.value && <Progress label="Driving it a thousand times" share={null} />}
       {rangeProblem.value && state.rangeKind.value && <ProblemCard problem={rangeProblem.value} />}
+      {chargeFault.value && state.rangeKind.value && <p role="status">{chargeFault.value}</p>}
       <Found />
     </section>
   );

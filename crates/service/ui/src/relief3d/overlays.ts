@@ -23,11 +23,11 @@ export interface Ground {
 
 type Color = (name: string) => string;
 
-/** Side of a marker's picture [px], and of the marker in the scene, whose map is 2 long. */
+/** Side of a marker's picture [px], and of the marker on the screen at any distance, for the camera's field of view at a distance of one. */
 const PICTURE_PX = 96;
-const MARKER_SIZE = 0.11;
+const MARKER_SIZE = 0.045;
 /** Height of a marker's staff in the scene. */
-const STAFF = 0.12;
+const STAFF = 0.09;
 /** Contours lie so far above the ground that it does not hide them. */
 const ABOVE_GROUND = 0.006;
 
@@ -65,7 +65,7 @@ export function addMarkers(group: Group, markers: Marker[], { z_m, toScene }: Gr
     const foot = toScene(place.x_m, place.y_m, height_m);
     const head = foot.clone().add(new Vector3(0, STAFF, 0));
     group.add(new Line(new BufferGeometry().setFromPoints([foot, head]), new LineBasicMaterial({ color: color("end-ink") })));
-    const sprite = new Sprite(new SpriteMaterial({ map: disc(letter, color), depthTest: false }));
+    const sprite = new Sprite(new SpriteMaterial({ map: disc(letter, color), depthTest: false, sizeAttenuation: false }));
     sprite.position.copy(head);
     sprite.scale.setScalar(MARKER_SIZE);
     group.add(sprite);

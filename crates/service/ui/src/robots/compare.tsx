@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import type { Robot } from "../api/robots";
 import * as plan from "../plan/state";
 import { tab } from "../tab";
-import { plain, words } from "../format";
+import { words } from "../format";
 import { GROUPS, surfaceFields } from "./fields";
 import { read } from "./pointer";
 import { knownShown } from "./state";
@@ -30,7 +30,7 @@ export function differences(one: Robot, other: Robot): Difference[] {
   );
 }
 
-const shown = (value: unknown) => (typeof value === "number" ? plain(value) : "–");
+const shown = (value: unknown) => (typeof value === "number" ? String(Number(value.toPrecision(6))).replace("-", "\u2212") : "–");
 
 export function Compare({ robot }: { robot: Robot }) {
   const others = plan.robots.value?.filter(({ id }) => id !== knownShown.value?.id) ?? [];

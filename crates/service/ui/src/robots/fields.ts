@@ -137,4 +137,4 @@ export function complaint({ least, greatest, isOptional, unit }: Field, value: u
 export const bounds = ({ least, greatest, unit }: Field) =>
   Number.isFinite(least) ? `${short(least)} to ${short(greatest)}${unit ? ` ${unit}` : ""}` : "";
 
-const short = (value: number) => String(Number(value.toPrecision(3)));
+const short = (value: number) => String(Number(value.toPrecision(3))).replace("-", "\u2212");
