@@ -75,3 +75,19 @@ test(
     await expect(page.getByRole("row", { name: /^Before correction/ })).toBeVisible();
   },
 );
+
+test("a refusal for doubtful recordings names the doubts, and they may be overruled", async ({ page, service }) => {
+  const id = "b".repeat(32);
+  const detail =
+    "no robot was written, because the recording is doubtful: power is negative; if it is right, calibrate `--despite power_sign`";
+  const problem = { type: "invalid-recording", title: "The recording cannot be used", status: 400, detail };
+  const failed = { id, kind: "calibrate", state: "failed", progress: { step: "fitting", fraction: null }, problem };
+  await page.route(`**/v1/jobs/${id}`, (route) => route.fulfill({ json: failed }));
+  await page.route("**/v1/calibrate", (route) => route.fulfill({ status: 202, json: failed }));
+  await page.goto(`${service.url}/#calibrate?calibration=${id}`);
+  await expect(page.getByRole("alert")).toContainText("power is negative");
+  await expect(page.getByText("overrule the doubts: power_sign")).toBeVisible();
+  const asked = page.waitForRequest("**/v1/calibrate");
+  await page.getByRole("button", { name: "Calibrate despite them" }).click();
+  expect((await asked).postDataJSON()).toMatchObject({ despite: ["power_sign"] });
+});

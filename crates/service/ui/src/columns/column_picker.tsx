@@ -10,12 +10,14 @@ import { isDate, numberOf, type Column } from "./table";
 
 interface Props {
   columns: Column[];
+  /** Whether the service did not know them by their names. */
+  isUnknown: boolean;
   /** The robot whose wheels turned. */
   robotId: string;
   take: (map: RecordingMap) => void;
 }
 
-export function ColumnPicker({ columns, robotId, take }: Props) {
+export function ColumnPicker({ columns, isUnknown, robotId, take }: Props) {
   const robot = plan.robots.value?.find(({ id }) => id === robotId)?.robot;
   const [picks, setPicks] = useState(() => guessAll(columns));
   const [radius, setRadius] = useState(String(robot?.wheel_radius_m ?? ""));
@@ -36,6 +38,7 @@ export function ColumnPicker({ columns, robotId, take }: Props) {
   };
   return (
     <section class="columns" aria-label="Columns of the log">
+      {isUnknown && <p role="alert">The names of these columns do not say what they are.</p>}
       <p>Say what each column is. What is filled in already is a guess by its name and numbers.</p>
       <div class="table-scroll" tabIndex={0} role="region" aria-label="Columns">
         <table>

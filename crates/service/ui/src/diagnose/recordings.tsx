@@ -124,6 +124,7 @@ function Card({ one }: { one: Taken }) {
       {columns && (isPicking || isUnknown) && (
         <ColumnPicker
           columns={columns}
+          isUnknown={isUnknown}
           robotId={robotId.value ?? plan.robotId.value}
           take={(map) => {
             setPicking(false);
