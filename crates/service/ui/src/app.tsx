@@ -1,6 +1,8 @@
 /** The frame of the page: its name, its tabs, and what screen readers hear. */
 import { announcement } from "./announce";
+import { CalibrateTab } from "./calibrate/calibrate_tab";
 import { DiagnoseTab } from "./diagnose/diagnose_tab";
+import { Help, isHelpOpen } from "./help";
 import { PlanTab } from "./plan/plan_tab";
 import { RobotsTab } from "./robots/robots_tab";
 import { tab, TAB_NAMES, TABS } from "./tab";
@@ -17,7 +19,7 @@ export function App() {
       <header class="top">
         <h1>
           <Mark />
-          joulepath
+          <span>joulepath</span>
         </h1>
         <nav aria-label="Parts of the page">
           {TABS.map((name) => (
@@ -26,6 +28,9 @@ export function App() {
             </button>
           ))}
         </nav>
+        <button type="button" class="theme keys" aria-label="Keys" title="Keys (?)" onClick={() => (isHelpOpen.value = true)}>
+          ?
+        </button>
         <button
           type="button"
           class="theme"
@@ -36,10 +41,12 @@ export function App() {
           {theme.value === "dark" ? "☀" : "☾"}
         </button>
       </header>
+      <Help />
       <TokenForm />
       <main id="main" tabIndex={-1}>
         {tab.value === "plan" && <PlanTab />}
         {tab.value === "robots" && <RobotsTab />}
+        {tab.value === "calibrate" && <CalibrateTab />}
         {tab.value === "diagnose" && <DiagnoseTab />}
       </main>
       <p class="unseen" role="status" aria-live="polite">

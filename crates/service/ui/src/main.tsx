@@ -1,11 +1,16 @@
 /** Puts the page together and starts it. */
 import { render } from "preact";
 import { App } from "./app";
+import { listenForHelp } from "./help";
 import { followAreas } from "./areas/changes";
-import { followJobs } from "./diagnose/state";
+import { isEditing } from "./areas/state";
+import { followCalibration } from "./calibrate/state";
+import { followDiagnosis } from "./diagnose/state";
 import { followEarth } from "./map/earth";
 import { keepLink, readLink } from "./plan/link";
-import { followMap, loadAll } from "./plan/load";
+import { listenForUndo } from "./plan/history";
+import { followMap, isAllKnown, loadAll } from "./plan/load";
+import { followMission } from "./plan/mission";
 import { followReach } from "./plan/reach";
 import { followQuestion } from "./plan/replan";
 import "uplot/dist/uPlot.min.css";
@@ -19,6 +24,7 @@ import "./style/plan.css";
 import "./style/robots.css";
 import "./style/diagnose.css";
 import "./style/report.css";
+import "./style/columns.css";
 
 readLink();
 followMap();
@@ -26,11 +32,15 @@ followAreas();
 followEarth();
 followQuestion();
 followReach();
-followJobs();
+followMission();
+followDiagnosis();
+followCalibration();
 keepLink();
+listenForHelp();
+listenForUndo(() => isEditing.value);
 addEventListener("hashchange", () => {
   readLink();
-  void loadAll();
+  if (!isAllKnown()) void loadAll();
 });
 void loadAll();
 

@@ -1,5 +1,5 @@
 import type { Page, TestInfo } from "@playwright/test";
-import { answered, checkAccessible, energyOf, expect, openSample, paths, picture, test, type Service } from "./service";
+import { answered, checkAccessible, energyOf, expect, openSample, paths, picture, test, type Service, PHONE_TOO } from "./service";
 
 interface Comparison {
   energy: { energy_j: number; distance_m: number; poses: { x_m: number; y_m: number }[] };
@@ -46,7 +46,7 @@ const WALL: [number, number][] = [
 
 const openTools = (page: Page) => page.getByRole("button", { name: "Areas", exact: true }).click();
 
-test("a keep-out that is drawn leads the path around it, and undo brings the old one back", async ({ page, service }, info) => {
+test("a keep-out that is drawn leads the path around it, and undo brings the old one back", PHONE_TOO, async ({ page, service }, info) => {
   const first = planned(page);
   await openSample(page, service);
   const before = await first;
@@ -70,7 +70,6 @@ test("a keep-out that is drawn leads the path around it, and undo brings the old
 });
 
 test("an area is selected, dragged, changed and deleted", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "a mouse drags here; fingers do the same");
   await openSample(page, service);
   await openTools(page);
   await draw(page, info, [
@@ -167,8 +166,7 @@ test("areas of every kind are read from a file, told apart, and saved to one", a
   await expect(page.locator(".areas-legend")).toContainText("Keep out");
 });
 
-test("an area is drawn and moved by keys alone", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "phones have no keys");
+test("an area is drawn and moved by keys alone", async ({ page, service }) => {
   await service.storeMap("maps/yard.json", "application/json");
   await page.goto(service.url);
   await openTools(page);

@@ -1,4 +1,4 @@
-import { checkAccessible, expect, openSample, paths, picture, repositoryFile, Service, test } from "./service";
+import { checkAccessible, expect, paths, picture, repositoryFile, Service, test, PHONE_TOO } from "./service";
 import { serveTiles } from "./tile_server";
 
 /** Places of the sample map, 12 m from its corners: x and y of EPSG:26915, and longitude and latitude by pyproj 3.7. */
@@ -11,8 +11,7 @@ const CORNERS: { m: [number, number]; deg: [number, number] }[] = [
 const MIDDLE_M = [429452.313370022, 5150685.424942633] as const;
 const EDGE_M = 400;
 
-test("the place under the pointer and under the cursor is told in degrees and metres", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "phones have neither");
+test("the place under the pointer and under the cursor is told in degrees and metres", async ({ page, service }) => {
   await service.storeMap("maps/minnesota.tif", "image/tiff");
   await page.goto(service.url);
   await expect(page.locator(".north-arrow")).toHaveAttribute("aria-label", "Grid north, 0.7° from true north");
@@ -31,8 +30,7 @@ test("the place under the pointer and under the cursor is told in degrees and me
   await expect(page.locator("p[role=status]")).toHaveText(/46\.50604\d°.N, 93\.919\d+°.W/);
 });
 
-test("a pointer that rests where a map appears is told its place, and another one when the view moves", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "phones have no pointer that rests");
+test("a pointer that rests where a map appears is told its place, and another one when the view moves", async ({ page, service }) => {
   await service.storeMap("maps/minnesota.tif", "image/tiff");
   let come = () => {};
   const wanted = new Promise<void>((resolve) => (come = resolve));
@@ -102,90 +100,87 @@ test("a map keeps the name of its file, and is read as the options say", async (
   expect(listed.maps.map(({ name }) => name)).toEqual(["yard.json"]);
 });
 
-test("the path is saved as KML of a map that lies on earth", async ({ page, service }) => {
-  await openSample(page, service);
-  const saving = page.waitForEvent("download");
-  await page.getByRole("button", { name: "KML", exact: true }).click();
-  const { readFileSync } = process.getBuiltinModule("node:fs");
-  const text = readFileSync((await (await saving).path())!, "utf8");
-  expect(text).toMatch(/<coordinates>-93\.92\d+,46\.50\d+,\d/);
-});
-
-test("tiles lie where they belong to a pixel, and only their host is asked beside the service", async ({ page, context }, info) => {
-  const tiles = await serveTiles(CORNERS.map(({ deg }) => deg));
-  const service = await Service.start("--tiles", tiles.url, "--tiles-attribution", "Dots of this test");
-  try {
-    await service.storeMap("maps/minnesota.tif", "image/tiff");
-    const outside: string[] = [];
-    const origin = new URL(tiles.url).origin;
-    page.on("request", (request) => [service.url, origin].some((own) => request.url().startsWith(own)) || outside.push(request.url()));
-    const complaints: string[] = [];
-    page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
-    await page.goto(service.url);
-    const button = page.getByRole("button", { name: "Tiles" });
-    await expect(button).toBeVisible();
-    expect(tiles.asked, "nobody is asked before they are wanted").toEqual([]);
-    await button.click();
-    await expect(page.getByText("Dots of this test")).toBeVisible();
-    // What lies over the corners of the map is not looked at.
-    const show = (visibility: string) =>
-      page.evaluate((visibility) => {
-        const over = ".map-foot, .map-zoom, .map-hint, .north-arrow";
-        for (const element of document.querySelectorAll<HTMLElement>(over)) element.style.visibility = visibility;
-      }, visibility);
-    await show("hidden");
-    const canvas = page.locator(".map-tiles");
-    const box = (await canvas.boundingBox())!;
-    const px_per_m = (0.96 * Math.min(box.width, box.height)) / EDGE_M;
-    const expected = CORNERS.map(({ m: [x_m, y_m] }) => ({
-      x: box.width / 2 + (x_m - MIDDLE_M[0]) * px_per_m,
-      y: box.height / 2 - (y_m - MIDDLE_M[1]) * px_per_m,
-    }));
-    // The page may not read pixels of others, but a picture of it shows them.
-    const reader = await context.newPage();
-    const dots = async () => {
-      const shot = (await page.screenshot({ scale: "css", clip: box })).toString("base64");
-      return reader.evaluate(
-        async ([data, near]) => {
-          const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-          const sheet = new OffscreenCanvas(image.width, image.height).getContext("2d")!;
-          sheet.drawImage(image, 0, 0);
-          const REACH = 14;
-          return near.map(({ x, y }) => {
-            let [weight, sumX, sumY] = [0, 0, 0];
-            const [left, top] = [Math.round(x) - REACH, Math.round(y) - REACH];
-            const { data: pixels } = sheet.getImageData(left, top, 2 * REACH, 2 * REACH);
-            for (let i = 0; i < pixels.length; i += 4) {
-              // How red it is beside the green ground.
-              const red = Math.max(0, pixels[i]! - pixels[i + 1]!) / 255;
-              weight += red;
-              sumX += red * (left + ((i / 4) % (2 * REACH)) + 0.5);
-              sumY += red * (top + Math.floor(i / 4 / (2 * REACH)) + 0.5);
-            }
-            return weight > 4 ? Math.hypot(sumX / weight - x, sumY / weight - y) : Infinity;
-          });
-        },
-        [shot, expected] as const,
-      );
-    };
-    await expect.poll(async () => Math.max(...(await dots()))).toBeLessThan(1);
-    console.log(`    dots are off by ${(await dots()).map((off) => off.toFixed(2)).join(", ")} px`);
-    await reader.close();
-    await show("");
-    await checkAccessible(page, "with tiles");
-    await picture(page, `tiles-${info.project.name}`);
-    expect(outside).toEqual([]);
-    expect(complaints).toEqual([]);
-  } finally {
-    service.end();
-    tiles.server.close();
-  }
-});
+test(
+  "tiles lie where they belong to a pixel, and only their host is asked beside the service",
+  PHONE_TOO,
+  async ({ page, context }, info) => {
+    const tiles = await serveTiles(CORNERS.map(({ deg }) => deg));
+    const service = await Service.start("--tiles", tiles.url, "--tiles-attribution", "Dots of this test");
+    try {
+      await service.storeMap("maps/minnesota.tif", "image/tiff");
+      const outside: string[] = [];
+      const origin = new URL(tiles.url).origin;
+      page.on("request", (request) => [service.url, origin].some((own) => request.url().startsWith(own)) || outside.push(request.url()));
+      const complaints: string[] = [];
+      page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+      await page.goto(service.url);
+      const button = page.getByRole("button", { name: "Tiles" });
+      await expect(button).toBeVisible();
+      expect(tiles.asked, "nobody is asked before they are wanted").toEqual([]);
+      await button.click();
+      await expect(page.getByText("Dots of this test")).toBeVisible();
+      // What lies over the corners of the map is not looked at.
+      const show = (visibility: string) =>
+        page.evaluate((visibility) => {
+          const over = ".map-foot, .map-zoom, .map-hint, .north-arrow";
+          for (const element of document.querySelectorAll<HTMLElement>(over)) element.style.visibility = visibility;
+        }, visibility);
+      await show("hidden");
+      const canvas = page.locator(".map-tiles");
+      const box = (await canvas.boundingBox())!;
+      const px_per_m = (0.96 * Math.min(box.width, box.height)) / EDGE_M;
+      const expected = CORNERS.map(({ m: [x_m, y_m] }) => ({
+        x: box.width / 2 + (x_m - MIDDLE_M[0]) * px_per_m,
+        y: box.height / 2 - (y_m - MIDDLE_M[1]) * px_per_m,
+      }));
+      // The page may not read pixels of others, but a picture of it shows them.
+      const reader = await context.newPage();
+      const dots = async () => {
+        const shot = (await page.screenshot({ scale: "css", clip: box })).toString("base64");
+        return reader.evaluate(
+          async ([data, near]) => {
+            const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+            const sheet = new OffscreenCanvas(image.width, image.height).getContext("2d")!;
+            sheet.drawImage(image, 0, 0);
+            const REACH = 14;
+            return near.map(({ x, y }) => {
+              let [weight, sumX, sumY] = [0, 0, 0];
+              const [left, top] = [Math.round(x) - REACH, Math.round(y) - REACH];
+              const { data: pixels } = sheet.getImageData(left, top, 2 * REACH, 2 * REACH);
+              for (let i = 0; i < pixels.length; i += 4) {
+                // How red it is beside the green ground.
+                const red = Math.max(0, pixels[i]! - pixels[i + 1]!) / 255;
+                weight += red;
+                sumX += red * (left + ((i / 4) % (2 * REACH)) + 0.5);
+                sumY += red * (top + Math.floor(i / 4 / (2 * REACH)) + 0.5);
+              }
+              return weight > 4 ? Math.hypot(sumX / weight - x, sumY / weight - y) : Infinity;
+            });
+          },
+          [shot, expected] as const,
+        );
+      };
+      await expect.poll(async () => Math.max(...(await dots()))).toBeLessThan(1);
+      console.log(`    dots are off by ${(await dots()).map((off) => off.toFixed(2)).join(", ")} px`);
+      await reader.close();
+      await show("");
+      await checkAccessible(page, "with tiles");
+      await picture(page, `tiles-${info.project.name}`);
+      expect(outside).toEqual([]);
+      expect(complaints).toEqual([]);
+    } finally {
+      service.end();
+      tiles.server.close();
+    }
+  },
+);
 
 test("without a place for tiles there is no choice of them, and the policy allows no other host", async ({ page, service }) => {
   const policy = (await fetch(service.url)).headers.get("content-security-policy");
   expect(policy).toContain("default-src 'self';");
   expect(policy).not.toContain("img-src");
-  await openSample(page, service);
+  await service.storeMap("maps/minnesota.tif", "image/tiff");
+  await page.goto(service.url);
+  await expect(page.locator(".north-arrow")).toHaveAttribute("aria-label", /Grid north/);
   await expect(page.getByRole("button", { name: "Tiles" })).toHaveCount(0);
 });

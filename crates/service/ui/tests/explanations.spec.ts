@@ -1,6 +1,6 @@
 /** The report of a diagnosis with a posterior, as a service would tell it. */
 import type { Page } from "@playwright/test";
-import { checkAccessible, expect, picture, test, type Service } from "./service";
+import { checkAccessible, expect, picture, test, type Service, PHONE_TOO } from "./service";
 
 const JOB = "a".repeat(64);
 
@@ -59,7 +59,7 @@ async function open(page: Page, service: Service, result: object): Promise<void>
   await expect(page.locator(".verdict")).toBeVisible();
 }
 
-test("the file's error comes first, then the explanations, then the findings", async ({ page, service }, info) => {
+test("the file's error comes first, then the explanations, then the findings", PHONE_TOO, async ({ page, service }, info) => {
   await open(page, service, report);
   await expect(page.locator(".report h3")).toHaveText([
     "Error of the robot file",
@@ -77,21 +77,25 @@ test("the file's error comes first, then the explanations, then the findings", a
   await picture(page, `posterior-${info.project.name}`);
 });
 
-test("bars of explanations have names and values, in light and dark colours and on narrow screens", async ({ page, service }) => {
-  await open(page, service, report);
-  const meter = (name: string) => page.getByRole("meter", { name, exact: true });
-  await expect(meter("payload")).toHaveAttribute("aria-valuenow", "90");
-  await expect(meter("payload")).toHaveAttribute("aria-valuetext", /^90\.0\s%, odds 45 : 1$/);
-  await expect(meter("payload + something outside the list")).toHaveAttribute("aria-valuenow", "5");
-  await expect(meter("nothing missing")).toHaveAttribute("aria-valuetext", /^2\.0\s%$/);
-  await expect(meter("all others together")).toHaveAttribute("aria-valuenow", "3");
-  await expect(page.getByText(/against the runner-up, .*: 18 : 1\./)).toBeVisible();
-  await checkAccessible(page, "posterior");
-  await page.getByRole("button", { name: "Switch to dark colours" }).click();
-  await checkAccessible(page, "posterior in dark colours");
-  await page.setViewportSize({ width: 320, height: 700 });
-  await checkAccessible(page, "posterior on a narrow screen");
-});
+test(
+  "bars of explanations have names and values, in light and dark colours and on narrow screens",
+  PHONE_TOO,
+  async ({ page, service }) => {
+    await open(page, service, report);
+    const meter = (name: string) => page.getByRole("meter", { name, exact: true });
+    await expect(meter("payload")).toHaveAttribute("aria-valuenow", "90");
+    await expect(meter("payload")).toHaveAttribute("aria-valuetext", /^90\.0\s%, odds 45 : 1$/);
+    await expect(meter("payload + something outside the list")).toHaveAttribute("aria-valuenow", "5");
+    await expect(meter("nothing missing")).toHaveAttribute("aria-valuetext", /^2\.0\s%$/);
+    await expect(meter("all others together")).toHaveAttribute("aria-valuenow", "3");
+    await expect(page.getByText(/against the runner-up, .*: 18 : 1\./)).toBeVisible();
+    await checkAccessible(page, "posterior");
+    await page.getByRole("button", { name: "Switch to dark colours" }).click();
+    await checkAccessible(page, "posterior in dark colours");
+    await page.setViewportSize({ width: 320, height: 700 });
+    await checkAccessible(page, "posterior on a narrow screen");
+  },
+);
 
 test("a report without a posterior is shown without bars", async ({ page, service }) => {
   const { file: _file, probability: _probability, explanations: _explanations, ...without } = report;

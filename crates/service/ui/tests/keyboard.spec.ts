@@ -1,7 +1,6 @@
 import { answered, expect, test } from "./service";
 
-test("start and goal can be set, and the start turned, by keys alone", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "phones have no keys");
+test("start and goal can be set, and the start turned, by keys alone", async ({ page, service }) => {
   await service.storeMap("maps/yard.json", "application/json");
   await page.goto(service.url);
   const map = page.getByRole("application", { name: /Map/ });
@@ -19,8 +18,7 @@ test("start and goal can be set, and the start turned, by keys alone", async ({ 
   await page.keyboard.press("0");
 });
 
-test("every tab is reached and left by keys, with a focus that is seen", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "phones have no keys");
+test("every tab is reached and left by keys, with a focus that is seen", async ({ page, service }) => {
   await page.goto(service.url);
   await page.keyboard.press("Tab");
   await expect(page.getByText("Skip to the content")).toBeFocused();

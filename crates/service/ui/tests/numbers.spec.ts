@@ -1,3 +1,8 @@
+import { doubtsOf } from "../src/calibrate/doubts";
+import { guessAll } from "../src/columns/guess";
+import { columnsOf } from "../src/columns/table";
+import { readNumber } from "../src/number";
+import { joined } from "../src/plan/shown_paths";
 import { eventsOf } from "../src/api/events";
 import { poseAt } from "../src/map/along";
 import { between, partsOf } from "../src/map/lattice";
@@ -6,6 +11,7 @@ import { roundLength_m, toMetres, toPixel, zoomed } from "../src/map/view";
 import { energiesOf } from "../src/plan/reach";
 import { arrivalCharge } from "../src/plan/charge";
 import { readTyped } from "../src/plan/typed_place";
+import type { Mission } from "../src/api/missions";
 import type { Plan, Pose } from "../src/api/plans";
 import type { Robot } from "../src/api/robots";
 import { changed, read } from "../src/robots/pointer";
@@ -122,4 +128,56 @@ test("the arrow shows true north where that is more than a degree off the grid",
   expect(of(2.1).title).toBe("True north; the map's grid is turned 2.1° west of it");
   expect(of(-2.1).title).toContain("2.1° east");
   expect(northOf(null)).toEqual({ turn_deg: 0, title: "North by the map's y axis" });
+});
+
+test("columns are guessed by their names and sizes", () => {
+  const text =
+    '"Stamp (ns)","Left wheel","fr_rpm","Battery I [A]","Battery U [V]","IMU pitch","left_cmd","Note, again"\n' +
+    '1764338400103108789,9.1,80,0.383,31.34,-4.5,1,"a ""b"", c"\n';
+  const columns = columnsOf(text, false)!;
+  expect(columns.at(-1)).toEqual({ name: "Note, again", cells: ['a "b", c'] });
+  expect(guessAll(columns).map(({ channel, unit }) => [channel, unit])).toEqual([
+    ["t_s", "ns"],
+    ["v_left_mps", "rad/s"],
+    ["v_right_mps", "rpm"],
+    ["current_a", "A"],
+    ["voltage_v", "V"],
+    ["pitch_rad", "deg"],
+    [null, ""],
+    [null, ""],
+  ]);
+  const semicolons = columnsOf("t;v_left_mps;P_bat [kW]\n0,1;0,5;0,2\n0,2;0,5;0,2\n", true)!;
+  expect(semicolons.map(({ cells }) => cells)).toEqual([["0,1"], ["0,5"], ["0,2"]]);
+  expect(guessAll(semicolons).map(({ channel, unit }) => [channel, unit])).toEqual([
+    ["t_s", "s"],
+    ["v_left_mps", "m/s"],
+    ["power_w", "kW"],
+  ]);
+  expect(columnsOf("nothing", false)).toBeNull();
+});
+
+test("a refusal names the doubts that may be overruled", () => {
+  expect(doubtsOf("no robot was written; calibrate `--despite power_sign` `--despite held_out`")).toEqual(["power_sign", "held_out"]);
+  expect(doubtsOf("there are no rows")).toEqual([]);
+});
+
+test("numbers are read with points, commas and any minus, and what can be read in two ways is none", () => {
+  for (const [text, value] of [
+    ["95,5", 95.5],
+    [" 0.002 ", 0.002],
+    ["−3", -3],
+    [",5", 0.5],
+    ["1e-3", 0.001],
+  ] as const)
+    expect(readNumber(text), text).toBe(value);
+  for (const text of ["", "1.000,5", "1,000.5", "two", "5 m", "--2", "NaN", "Infinity"]) expect(readNumber(text), text).toBeNull();
+});
+
+test("the ways of a mission go on where the one before ends", () => {
+  const way = (count: number) =>
+    Array.from({ length: count }, (_, i) => ({ distance_m: 2 * i, energy_j: 10 * i, t_s: 4 * i, x_m: 0, y_m: 0, z_m: 0 }) as Pose);
+  const stop = (poses: Pose[]) => ({ poses }) as Mission["stops"][number];
+  const poses = joined({ stops: [stop([]), stop(way(3)), stop(way(2))] });
+  expect(poses.map(({ distance_m }) => distance_m)).toEqual([0, 2, 4, 4, 6]);
+  expect(poses.at(-1)).toMatchObject({ energy_j: 30, t_s: 12 });
 });

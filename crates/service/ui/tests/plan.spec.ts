@@ -1,6 +1,6 @@
-import { answered, colors, energyOf, expect, ground, openSample, paths, picture, press, repositoryFile, test } from "./service";
+import { answered, colors, energyOf, expect, ground, openSample, paths, picture, press, repositoryFile, test, PHONE_TOO } from "./service";
 
-test("the sample map is drawn and its three paths are compared at once", async ({ page, service }, info) => {
+test("the sample map is drawn and its three paths are compared at once", PHONE_TOO, async ({ page, service }, info) => {
   const outside: string[] = [];
   page.on(
     "request",
@@ -32,7 +32,7 @@ test("the first picture of a stored map comes without being asked for", async ({
   console.log(`    first picture after ${Math.round(performance.now() - begun)} ms`);
 });
 
-test("a map that is dropped is shown, and start and goal are what is pressed", async ({ page, service }) => {
+test("a map that is dropped is shown, and start and goal are what is pressed", PHONE_TOO, async ({ page, service }) => {
   await page.goto(service.url);
   await page.locator(".first-map input[type=file]").setInputFiles(repositoryFile("maps/yard.json"));
   await expect(page.getByText("Where to?")).toBeVisible();
@@ -46,7 +46,7 @@ test("a map that is dropped is shown, and start and goal are what is pressed", a
   await expect(page.getByText("sandy loam").first()).toBeVisible();
 });
 
-test("a slider that is dragged plans anew, and more payload takes more energy", async ({ page, service }) => {
+test("a slider that is dragged plans anew, more payload takes more energy, and too little charge is said", async ({ page, service }) => {
   await openSample(page, service);
   const before = await energyOf(page, "Energy-minimal");
   const slider = page.getByRole("slider", { name: "Payload" });
@@ -65,17 +65,12 @@ test("a slider that is dragged plans anew, and more payload takes more energy", 
   expect(await energyOf(page, "Energy-minimal")).toBeGreaterThan(1.2 * before);
   await slider.press("Home");
   await expect.poll(() => energyOf(page, "Energy-minimal")).toBeCloseTo(before, 5);
-});
-
-test("less charge than the path needs is said in words", async ({ page, service }) => {
-  await openSample(page, service);
   await expect(page.locator(".charge")).toHaveAttribute("data-fine", "true");
   await page.getByRole("slider", { name: "Charge" }).press("Home");
   await expect(page.getByText(/Below the reserve/)).toBeVisible();
 });
 
-test("pointing at a chart moves the robot on the map, and pointing at the path moves the charts", async ({ page, service }, info) => {
-  test.skip(info.project.name === "phone", "fingers use the slider along the path");
+test("pointing at a chart moves the robot on the map, and pointing at the path moves the charts", async ({ page, service }) => {
   await openSample(page, service);
   const before = await paths(page).screenshot();
   await page
@@ -92,7 +87,7 @@ test("pointing at a chart moves the robot on the map, and pointing at the path m
   await expect(page.locator(".chart-card b").nth(2)).not.toHaveText(power);
 });
 
-test("the slope layer and the third dimension are drawn", async ({ page, service }, info) => {
+test("the slope layer and the third dimension are drawn", PHONE_TOO, async ({ page, service }, info) => {
   await openSample(page, service);
   await page.getByRole("button", { name: "Slope" }).click();
   await expect(page.locator(".legend")).toContainText("≥");
@@ -117,20 +112,22 @@ test("the link shows the same again", async ({ page, service, context }) => {
   expect(await energyOf(second, "Energy-minimal")).toBe(before);
 });
 
-for (const [form, ending, begins] of [
-  ["JSON", "json", "{"],
-  ["GeoJSON", "geojson", "{"],
-  ["GPX", "gpx", "<?xml"],
-  ["KML", "kml", "<?xml"],
-  ["CSV", "csv", "x_m,y_m,z_m"],
-] as const) {
-  test(`the path is saved as ${form}`, async ({ page, service }) => {
-    await openSample(page, service);
+test("the path is saved in every form", async ({ page, service }) => {
+  await openSample(page, service);
+  for (const [form, ending, begins] of [
+    ["JSON", "json", "{"],
+    ["GeoJSON", "geojson", "{"],
+    ["GPX", "gpx", "<?xml"],
+    ["KML", "kml", "<?xml"],
+    ["CSV", "csv", "x_m,y_m,z_m"],
+  ] as const) {
     const saving = page.waitForEvent("download");
     await page.getByRole("button", { name: form, exact: true }).click();
     const saved = await saving;
     expect(saved.suggestedFilename()).toBe(`path-energy.${ending}`);
     const { readFileSync } = process.getBuiltinModule("node:fs");
-    expect(readFileSync((await saved.path())!, "utf8").startsWith(begins)).toBe(true);
-  });
-}
+    const text = readFileSync((await saved.path())!, "utf8");
+    expect(text.startsWith(begins), form).toBe(true);
+    if (form === "KML") expect(text, "of a map that lies on earth").toMatch(/<coordinates>-93\.92\d+,46\.50\d+,\d/);
+  }
+});

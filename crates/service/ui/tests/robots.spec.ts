@@ -1,22 +1,39 @@
-import { expect, picture, test } from "./service";
+import { checkAccessible, expect, picture, test, PHONE_TOO } from "./service";
 
-test("a parameter is changed, saved as a new robot, and planned with", async ({ page, service }, info) => {
+test("a parameter is changed, saved as a new robot, and planned with", PHONE_TOO, async ({ page, service }, info) => {
   await page.goto(`${service.url}/#robots`);
   await expect(page.getByLabel("Mass", { exact: true }).first()).toHaveValue("90");
   await picture(page, `robots-${info.project.name}`);
-  await page.getByLabel("Mass", { exact: true }).first().fill("112.5");
+  await expect(page.getByText("With everything on board; 0.1 to 20000 kg")).toBeVisible();
+  await page.getByLabel("Mass", { exact: true }).first().fill("112,5");
   await page.getByLabel("Name").fill("heavy");
   await page.getByRole("button", { name: "Save as new" }).click();
   await expect(page.getByRole("button", { name: /heavy.*stored/ })).toBeVisible();
   const { stored } = (await (await page.request.get(`${service.url}/v1/robots`)).json()) as { stored: { robot: { mass_kg: number } }[] };
   expect(stored[0]!.robot.mass_kg).toBe(112.5);
+  const comparison = page.getByRole("region", { name: "Compare robots" });
+  await comparison.getByLabel("Compare with").selectOption("husky-a200");
+  await expect(comparison.getByRole("row", { name: /Body: Mass/ })).toHaveText(/kg\s*112\.5\s*90$/);
+  await expect(comparison.getByRole("row")).toHaveCount(2);
+  await picture(page, `robots-compared-${info.project.name}`);
+  await checkAccessible(page, "robots compared");
   await page.getByRole("button", { name: "Plan with it" }).click();
   await expect.poll(() => page.url()).toContain("robot=");
+  await page.getByRole("button", { name: "Robots" }).click();
+  await page.getByRole("button", { name: "Delete" }).click();
+  await page.getByRole("button", { name: "Delete for good" }).click();
+  await expect(page.getByRole("button", { name: /heavy.*stored/ })).toHaveCount(0);
+  const left = (await (await page.request.get(`${service.url}/v1/robots`)).json()) as { stored?: unknown[] };
+  expect(left.stored ?? []).toEqual([]);
 });
 
 test("a value outside its range is said at its field, before and by the service", async ({ page, service }) => {
   await page.goto(`${service.url}/#robots`);
   const mass = page.getByLabel("Mass", { exact: true }).first();
+  await mass.fill("95;5");
+  await mass.blur();
+  await expect(mass, "what was typed stays").toHaveValue("95;5");
+  await expect(page.getByText("Give a number, as 95.5 or 95,5")).toBeVisible();
   await mass.fill("900000");
   await expect(mass).toHaveAttribute("aria-invalid", "true");
   await expect(page.getByText("Must lie between 0.1 and 20000 kg")).toBeVisible();

@@ -81,6 +81,9 @@ export const test = base.extend<{ service: Service }>({
   },
 });
 
+/** Tests that run at the width of a phone too: of what is laid out, pressed or drawn otherwise there. All others run once. */
+export const PHONE_TOO = { tag: "@phone" };
+
 /** How many colours a canvas shows, over a grid of its pixels: a blank one has one. */
 export function colors(canvas: Locator): Promise<number> {
   return canvas.evaluate((element: HTMLCanvasElement) => {

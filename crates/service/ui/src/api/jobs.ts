@@ -1,7 +1,8 @@
 /** Long work: started, followed by server-sent events, called off. */
+import { effect, type Signal } from "@preact/signals";
 import { ask, send } from "./ask";
 import { eventsOf } from "./events";
-import { Problem, type ProblemDocument } from "./problem";
+import { Problem, problemOf, type ProblemDocument } from "./problem";
 
 export interface Job<Result> {
   id: string;
@@ -11,6 +12,12 @@ export interface Job<Result> {
   result?: Result;
   problem?: ProblemDocument;
 }
+
+/** A job of which only the id may be known yet. */
+export type KnownJob<Result> = Partial<Job<Result>> & Pick<Job<Result>, "id" | "state">;
+
+export const startCalibration = <Result>(question: { robot: string; recordings: string[]; despite?: string[] }) =>
+  ask<Job<Result>>("/v1/calibrate", { json: question });
 
 export const startDiagnosis = <Result>(question: { robot: string; recordings: string[]; reference: string[] }) =>
   ask<Job<Result>>("/v1/diagnose", { json: question });
@@ -52,4 +59,37 @@ export function followJob<Result>(id: string, tell: (job: Job<Result>) => void, 
   };
   void follow();
   return () => controller.abort();
+}
+
+/** Begins to follow whichever job a signal holds, until it ends. */
+export function follow<Result>(
+  job: Signal<KnownJob<Result> | null>,
+  problem: Signal<Problem | null>,
+  done: (result: Result) => void,
+): void {
+  let followed = "";
+  let stop = () => {};
+  effect(() => {
+    const { id = "", state } = job.value ?? {};
+    if (id === followed || (state && state !== "queued" && state !== "running")) return;
+    stop();
+    followed = id;
+    if (!id) return;
+    const told = (now: Job<Result>) => {
+      if (job.peek()?.id === id) job.value = now;
+      if (now.state === "done" && now.result) done(now.result);
+    };
+    // The events of a job that is not there fail without a word; asking for it says why.
+    readJob<Result>(id).then(
+      (now) => {
+        told(now);
+        if (now.state === "queued" || now.state === "running")
+          stop = followJob<Result>(id, told, (thrown) => (problem.value = problemOf(thrown)));
+      },
+      (thrown) => {
+        problem.value = problemOf(thrown);
+        job.value = null;
+      },
+    );
+  });
 }

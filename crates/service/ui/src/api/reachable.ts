@@ -3,8 +3,8 @@ import { ask, type Asking } from "./ask";
 import type { Place } from "./plans";
 import type { Robot } from "./robots";
 
-/** From the start to everywhere, or there and back again. */
-export type ReachKind = "outward" | "out-and-back";
+/** From the start to everywhere, from everywhere to the start, or there and back again. */
+export type ReachKind = "outward" | "homeward" | "out-and-back";
 
 export interface ReachQuestion {
   map_id: string;

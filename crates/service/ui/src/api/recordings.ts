@@ -1,4 +1,5 @@
 /** Recordings and what reading them found. */
+import type { RecordingMap } from "../columns/recording_map";
 import { ask } from "./ask";
 import { recordingType, upload } from "./upload";
 
@@ -28,8 +29,9 @@ export type StoredRecording = RecordingSummary & { report: ReadingReport };
 export const listRecordings = async () => (await ask<{ recordings: RecordingSummary[] }>("/v1/recordings")).recordings;
 export const readRecording = (id: string) => ask<StoredRecording>(`/v1/recordings/${id}`);
 
-/** Stores a recording; its runs are called after the file where it does not name them itself. */
-export function storeRecording(file: File, tell: (share: number) => void): Promise<StoredRecording> {
+/** Stores a recording, read by a map where one is given; its runs are called after the file where it does not name them itself. */
+export function storeRecording(file: File, map: RecordingMap | undefined, tell: (share: number) => void): Promise<StoredRecording> {
   const name = file.name.replace(/\.[^.]*$/, "");
-  return upload<StoredRecording>(`/v1/recordings?name=${encodeURIComponent(name)}`, file, recordingType(file.name), tell);
+  const query = new URLSearchParams({ name, ...(map && { map: JSON.stringify(map) }) });
+  return upload<StoredRecording>(`/v1/recordings?${query}`, file, recordingType(file.name), tell);
 }

@@ -1,5 +1,5 @@
 /** Robots, as their files have them. */
-import { ask } from "./ask";
+import { ask, send } from "./ask";
 
 export interface Motor {
   k1_w_per_n2: number;
@@ -18,6 +18,7 @@ export interface Surface {
 export interface Robot {
   name: string;
   mass_kg: number;
+  wheel_radius_m?: number;
   max_wheel_speed_mps: number;
   motors: { left: Motor; right: Motor; [field: string]: unknown };
   battery?: { capacity_wh: number; nominal_voltage_v: number; reserve_fraction?: number };
@@ -46,4 +47,9 @@ export async function listRobots(): Promise<KnownRobot[]> {
 /** Stores a robot. */
 export async function storeRobot(robot: unknown): Promise<KnownRobot> {
   return { ...(await ask<{ id: string; robot: Robot }>("/v1/robots", { json: robot })), isStored: true };
+}
+
+/** Deletes a stored robot. */
+export async function deleteRobot(id: string): Promise<void> {
+  await send(`/v1/robots/${id}`, { method: "DELETE" });
 }

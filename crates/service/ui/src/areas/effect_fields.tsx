@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import type { AreaProperties } from "../api/areas";
 import { words } from "../format";
+import { readNumber } from "../number";
 import { setEffect, shownKind } from "./edit";
 import { KIND, KINDS, kindsOf, USUAL, type Kind } from "./effects";
 import * as state from "./state";
@@ -64,10 +65,9 @@ function NumberField({ kind, value }: { kind: Kind; value: AreaProperties[Kind] 
   if (!written) return null;
   const { label, unit, factor, about } = written;
   const take = (text: string) => {
-    const number = Number(text.trim().replace(",", ".").replace("−", "-"));
-    const isNumber = text.trim() !== "" && Number.isFinite(number);
-    setWrong(!isNumber);
-    if (isNumber) setEffect(kind, number / factor);
+    const number = readNumber(text);
+    setWrong(number === null);
+    if (number !== null) setEffect(kind, number / factor);
   };
   return (
     <label class="field area-number" title={about}>
@@ -80,6 +80,7 @@ function NumberField({ kind, value }: { kind: Kind; value: AreaProperties[Kind] 
         onChange={(event) => take(event.currentTarget.value)}
       />
       <span>{isWrong ? "no number" : unit}</span>
+      <small>{about}</small>
     </label>
   );
 }

@@ -1,8 +1,8 @@
 /** The Diagnose tab: recordings in, progress, report. */
 import { Problem } from "../api/problem";
 import { ProblemCard } from "../widgets/problem_card";
-import { Progress } from "../widgets/progress";
 import { RobotSelect } from "../widgets/robot_select";
+import { UnderWay } from "../widgets/under_way";
 import { Recordings } from "./recordings";
 import { ReportPage } from "./report_page";
 import { again, begin, cancel, idsOf, job, problem, robotId, taken } from "./state";
@@ -14,7 +14,14 @@ export function DiagnoseTab() {
     <div class="diagnose">
       {problem.value && <ProblemCard problem={problem.value} close={() => (problem.value = null)} />}
       {!now && <Ask />}
-      {now && (now.state === "queued" || now.state === "running") && <UnderWay />}
+      {now && (now.state === "queued" || now.state === "running") && (
+        <UnderWay
+          title="Diagnosing"
+          about="Every known mechanism is fitted to the drives beside the refitted robot and judged where it was not fitted."
+          job={now}
+          cancel={cancel}
+        />
+      )}
       {now?.state === "done" && now.result && <ReportPage report={now.result} />}
       {now?.state === "failed" && now.problem && <ProblemCard problem={new Problem(now.problem)} retry={again} />}
       {now?.state === "cancelled" && (
@@ -40,7 +47,7 @@ function Ask() {
           is.
         </p>
       </header>
-      <Recordings />
+      <Recordings roles={["suspect", "healthy"]} />
       <footer class="diagnose-start">
         <RobotSelect label="Robot that drove" value={robotId.value ?? plan.robotId.value} choose={(id) => (robotId.value = id)} />
         <button type="button" class="primary" disabled={!isReady} onClick={() => void begin()}>
@@ -59,24 +66,5 @@ function Ask() {
         </p>
       )}
     </>
-  );
-}
-
-/** The steps of a diagnosis in the order in which they come. */
-function UnderWay() {
-  const { progress } = job.value ?? {};
-  const step = progress?.step ?? "Asking for the job";
-  return (
-    <div class="under-way" role="status">
-      <h2>Diagnosing</h2>
-      <Progress label={step.charAt(0).toUpperCase() + step.slice(1)} share={progress?.fraction ?? null} />
-      <p>
-        Every known mechanism is fitted to the drives beside the refitted robot and judged where it was not fitted. You may leave this page
-        open, or come back by its link.
-      </p>
-      <button type="button" onClick={() => void cancel()}>
-        Call it off
-      </button>
-    </div>
   );
 }

@@ -32,7 +32,7 @@ export function FindingCard({ finding }: { finding: Finding }) {
         {finding.probability === undefined && (
           <Fact name="Chance of as much by accident" value={evidence.p_value < 1e-4 ? "below 1 in 10 000" : percent(evidence.p_value, 2)} />
         )}
-        <Fact name="Held-out gain" value={percent(evidence.held_out_gain)} />
+        <Fact name="Squared error removed, held out" value={gain(evidence.held_out_gain)} />
       </dl>
       {finding.indistinguishable_from.length > 0 && (
         <p class="else">
@@ -45,6 +45,9 @@ export function FindingCard({ finding }: { finding: Finding }) {
     </section>
   );
 }
+
+/** The share of squared errors that the findings take away. It cannot exceed one; below zero they add to the errors. */
+const gain = (share: number) => (share <= 0 ? "none" : percent(Math.min(share, 1)));
 
 /** When a finding acts. */
 function timeOf({ from_s, until_s, run }: Scope): string {
@@ -81,7 +84,7 @@ function Parameter({ name, value, unit, interval_95 }: Finding["parameters"][num
           </small>
         </>
       ) : (
-        <small class="interval-none">taken from a grid</small>
+        <small class="interval-none">the best of the values tried; no interval</small>
       )}
     </li>
   );

@@ -6,9 +6,14 @@ import { bytes, duration, plain, words } from "../format";
 import { DropZone } from "../widgets/drop_zone";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
-import { job, leave, problem, take, taken, takeStored, type Role, type Taken } from "./state";
+import { ColumnPicker } from "../columns/column_picker";
+import * as plan from "../plan/state";
+import { job, leave, problem, readAs, robotId, take, taken, takeStored, use, type Role, type Taken } from "./state";
 
-const ENDINGS = ".csv,.tsv,.parquet,.mcap,.db3,.bag";
+const ENDINGS = ".csv,.tsv,.txt,.gz,.zst,.parquet,.mcap,.db3,.bag,.ulg";
+
+/** The refusal of a file that has no column for what is needed. */
+const UNKNOWN_COLUMNS = /is missing; found:/;
 
 const POWER_FORMS: Record<string, string> = {
   sides: "both sides",
@@ -17,16 +22,29 @@ const POWER_FORMS: Record<string, string> = {
   motor_currents: "motor currents",
 };
 
-const ROLES: { role: Role; label: string; about: string }[] = [
-  { role: "suspect", label: "Drop the suspect drives here", about: "CSV, Parquet, MCAP, .db3 or .bag, two minutes of driving at least" },
-  { role: "healthy", label: "Drop healthy drives here", about: "Optional: the same robot when all was well. Makes it far sharper" },
+const ROLES: { role: Role; name: string; label: string; about: string }[] = [
+  {
+    role: "suspect",
+    name: "Suspect drives",
+    label: "Drop the suspect drives here",
+    about: "CSV, Parquet, MCAP, .db3 or .bag, two minutes of driving at least",
+  },
+  {
+    role: "healthy",
+    name: "Healthy drives",
+    label: "Drop healthy drives here",
+    about: "Optional: the same robot when all was well. Makes it far sharper",
+  },
 ];
 
-export function Recordings() {
+/** Drop zones for the given roles. Alone, the suspect drives are simply the drives. */
+export function Recordings({ roles }: { roles: Role[] }) {
+  const isAlone = roles.length === 1;
+  const shown = isAlone ? [{ ...ROLES[0]!, label: "Drop drives here", name: "Drives" }] : ROLES;
   return (
-    <div class="recordings">
-      {ROLES.map(({ role, label, about }) => (
-        <section key={role} aria-label={role === "suspect" ? "Suspect drives" : "Healthy drives"}>
+    <div class="recordings" data-alone={isAlone}>
+      {shown.map(({ role, label, about, name }) => (
+        <section key={role} aria-label={name}>
           <DropZone label={label} accept={ENDINGS} isMany take={(files) => take(files, role)}>
             <span>{about}</span>
           </DropZone>
@@ -60,9 +78,10 @@ function Stored({ role }: { role: Role }) {
   return (
     <select class="stored" aria-label={`A stored recording as ${role}`} value="" onChange={(event) => choose(event.currentTarget.value)}>
       <option value="">or a stored one…</option>
-      {others.map(({ id, rows, format, bytes: size }) => (
+      {others.map(({ id, runs, rows, format, bytes: size }) => (
         <option key={id} value={id}>
-          {format} · {rows.toLocaleString("en")} rows · {bytes(size)} · {id.slice(0, 6)}
+          {runs.slice(0, 2).join(", ")}
+          {runs.length > 2 ? ", …" : ""} · {format} · {rows.toLocaleString("en")} rows · {bytes(size)}
         </option>
       ))}
     </select>
@@ -70,20 +89,49 @@ function Stored({ role }: { role: Role }) {
 }
 
 function Card({ one }: { one: Taken }) {
+  const [isPicking, setPicking] = useState(false);
+  const { columns, problem: refusal, recording } = one;
+  // A file whose columns are not known is for whoever has it to explain.
+  const isUnknown = refusal !== undefined && UNKNOWN_COLUMNS.test(refusal.document.detail);
   return (
     <article class="recording">
       <header>
+        {recording && (
+          <input
+            type="checkbox"
+            aria-label={`Use ${one.name}`}
+            title="Use it"
+            checked={one.isUsed}
+            onChange={(event) => use(one.key, event.currentTarget.checked)}
+          />
+        )}
         <b>{one.name}</b>
         <small>{bytes(one.bytes)}</small>
         <button type="button" class="quiet" aria-label={`Leave ${one.name} out`} title="Leave it out" onClick={() => leave(one.key)}>
           ×
         </button>
       </header>
-      {one.problem && <ProblemCard problem={one.problem} />}
+      {refusal && !(isUnknown && columns) && <ProblemCard problem={refusal} />}
       {!one.problem && !one.recording && (
         <Progress label={one.share < 1 ? "Sending" : "Reading"} share={one.share < 1 ? one.share : null} />
       )}
-      {one.recording && <Reading report={one.recording.report} />}
+      {recording && <Reading report={recording.report} />}
+      {columns && (refusal || recording) && !isUnknown && !isPicking && (
+        <button type="button" onClick={() => setPicking(true)}>
+          Say what its columns are…
+        </button>
+      )}
+      {columns && (isPicking || isUnknown) && (
+        <ColumnPicker
+          columns={columns}
+          isUnknown={isUnknown}
+          robotId={robotId.value ?? plan.robotId.value}
+          take={(map) => {
+            setPicking(false);
+            readAs(one.key, map);
+          }}
+        />
+      )}
     </article>
   );
 }

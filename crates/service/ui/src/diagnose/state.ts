@@ -1,13 +1,13 @@
 /** Recordings at hand, the job under way, and its report. */
-import { effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import { announce } from "../announce";
-import { cancelJob, followJob, readJob, startDiagnosis, type Job } from "../api/jobs";
-import { Problem, problemOf } from "../api/problem";
+import { cancelJob, follow, startDiagnosis, type KnownJob } from "../api/jobs";
+import { problemOf, type Problem } from "../api/problem";
 import { storeRecording, type StoredRecording } from "../api/recordings";
-import { storeRobot } from "../api/robots";
-import { loadRobots } from "../plan/load";
+import type { RecordingMap } from "../columns/recording_map";
+import { beginningOf, type Column } from "../columns/table";
 import * as plan from "../plan/state";
-import { tab } from "../tab";
+import { accept as acceptRobot } from "./accept";
 import type { Report } from "./report";
 
 export type Role = "suspect" | "healthy";
@@ -19,13 +19,19 @@ export interface Taken {
   bytes: number;
   role: Role;
   share: number;
+  /** Whether it is part of what is asked. */
+  isUsed: boolean;
+  /** What was dropped; none of a stored recording. */
+  file?: File;
+  /** Its beginning, where it is text in columns. */
+  columns?: Column[];
   recording?: StoredRecording;
   problem?: Problem;
 }
 
 export const taken = signal<Taken[]>([]);
 /** The job; of one that a link names only the id is known at first. */
-export const job = signal<(Partial<Job<Report>> & Pick<Job<Report>, "id" | "state">) | null>(null);
+export const job = signal<KnownJob<Report> | null>(null);
 export const problem = signal<Problem | null>(null);
 export const robotId = signal<string | null>(null);
 
@@ -35,30 +41,65 @@ function change(key: number, with_: Partial<Taken>): void {
   taken.value = taken.value.map((one) => (one.key === key ? { ...one, ...with_ } : one));
 }
 
+/** Columns as they were picked before, by the header that they were picked for. */
+const picked = new Map<string, RecordingMap>();
+
+const headerOf = (columns: Column[]) => JSON.stringify(columns.map(({ name }) => name));
+
 export function take(files: File[], role: Role): void {
   for (const file of files) {
     const key = count++;
-    taken.value = [...taken.value, { key, name: file.name, bytes: file.size, role, share: 0 }];
-    storeRecording(file, (share) => change(key, { share })).then(
-      (recording) => {
-        change(key, { recording });
-        announce(`${file.name} is read: ${recording.rows} rows.`);
-      },
-      (thrown) => change(key, { problem: problemOf(thrown) }),
+    taken.value = [...taken.value, { key, name: file.name, bytes: file.size, role, share: 0, isUsed: true, file }];
+    void beginningOf(file)
+      .catch(() => null)
+      .then((columns) => {
+        if (columns) change(key, { columns });
+        send(key, file, columns ? picked.get(headerOf(columns)) : undefined);
+      });
+  }
+}
+
+/** Sends a file to be read, by a map where its columns were picked. */
+function send(key: number, file: File, map: RecordingMap | undefined): void {
+  storeRecording(file, map, (share) => change(key, { share })).then(
+    (recording) => {
+      change(key, { recording });
+      announce(`${file.name} is read: ${recording.rows} rows.`);
+    },
+    (thrown) => change(key, { problem: problemOf(thrown) }),
+  );
+}
+
+/** Reads a file by the columns that were picked, and with it all others of the same header that could not be read. */
+export function readAs(key: number, map: RecordingMap): void {
+  const header = headerOf(taken.value.find((one) => one.key === key)?.columns ?? []);
+  picked.set(header, map);
+  const alike = taken.value.filter((one) => one.key === key || (one.problem && one.columns && headerOf(one.columns) === header));
+  for (const { key: each, file } of alike) {
+    if (!file) continue;
+    taken.value = taken.value.map(({ problem: _problem, recording: _recording, ...one }) =>
+      one.key === each
+        ? { ...one, share: 0 }
+        : { ...one, ...(_problem && { problem: _problem }), ...(_recording && { recording: _recording }) },
     );
+    send(each, file, map);
   }
 }
 
 export function takeStored(recording: StoredRecording, role: Role): void {
   const name = `${recording.report.source}.${recording.format}`;
-  taken.value = [...taken.value, { key: count++, name, bytes: recording.bytes, role, share: 1, recording }];
+  taken.value = [...taken.value, { key: count++, name, bytes: recording.bytes, role, share: 1, isUsed: true, recording }];
 }
+
+/** Takes a recording into what is asked next, or leaves it out for now. */
+export const use = (key: number, isUsed: boolean) => change(key, { isUsed });
 
 export function leave(key: number): void {
   taken.value = taken.value.filter((one) => one.key !== key);
 }
 
-export const idsOf = (role: Role) => taken.value.flatMap((one) => (one.role === role && one.recording ? [one.recording.id] : []));
+export const idsOf = (role: Role) =>
+  taken.value.flatMap((one) => (one.role === role && one.isUsed && one.recording ? [one.recording.id] : []));
 
 export async function begin(): Promise<void> {
   problem.value = null;
@@ -86,44 +127,10 @@ export function again(): void {
 export async function accept(report: Report): Promise<void> {
   problem.value = null;
   try {
-    const before = robotId.value ?? plan.robotId.value;
-    const name = `${report.robot.name.replace(/, corrected$/, "")}, corrected`;
-    const stored = await storeRobot({ ...report.robot, name });
-    await loadRobots();
-    plan.formerId.value = before === stored.id ? null : before;
-    plan.robotId.value = stored.id;
-    tab.value = "plan";
-    announce(`${name} is stored; the plan now uses it.`);
+    await acceptRobot(report.robot, "corrected", robotId.value ?? plan.robotId.value);
   } catch (thrown) {
     problem.value = problemOf(thrown);
   }
 }
 
-/** Begins to follow whichever job there is. */
-export function followJobs(): void {
-  let followed = "";
-  let stop = () => {};
-  effect(() => {
-    const { id = "", state } = job.value ?? {};
-    if (id === followed || (state && state !== "queued" && state !== "running")) return;
-    stop();
-    followed = id;
-    if (!id) return;
-    const told = (now: Job<Report>) => {
-      if (job.peek()?.id === id) job.value = now;
-      if (now.state === "done" && now.result) announce(now.result.sentence);
-    };
-    // The events of a job that is not there fail without a word; asking for it says why.
-    readJob<Report>(id).then(
-      (now) => {
-        told(now);
-        if (now.state === "queued" || now.state === "running")
-          stop = followJob<Report>(id, told, (thrown) => (problem.value = problemOf(thrown)));
-      },
-      (thrown) => {
-        problem.value = problemOf(thrown);
-        job.value = null;
-      },
-    );
-  });
-}
+export const followDiagnosis = () => follow(job, problem, ({ sentence }) => announce(sentence));

@@ -1,16 +1,19 @@
 /** What lies over the ground: contours, paths, ends and the robot. */
-import type { Place, Plan, Pose } from "../api/plans";
-import { OBJECTIVES, type Objective } from "../api/plans";
+import type { Objective, Place, Pose } from "../api/plans";
 import type { Contour } from "../api/reachable";
 import { energy } from "../format";
+import type { Backdrop, ShownPath } from "../plan/shown_paths";
+import { between } from "./reach_ramp";
 import { toPixel, type Size, type View } from "./view";
 
 /** How each path is drawn; dashes tell them apart without colour. */
-export const STYLE: Record<Objective | "former", { color: string; dash: number[]; name: string }> = {
+export const STYLE: Record<Objective | "former" | "mission" | "back", { color: string; dash: number[]; name: string }> = {
   energy: { color: "path-energy", dash: [], name: "Energy-minimal" },
   distance: { color: "path-distance", dash: [10, 9], name: "Shortest" },
   time: { color: "path-time", dash: [1, 7], name: "Fastest" },
   former: { color: "path-former", dash: [12, 4, 2, 4], name: "Before correction" },
+  mission: { color: "path-energy", dash: [], name: "Mission" },
+  back: { color: "fine", dash: [3, 8], name: "Way back" },
 };
 
 export interface Scene {
@@ -31,10 +34,11 @@ function trace({ context, view, size }: Scene, points: Iterable<[number, number]
   }
 }
 
-/** Contours of energy, each with how much it stands for at its northern end. */
+/** Contours of energy in the colours of their legend, each with how much it stands for at its northern end. */
 export function drawContours(scene: Scene, contours: Contour[]): void {
   const { context, color, view, size } = scene;
-  for (const { polygons } of contours) {
+  const colors = contours.map((_, i) => between(color, i, contours.length));
+  for (const [i, { polygons }] of contours.entries()) {
     context.beginPath();
     for (const ring of polygons.flat()) {
       trace(scene, ring);
@@ -42,11 +46,11 @@ export function drawContours(scene: Scene, contours: Contour[]): void {
     }
     context.setLineDash([]);
     context.globalAlpha = 0.07;
-    context.fillStyle = color("reach");
+    context.fillStyle = colors[i]!;
     context.fill("evenodd");
     context.globalAlpha = 1;
-    context.strokeStyle = color("reach");
-    context.lineWidth = 1.5;
+    context.strokeStyle = colors[i]!;
+    context.lineWidth = 1.75;
     context.stroke();
   }
   context.font = "600 11px system-ui, sans-serif";
@@ -54,8 +58,8 @@ export function drawContours(scene: Scene, contours: Contour[]): void {
   context.textBaseline = "middle";
   context.lineWidth = 3;
   context.strokeStyle = color("casing");
-  context.fillStyle = color("reach");
-  for (const { polygons, energy_j } of contours) {
+  for (const [i, { polygons, energy_j }] of contours.entries()) {
+    context.fillStyle = colors[i]!;
     const top = polygons.flat(2).reduce<[number, number] | null>((best, point) => (best && best[1] >= point[1] ? best : point), null);
     if (!top) continue;
     const { x, y } = toPixel(view, size, ...top);
@@ -69,11 +73,7 @@ const OTHER_PX = 3;
 /** A pale rim keeps every colour readable on every ground. */
 const RIM_PX = 1.5;
 
-interface Drawn {
-  style: keyof typeof STYLE;
-  poses: Pose[];
-  width: number;
-}
+type Drawn = Backdrop & { width: number };
 
 function stroke(scene: Scene, { poses, width }: Drawn, color: string, dash: number[]): void {
   const { context } = scene;
@@ -92,10 +92,9 @@ function stroke(scene: Scene, { poses, width }: Drawn, color: string, dash: numb
 }
 
 /** All paths, the one in focus on top; between the dashes of one, another that runs below it shows. */
-export function drawPaths(scene: Scene, plans: Record<Objective, Plan>, former: Plan | null, focus: Objective): void {
-  const order = [...OBJECTIVES].reverse().sort((a, b) => Number(a === focus) - Number(b === focus));
-  const all: Drawn[] = order.map((style) => ({ style, poses: plans[style].poses, width: style === focus ? FOCUS_PX : OTHER_PX }));
-  if (former) all.unshift({ style: "former", poses: former.poses, width: OTHER_PX });
+export function drawPaths(scene: Scene, backdrops: Backdrop[], followed: ShownPath[]): void {
+  const behind: Drawn[] = backdrops.map((path) => ({ ...path, width: OTHER_PX }));
+  const all: Drawn[] = [...behind, ...followed.map((path, i) => ({ ...path, width: i === followed.length - 1 ? FOCUS_PX : OTHER_PX }))];
   for (const drawn of all) stroke(scene, { ...drawn, width: drawn.width + 2 * RIM_PX }, scene.color("casing"), []);
   for (const drawn of all) stroke(scene, drawn, scene.color(STYLE[drawn.style].color), STYLE[drawn.style].dash);
 }
@@ -110,8 +109,8 @@ export function handleAt(view: View, size: Size, place: Place): { x: number; y: 
   return { x: x + HANDLE_PX * Math.cos(heading), y: y - HANDLE_PX * Math.sin(heading) };
 }
 
-/** Start (a disc, with its heading if it has one) or goal (a ringed disc), with its letter. */
-export function drawEnd(scene: Scene, place: Place, letter: "S" | "G"): void {
+/** Start (a disc, with its heading if it has one); goal, numbered stop or turning point (a ringed disc), with its letter. */
+export function drawEnd(scene: Scene, place: Place, letter: string): void {
   const { context, view, size, color } = scene;
   const { x, y } = toPixel(view, size, place.x_m, place.y_m);
   if (place.heading_rad !== undefined) {

@@ -40,7 +40,7 @@ export function onMap(place: Place): Place {
 }
 
 /** To the millimetre, as links write it: a link then means the very same place. */
-const rounded = (value_m: number) => Number(value_m.toFixed(3));
+export const rounded = (value_m: number) => Number(value_m.toFixed(3));
 
 export function setEnd(end: End, place: Place): void {
   const { x_m, y_m, ...heading } = onMap(place);
@@ -53,7 +53,8 @@ export function settle(end: End): void {
   const place = state[end].value;
   if (!place) return;
   announce(`${end === "start" ? "Start" : "Goal"}: ${placeWords(place)}.`);
-  state.tool.value = end === "start" && !state.goal.value ? "goal" : "move";
+  if (state.journey.value === "stops") state.tool.value = "stops";
+  else state.tool.value = end === "start" && !state.goal.value ? "goal" : "move";
 }
 
 /** Turns an end; the planner knows sixteen headings. */

@@ -1,12 +1,14 @@
 /** Mouse and touch on the map: place ends, drag them, turn them, pan, zoom, and point at paths. */
-import { OBJECTIVES } from "../api/plans";
 import { moved, pressed, released, type AreaPress } from "../areas/gestures";
 import { preview } from "../areas/state";
+import { points } from "../plan/measure";
+import { followedPaths } from "../plan/shown_paths";
 import * as state from "../plan/state";
 import { nearest } from "./along";
 import { handleAt } from "./draw";
 import { setEnd, settle, type End } from "./ends";
 import { pointer } from "./pointed";
+import { addStop, moveStop } from "./stops";
 import { panned, toMetres, toPixel, zoomed, type Point, type Size, type View } from "./view";
 
 /** What a gesture works on. */
@@ -22,6 +24,9 @@ type Doing =
   | { kind: "move"; end: End }
   | { kind: "turn"; end: End; isPlacing: boolean }
   | { kind: "pinch"; apart: number }
+  | { kind: "stop"; index: number }
+  | { kind: "new-stop"; from: Point }
+  | { kind: "point"; from: Point }
   | AreaPress;
 
 /** Pixels within which something is hit; fingers are wider than pointers. */
@@ -51,7 +56,7 @@ export function listen(board: Board, signal: AbortSignal): void {
     fingers.set(event.pointerId, last);
     if (fingers.size === 2) preview.value = null;
     doing = fingers.size === 2 ? { kind: "pinch", apart: apart(fingers) } : begun(board, view, event, last);
-    if (doing.kind === "move") state.isDragging.value = true;
+    if (doing.kind === "move" || doing.kind === "stop") state.isDragging.value = true;
   });
 
   on("pointermove", (event) => {
@@ -64,6 +69,8 @@ export function listen(board: Board, signal: AbortSignal): void {
     if (!doing) pointAt(view, size, point, reach(event));
     else if (doing.kind === "pinch") doing.apart = pinch(board, view, fingers, doing.apart);
     else if (doing.kind === "corner" || doing.kind === "drag") doing = moved(doing, point) ? { kind: "pan" } : doing;
+    else if (doing.kind === "stop") moveStop(doing.index, toMetres(view, size, point));
+    else if (doing.kind === "new-stop" || doing.kind === "point") doing = isFar(doing.from, point) ? { kind: "pan" } : doing;
     else if (doing.kind === "pan") board.show(panned(view, point.x - last.x, point.y - last.y));
     else drag(view, size, point, doing);
     last = point;
@@ -73,6 +80,12 @@ export function listen(board: Board, signal: AbortSignal): void {
     fingers.delete(event.pointerId);
     if (doing?.kind === "move" || doing?.kind === "turn") settle(doing.end);
     if (doing?.kind === "corner" || doing?.kind === "drag") endArea(event, doing);
+    const view = board.view();
+    if ((doing?.kind === "new-stop" || doing?.kind === "point") && view && event.type === "pointerup") {
+      const place = toMetres(view, board.size(), doing.from);
+      if (doing.kind === "point") points.value = [...points.value, [place.x_m, place.y_m]];
+      else addStop(place);
+    }
     doing = null;
     state.isDragging.value = false;
   };
@@ -89,6 +102,8 @@ export function listen(board: Board, signal: AbortSignal): void {
   });
 }
 
+const isFar = (from: Point, to: Point) => Math.hypot(to.x - from.x, to.y - from.y) > DRAG_PX;
+
 /** A press that the browser takes away changes nothing. */
 function endArea(event: PointerEvent, doing: AreaPress): void {
   if (event.type === "pointerup") released(doing);
@@ -104,13 +119,24 @@ function begun(board: Board, view: View, event: PointerEvent, point: Point): Doi
     const press = { view, size, point, within: reach(event) };
     return (event.button === 0 && pressed(press)) || { kind: "pan" };
   }
-  for (const end of ["start", "goal"] as const) {
+  if (placing === "measure" && event.button === 0) return { kind: "point", from: point };
+  const isMission = state.journey.value === "stops";
+  for (const end of isMission ? (["start"] as const) : (["start", "goal"] as const)) {
     const place = state[end].value;
     if (!place) continue;
     if (place.heading_rad !== undefined && near(handleAt(view, size, place))) return { kind: "turn", end, isPlacing: false };
-    if (near(toPixel(view, size, place.x_m, place.y_m)) && (placing === "move" || placing === end)) return { kind: "move", end };
+    if (
+      near(toPixel(view, size, place.x_m, place.y_m)) &&
+      (placing !== "start" || end === "start") &&
+      (placing !== "goal" || end === "goal")
+    )
+      return { kind: "move", end };
   }
+  const stop = isMission ? state.stops.value.findIndex(({ x_m, y_m }) => near(toPixel(view, size, x_m, y_m))) : -1;
+  if (stop >= 0 && placing !== "start") return { kind: "stop", index: stop };
   if (placing === "move" || event.button === 1) return { kind: "pan" };
+  if (placing === "measure") return { kind: "pan" };
+  if (placing === "stops") return { kind: "new-stop", from: point };
   setEnd(placing, toMetres(view, size, point));
   return { kind: "turn", end: placing, isPlacing: true };
 }
@@ -143,13 +169,10 @@ function pinch(board: Board, view: View, fingers: Map<number, Point>, before: nu
 
 /** Puts the robot on the path that the pointer is at, and that path in focus. */
 function pointAt(view: View, size: Size, point: Point, within: number): void {
-  const plans = state.comparison.value;
-  if (!plans) return;
-  const order = [state.focus.value, ...OBJECTIVES.filter((objective) => objective !== state.focus.value)];
-  for (const objective of order) {
-    const found = nearest(plans[objective].poses, view, size, point);
+  for (const { poses, objective } of [...followedPaths.value].reverse()) {
+    const found = nearest(poses, view, size, point);
     if (!found || found.off > within) continue;
-    state.focus.value = objective;
+    if (objective) state.focus.value = objective;
     state.along_m.value = found.pose.distance_m;
     return;
   }

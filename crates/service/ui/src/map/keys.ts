@@ -4,9 +4,11 @@ import type { Place } from "../api/plans";
 import { pressArea } from "../areas/keys";
 import { isEditing } from "../areas/state";
 import * as state from "../plan/state";
+import { points } from "../plan/measure";
 import { cursor } from "./cursor";
 import { onMap, placeWords, setEnd, settle, turn } from "./ends";
 import { pointer } from "./pointed";
+import { addStop } from "./stops";
 import { fitted, toPixel, zoomed, type Size, type View } from "./view";
 
 const ARROWS: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -31,7 +33,13 @@ export function press(event: KeyboardEvent, view: View, size: Size, show: (view:
     settle(end);
   };
   const acts: Record<string, () => void> = {
-    Enter: () => place(state.tool.value === "start" ? "start" : "goal"),
+    Escape: () => (points.value = []),
+    Enter: () =>
+      state.tool.value === "measure"
+        ? (points.value = [...points.value, [at.x_m, at.y_m]])
+        : state.tool.value === "stops"
+          ? addStop({ ...at })
+          : place(state.tool.value === "start" ? "start" : "goal"),
     s: () => place("start"),
     g: () => place("goal"),
     "[": () => turn("start", 1),

@@ -8,10 +8,15 @@ import { drawAreas, drawDraft } from "../areas/draw";
 import { AREA_KEYS } from "../areas/keys";
 import { AreasLegend } from "../areas/legend";
 import * as areas from "../areas/state";
+import { backdrops, focusedPath, followedPaths } from "../plan/shown_paths";
 import * as state from "../plan/state";
 import { color, theme } from "../theme";
 import { poseAt } from "./along";
 import { drawContours, drawCrosshair, drawEnd, drawPaths, drawRobot, type Scene } from "./draw";
+import { markers } from "./markers";
+import { drawMeasure } from "./draw_measure";
+import { measured, points } from "../plan/measure";
+import { ReachLegend } from "./reach_legend";
 import { cursor } from "./cursor";
 import { Coordinates } from "./coordinates";
 import { earth } from "./earth";
@@ -21,6 +26,7 @@ import { Legend } from "./legend";
 import { NorthArrow } from "./north_arrow";
 import { pointedAt } from "./pointed";
 import { relief, scaleOf, slopesOf } from "./relief";
+import { Steps } from "./steps";
 import { ScaleBar } from "./scale_bar";
 import { size, view } from "./shown";
 import { drawTiles, missing, tileSource } from "./tiles";
@@ -81,7 +87,7 @@ function drawPictures(canvas: HTMLCanvasElement): void {
 
 function drawOver(canvas: HTMLCanvasElement): void {
   const context = sized(canvas);
-  const [shown, plans] = [view.value, state.comparison.value];
+  const [shown, followed] = [view.value, focusedPath.value];
   void theme.value;
   if (!context || !shown) return;
   const scene: Scene = { context, view: shown, size: size.value, color };
@@ -89,14 +95,14 @@ function drawOver(canvas: HTMLCanvasElement): void {
   const shapes = areas.areas.value.map((area, i) => (preview && i === selected ? { ...area, geometry: preview } : area));
   drawAreas(scene, shapes, areas.isEditing.value ? selected : null);
   drawContours(scene, state.contours.value);
-  if (plans) drawPaths(scene, plans, state.former.value, state.focus.value);
-  if (state.goal.value) drawEnd(scene, state.goal.value, "G");
-  if (state.start.value) drawEnd(scene, state.start.value, "S");
-  const pose = plans && state.along_m.value !== null ? poseAt(plans[state.focus.value].poses, state.along_m.value) : null;
+  drawPaths(scene, backdrops.value, followedPaths.value);
+  for (const { place, letter } of markers.value) drawEnd(scene, place, letter);
+  const pose = followed && state.along_m.value !== null ? poseAt(followed.poses, state.along_m.value) : null;
   if (pose) drawRobot(scene, pose);
   if (areas.isEditing.value && areas.corners.value.length > 0) {
     drawDraft(scene, areas.corners.value, areas.nextKind.value, cursor.value ?? pointedAt.value);
   }
+  if (state.tool.value === "measure") drawMeasure(scene, points.value, cursor.value ?? pointedAt.value);
   if (cursor.value) drawCrosshair(scene, cursor.value);
 }
 
@@ -156,7 +162,9 @@ export function MapView() {
 
   const hint = useComputed(() => {
     if (state.tool.value === "areas") return areaHint();
+    if (state.tool.value === "measure") return measured.value;
     if (state.tool.value === "start") return "Click where the robot starts; drag to set its heading";
+    if (state.tool.value === "stops") return state.stops.value.length === 0 ? "Click each place to visit" : "";
     return state.tool.value === "goal" ? "Click where it is to go" : "";
   });
   const onKey = (event: KeyboardEvent) => {
@@ -191,6 +199,7 @@ export function MapView() {
         {areas.isEditing.value ? AREA_KEYS : KEYS}
       </p>
       {hint.value && <p class="map-hint">{hint}</p>}
+      <Steps />
       <DraftButtons />
       <div class="map-zoom" role="group" aria-label="Zoom">
         <button type="button" aria-label="Zoom in" title="Zoom in" onClick={zoom(1.5)}>
@@ -207,6 +216,7 @@ export function MapView() {
       <div class="map-foot">
         <div class="map-legends">
           <AreasLegend />
+          <ReachLegend />
           {ground.value && <Legend least={ground.value.least} greatest={ground.value.greatest} />}
         </div>
         <div class="map-where">

@@ -114,9 +114,12 @@ function Correction({ now }: { now: Plan }) {
   if (!before) return null;
   const more_j = now.energy_j - before.energy_j;
   const size = `${energy(Math.abs(more_j))} (${percent(Math.abs(more_j / before.energy_j), 1)})`;
+  const way = more_j < 0 ? "less" : "more";
   return (
     <p class="correction">
-      With the corrected robot {size} {more_j < 0 ? "less" : "more"} than its file predicted before.
+      {state.isCorrection.value
+        ? `With the corrected robot ${size} ${way} than its file predicted before.`
+        : `${size} ${way} than ${state.formerRobot.value?.robot.name ?? "the other robot"} takes.`}
     </p>
   );
 }
@@ -136,7 +139,7 @@ function Figures({ name, plan, unit, isChosen, choose }: RowProps & { name: keyo
   const label = (
     <>
       <Swatch name={name} />
-      {STYLE[name].name}
+      {name === "former" && !state.isCorrection.value ? (state.formerRobot.value?.robot.name ?? "Other robot") : STYLE[name].name}
     </>
   );
   return (

@@ -11,6 +11,8 @@ export interface ArrivalCharge {
 }
 
 export const J_PER_WH = 3600;
+/** The reserve of a battery whose file says none, as the service takes it. */
+export const USUAL_RESERVE = 0.2;
 
 /** Charge less the plan's energy, by the battery's nominal capacity; null without a battery. */
 export function arrivalCharge(plan: Plan, robot: Robot, charge: number): ArrivalCharge | null {
@@ -22,6 +24,6 @@ export function arrivalCharge(plan: Plan, robot: Robot, charge: number): Arrival
     charge: left(plan.energy_j),
     least: left(plan.energy_interval_j[1]),
     greatest: left(plan.energy_interval_j[0]),
-    reserve: battery.reserve_fraction ?? 0.2,
+    reserve: battery.reserve_fraction ?? USUAL_RESERVE,
   };
 }

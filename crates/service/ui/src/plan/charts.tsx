@@ -1,10 +1,11 @@
 /** Elevation, pitch, power and energy against distance, one under the other, linked with the map. */
 import { useMemo } from "preact/hooks";
-import { OBJECTIVES, type Comparison, type Objective, type Pose } from "../api/plans";
+import type { Pose } from "../api/plans";
 import { degrees, energy, metres, power } from "../format";
 import { poseAt } from "../map/along";
 import { STYLE } from "../map/draw";
 import { Chart, type Line } from "../widgets/chart";
+import { focusedPath, followedPaths, type ShownPath } from "./shown_paths";
 import * as state from "./state";
 
 interface Quantity {
@@ -24,11 +25,10 @@ const QUANTITIES: Quantity[] = [
 ];
 
 export function Charts() {
-  const plans = state.comparison.value;
   return (
     <section class="charts" aria-label="Along the path">
       {QUANTITIES.map((quantity) => (
-        <One key={quantity.name} quantity={quantity} plans={plans} />
+        <One key={quantity.name} quantity={quantity} />
       ))}
     </section>
   );
@@ -38,11 +38,10 @@ export function Charts() {
 const POINTS = 240;
 
 /** All paths on one axis of distance, the focused one last and so on top. */
-function columns(plans: Comparison, order: Objective[], { of, factor }: Quantity): (number | null)[][] {
-  const longest_m = Math.max(...OBJECTIVES.map((objective) => plans[objective].distance_m));
+function columns(paths: ShownPath[], { of, factor }: Quantity): (number | null)[][] {
+  const longest_m = Math.max(...paths.map(({ distance_m }) => distance_m));
   const distances = Array.from({ length: POINTS + 1 }, (_, i) => (longest_m * i) / POINTS);
-  const values = order.map((objective) => {
-    const { poses, distance_m } = plans[objective];
+  const values = paths.map(({ poses, distance_m }) => {
     return distances.map((d) => {
       const pose = d <= distance_m + longest_m / POINTS / 2 ? poseAt(poses, d) : null;
       return pose && factor * of(pose);
@@ -51,16 +50,15 @@ function columns(plans: Comparison, order: Objective[], { of, factor }: Quantity
   return [distances, ...values];
 }
 
-function One({ quantity, plans }: { quantity: Quantity; plans: Comparison | null }) {
-  const focus = state.focus.value;
-  const order = [...OBJECTIVES].reverse().sort((a, b) => Number(a === focus) - Number(b === focus));
-  const data = useMemo(() => plans && columns(plans, order, quantity), [plans, focus]);
-  const lines: Line[] = order.map((objective) => {
-    const { color, dash, name } = STYLE[objective];
-    const isFocus = objective === focus;
+function One({ quantity }: { quantity: Quantity }) {
+  const [paths, focused] = [followedPaths.value, focusedPath.value];
+  const data = useMemo(() => (paths.length > 0 ? columns(paths, quantity) : null), [paths]);
+  const lines: Line[] = paths.map((path) => {
+    const { color, dash, name } = STYLE[path.style];
+    const isFocus = path === focused;
     return { name, color, width: isFocus ? 2 : 1.25, fill: false, ...(!isFocus && dash.length > 0 && { dash: dash.map((d) => d / 1.6) }) };
   });
-  const pose = plans && state.along_m.value !== null ? poseAt(plans[focus].poses, state.along_m.value) : null;
+  const pose = focused && state.along_m.value !== null ? poseAt(focused.poses, state.along_m.value) : null;
   return (
     <figure class="chart-card">
       <figcaption>
@@ -77,7 +75,7 @@ function One({ quantity, plans }: { quantity: Quantity; plans: Comparison | null
           lines={lines}
           axisUnit="m"
           at={state.along_m.value}
-          point={(at_m) => (state.along_m.value = plans ? Math.min(Math.max(at_m, 0), plans[focus].distance_m) : null)}
+          point={(at_m) => (state.along_m.value = focused ? Math.min(Math.max(at_m, 0), focused.distance_m) : null)}
         />
       ) : (
         <div class="chart-none" aria-hidden="true" />

@@ -62,7 +62,24 @@ async function copyLink(): Promise<void> {
   }
 }
 
+/** The whole answer of the service; the ways of its stops among it. */
+function saveMission(): void {
+  const text = JSON.stringify(state.mission.value, null, 2);
+  saveFile(new Blob([text], { type: "application/json" }), "mission.json");
+  announce("mission.json is downloaded.");
+}
+
 export function Downloads() {
+  if (state.journey.value === "stops") {
+    return (
+      <section class="downloads" aria-label="Take it with you">
+        <button type="button" disabled={state.mission.value === null} title="Stops, ways and charges" onClick={saveMission}>
+          Mission as JSON
+        </button>
+        <LinkButton />
+      </section>
+    );
+  }
   const isReady = state.comparison.value !== null;
   return (
     <section class="downloads" aria-label="Take it with you">
@@ -73,9 +90,15 @@ export function Downloads() {
           </button>
         ))}
       </div>
-      <button type="button" onClick={() => void copyLink()}>
-        {isCopied.value ? "Copied" : "Copy link"}
-      </button>
+      <LinkButton />
     </section>
+  );
+}
+
+function LinkButton() {
+  return (
+    <button type="button" onClick={() => void copyLink()}>
+      {isCopied.value ? "Copied" : "Copy link"}
+    </button>
   );
 }

@@ -1,8 +1,10 @@
 /** The question as part of the page's address, so that a link shows the same. */
-import { effect } from "@preact/signals";
+import { batch, effect } from "@preact/signals";
 import type { Place } from "../api/plans";
+import * as calibrate from "../calibrate/state";
 import { job } from "../diagnose/state";
 import { tab, type Tab, TABS } from "../tab";
+import { keep } from "./history";
 import * as state from "./state";
 import * as steering from "./steering";
 
@@ -10,7 +12,8 @@ const number = (text: string | null) => (text !== null && text !== "" && Number.
 const rounded = (value: number, places = 3) => String(Number(value.toFixed(places)));
 
 function place(text: string | null): Place | null {
-  const [x_m, y_m, heading_rad] = (text ?? "").split(",").map(Number);
+  if (!text) return null;
+  const [x_m, y_m, heading_rad] = text.split(",").map(Number);
   if (x_m === undefined || y_m === undefined || !Number.isFinite(x_m) || !Number.isFinite(y_m)) return null;
   return heading_rad !== undefined && Number.isFinite(heading_rad) ? { x_m, y_m, heading_rad } : { x_m, y_m };
 }
@@ -28,15 +31,22 @@ const SWITCHES = [
 ] as const;
 
 /** Takes up what the address says. */
-export function readLink(): void {
+export const readLink = () => batch(takeUp);
+
+function takeUp(): void {
   const [name = "", query = ""] = location.hash.slice(1).split("?");
   const said = new URLSearchParams(query);
   tab.value = TABS.includes(name as Tab) ? (name as Tab) : "plan";
   state.mapId.value = said.get("map") ?? state.mapId.value;
-  state.robotId.value = said.get("robot") ?? state.robotId.value;
+  state.robotId.value = said.get("robot") ?? "husky-a200";
   state.formerId.value = said.get("former");
-  state.start.value = place(said.get("start")) ?? state.start.value;
-  state.goal.value = place(said.get("goal")) ?? state.goal.value;
+  state.start.value = place(said.get("start"));
+  state.goal.value = place(said.get("goal"));
+  state.stops.value = (said.get("stops") ?? "").split(";").flatMap((text) => place(text || null) ?? []);
+  state.journey.value = said.has("stops") ? "stops" : "goal";
+  state.returnsHome.value = said.has("return");
+  const range = said.get("range");
+  state.rangeKind.value = range === "there" || range === "return" ? range : null;
   state.speed_mps.value = number(said.get("speed_mps"));
   state.payload_kg.value = number(said.get("payload_kg")) ?? 0;
   state.charge.value = number(said.get("charge")) ?? 1;
@@ -45,13 +55,17 @@ export function readLink(): void {
   const least_m = number(said.get("least_radius_m"));
   steering.leastRadius_m.value = least_m !== null && least_m >= 0 ? least_m : null;
   const layer = said.get("layer");
-  if (layer === "slope" || layer === "surface") state.layer.value = layer;
+  state.layer.value = layer === "slope" || layer === "surface" ? layer : "elevation";
   state.is3d.value = said.has("3d");
   state.hasTiles.value = said.has("tiles");
   const reach = said.get("reach");
-  state.reach.value = reach === "outward" || reach === "out-and-back" ? reach : null;
-  if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
-  if (said.has("job")) job.value = { id: said.get("job") ?? "", state: "queued" };
+  state.reach.value = reach === "outward" || reach === "homeward" || reach === "out-and-back" ? reach : null;
+  if (state.start.value && state.journey.value === "stops") state.tool.value = "stops";
+  else if (state.start.value) state.tool.value = state.goal.value ? "move" : "goal";
+  for (const [name, of] of [["job", job] as const, ["calibration", calibrate.job] as const]) {
+    const id = said.get(name);
+    if (id !== (of.value?.id ?? null)) of.value = id ? { id, state: "queued" } : null;
+  }
 }
 
 function link(): string {
@@ -62,6 +76,9 @@ function link(): string {
   say("former", state.formerId.value);
   say("start", state.start.value && written(state.start.value));
   say("goal", state.goal.value && written(state.goal.value));
+  if (state.journey.value === "stops") said.set("stops", state.stops.value.map(written).join(";"));
+  if (state.returnsHome.value) said.set("return", "");
+  say("range", state.rangeKind.value);
   say("speed_mps", state.speed_mps.value !== null ? rounded(state.speed_mps.value) : null);
   say("payload_kg", state.payload_kg.value ? rounded(state.payload_kg.value) : null);
   say("charge", state.charge.value < 1 ? rounded(state.charge.value) : null);
@@ -73,9 +90,11 @@ function link(): string {
   if (state.hasTiles.value) said.set("tiles", "");
   say("reach", state.reach.value);
   say("job", job.value?.id);
+  say("calibration", calibrate.job.value?.id);
   const query = said
     .toString()
     .replaceAll("%2C", ",")
+    .replaceAll("%3B", ";")
     .replace(/=(?=&|$)/g, "");
   return `#${tab.value}${query ? `?${query}` : ""}`;
 }
@@ -85,8 +104,10 @@ export function keepLink(): void {
   let waiting: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
     const now = link();
+    // A slider or a place that is held is one change once it is let go.
+    if (state.isDragging.value) return;
     // Browsers refuse an address that changes with every step of a slider.
     clearTimeout(waiting);
-    waiting = setTimeout(() => location.hash !== now && history.replaceState(null, "", now), 200);
+    waiting = setTimeout(() => (location.hash !== now || history.state === null) && keep(now), 200);
   });
 }

@@ -32,7 +32,7 @@ export async function loadAll(): Promise<void> {
     if (!isKnown && state.mapId.value) {
       const detail = `The link shows a map (${state.mapId.value}) that this service does not have. Drop its file here, or choose another.`;
       loadProblem.value = problemOf(new Error(detail));
-      [state.mapId.value, state.start.value, state.goal.value] = [null, null, null];
+      [state.mapId.value, state.start.value, state.goal.value, state.stops.value] = [null, null, null, []];
     }
     state.mapId.value ??= maps[0]?.id ?? null;
   } catch (thrown) {
@@ -40,10 +40,14 @@ export async function loadAll(): Promise<void> {
   }
 }
 
+/** Whether map and robot of the question are at hand, so that nothing needs to be fetched. */
+export const isAllKnown = () => state.map.value !== null && state.robot.value !== null;
+
 /** Shows another map; ends on the old one mean nothing on it. */
 export function chooseMap(id: string): void {
   if (id === state.mapId.value) return;
   state.start.value = state.goal.value = null;
+  state.stops.value = [];
   state.tool.value = "start";
   state.problem.value = null;
   state.mapId.value = id;
@@ -89,10 +93,13 @@ async function sent(body: Blob, type: string, name: string): Promise<void> {
 
 export const addMap = (file: File) => sent(file, mapType(file.name), file.name);
 
+/** What the sample map is called. */
+export const SAMPLE_NAME = "minnesota.tif";
+
 /** The service carries a piece of Minnesota for who has no map at hand. */
 export async function addSample(): Promise<void> {
   const sample = await fetch("/sample-map.tif");
-  await sent(await sample.blob(), "image/tiff", "minnesota.tif");
+  await sent(await sample.blob(), "image/tiff", SAMPLE_NAME);
   const map = state.map.value;
   if (!map) return;
   const middle_m = map.cell_size_m / 2;

@@ -6,7 +6,7 @@ import { earth } from "../map/earth";
 import { tileSource } from "../map/tiles";
 import { Choice } from "../widgets/choice";
 import { MAP_ENDINGS } from "./first_map";
-import { addMap, chooseMap } from "./load";
+import { addMap, addSample, chooseMap, SAMPLE_NAME } from "./load";
 import { ReadingOptions } from "./reading_options";
 import * as state from "./state";
 
@@ -17,18 +17,25 @@ function title({ id, name, rows, columns, cell_size_m, elevation_range_m: [low, 
   return name ? `${name} · ${extent}` : `${extent} · ${id.slice(0, 6)}`;
 }
 
+/** The choice of the sample map, which is no map's id. */
+const SAMPLE = "sample";
+
 export function MapBar() {
   const hasSurfaces = (state.map.value?.surfaces.length ?? 0) > 0;
   return (
     <div class="map-bar">
       <label class="field map-choice">
         <span class="unseen">Map</span>
-        <select value={state.mapId.value ?? ""} onChange={(event) => chooseMap(event.currentTarget.value)}>
+        <select
+          value={state.mapId.value ?? ""}
+          onChange={(event) => (event.currentTarget.value === SAMPLE ? void addSample() : chooseMap(event.currentTarget.value))}
+        >
           {state.maps.value?.map((map) => (
             <option key={map.id} value={map.id}>
               {title(map)}
             </option>
           ))}
+          {!state.maps.value?.some(({ name }) => name === SAMPLE_NAME) && <option value={SAMPLE}>Sample map of Minnesota</option>}
         </select>
       </label>
       <label class="button file">
@@ -50,9 +57,10 @@ export function MapBar() {
         choose={(tool) => (state.tool.value = tool)}
         options={[
           { value: "start", name: "Start" },
-          { value: "goal", name: "Goal" },
+          state.journey.value === "stops" ? { value: "stops", name: "Stop" } : { value: "goal", name: "Goal" },
           { value: "move", name: "Move" },
           { value: "areas", name: "Areas" },
+          { value: "measure", name: "Measure" },
         ]}
       />
       <Choice
@@ -73,6 +81,7 @@ export function MapBar() {
         >
           <option value="">No contours</option>
           <option value="outward">Reach from start</option>
+          <option value="homeward">Reach to start</option>
           <option value="out-and-back">Reach and back</option>
         </select>
       )}

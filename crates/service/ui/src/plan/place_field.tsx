@@ -1,4 +1,4 @@
-/** An end of the path as text: it is what the map shows, and may be typed. */
+/** A place as text: it is what the map shows, and may be typed. */
 import { useState } from "preact/hooks";
 import type { Place } from "../api/plans";
 import { setEnd, settle, type End } from "../map/ends";
@@ -10,7 +10,8 @@ import { FORMS, readTyped, Unreadable, type Typed } from "./typed_place";
 /** To the tenth of a degree. */
 const degrees = (angle_rad: number) => Number(((angle_rad * 180) / Math.PI).toFixed(1));
 
-const written = ({ x_m, y_m, heading_rad }: Place) => `${x_m}, ${y_m}${heading_rad === undefined ? "" : `, ${degrees(heading_rad)}°`}`;
+export const written = ({ x_m, y_m, heading_rad }: Place) =>
+  `${x_m}, ${y_m}${heading_rad === undefined ? "" : `, ${degrees(heading_rad)}°`}`;
 
 function isOnMap(place: Place | null): place is Place {
   const map = state.map.value;
@@ -49,17 +50,30 @@ function readPlace(text: string): Place {
   return typed.heading_deg === undefined ? place : { ...place, heading_rad: (typed.heading_deg * Math.PI) / 180 };
 }
 
-export function PlaceField({ end, name }: { end: End; name: string }) {
+/** Start or goal. */
+export function EndField({ end, name }: { end: End; name: string }) {
+  const take = (place: Place) => {
+    setEnd(end, place);
+    settle(end);
+  };
+  return <PlaceField id={end} name={name} place={state[end].value} take={take} />;
+}
+
+interface Props {
+  id: string;
+  name: string;
+  /** What stands in the field until it is typed in. */
+  place: Place | null;
+  take: (place: Place) => void;
+}
+
+export function PlaceField({ id, name, place, take: accept }: Props) {
   const [typed, setTyped] = useState<string | null>(null);
   const [wrong, setWrong] = useState<string | null>(null);
-  const place = state[end].value;
   const take = () => {
     if (typed === null) return;
     try {
-      if (typed.trim() !== "") {
-        setEnd(end, readPlace(typed));
-        settle(end);
-      }
+      if (typed.trim() !== "") accept(readPlace(typed));
       setTyped(null);
       setWrong(null);
     } catch (thrown) {
@@ -72,9 +86,9 @@ export function PlaceField({ end, name }: { end: End; name: string }) {
   };
   return (
     <div class="place-field" data-wrong={wrong !== null}>
-      <label for={`place-${end}`}>{name}</label>
+      <label for={`place-${id}`}>{name}</label>
       <input
-        id={`place-${end}`}
+        id={`place-${id}`}
         type="text"
         autocomplete="off"
         spellcheck={false}
@@ -82,7 +96,7 @@ export function PlaceField({ end, name }: { end: End; name: string }) {
         title={FORMS}
         value={typed ?? (place ? written(place) : "")}
         aria-invalid={wrong !== null}
-        aria-describedby={`place-${end}-about`}
+        aria-describedby={`place-${id}-about`}
         onInput={(event) => setTyped(event.currentTarget.value)}
         onChange={take}
         onKeyDown={(event) => {
@@ -90,7 +104,7 @@ export function PlaceField({ end, name }: { end: End; name: string }) {
           if (event.key === "Escape") leave();
         }}
       />
-      <small id={`place-${end}-about`} role={wrong ? "alert" : undefined}>
+      <small id={`place-${id}-about`} role={wrong ? "alert" : undefined}>
         {wrong ? `${wrong.charAt(0).toUpperCase()}${wrong.slice(1)}.` : <span class="unseen">{FORMS}</span>}
       </small>
     </div>

@@ -12,7 +12,9 @@ import { FirstMap } from "./first_map";
 import { addMap, loadAll, loadProblem, sending } from "./load";
 import { MapBar } from "./map_bar";
 import { Relief3d } from "./relief_3d";
+import { MissionAnswer } from "./mission_answer";
 import { Question } from "./question";
+import { RangeCard } from "./range_card";
 import * as state from "./state";
 
 export function PlanTab() {
@@ -31,7 +33,8 @@ export function PlanTab() {
       </section>
       {!isEmpty && (
         <aside class="plan-side" aria-label="Question and answer">
-          <Answer />
+          {state.journey.value === "stops" ? <MissionAnswer /> : <Answer />}
+          {state.journey.value === "goal" && <RangeCard />}
           <Question />
           <Downloads />
         </aside>

@@ -1,10 +1,14 @@
 /** The robot and what the sliders change of it; every change is planned anew. */
 import { duration, metres, percent, words } from "../format";
+import { chooseJourney } from "../map/stops";
+import { Choice } from "../widgets/choice";
 import { RobotSelect } from "../widgets/robot_select";
 import { Slider } from "../widgets/slider";
-import { PlaceField } from "./place_field";
+import { EndField } from "./place_field";
+import { focusedPath } from "./shown_paths";
 import * as state from "./state";
 import { SteeringOptions } from "./steering";
+import { StopFields } from "./stop_fields";
 
 /** No robot is loaded with more than this share of its own mass here. */
 const MOST_PAYLOAD = 0.8;
@@ -19,8 +23,17 @@ export function Question() {
   const { battery } = robot;
   return (
     <section class="question" aria-label="Question">
-      <PlaceField end="start" name="Start at" />
-      <PlaceField end="goal" name="Goal at" />
+      <Choice
+        label="Where to"
+        value={state.journey.value}
+        choose={chooseJourney}
+        options={[
+          { value: "goal", name: "One goal" },
+          { value: "stops", name: "Several stops" },
+        ]}
+      />
+      <EndField end="start" name="Start at" />
+      {state.journey.value === "goal" ? <EndField end="goal" name="Goal at" /> : <StopFields />}
       <RobotChoice />
       <Slider
         label="Speed"
@@ -62,7 +75,6 @@ function RobotChoice() {
   const choose = (id: string) => {
     state.robotId.value = id;
     state.formerId.value = null;
-    state.surface.value = null;
   };
   return <RobotSelect label="Robot" value={state.robotId.value} choose={choose} />;
 }
@@ -75,7 +87,7 @@ function Ground() {
     <label class="field">
       <span>{isNamed ? "Ground the map leaves open" : "Ground"}</span>
       <select
-        value={state.surface.value ?? robot.default_surface}
+        value={state.surface.value !== null && state.surface.value in robot.surfaces ? state.surface.value : robot.default_surface}
         onChange={(event) => {
           const name = event.currentTarget.value;
           state.surface.value = name === robot.default_surface ? null : name;
@@ -93,7 +105,7 @@ function Ground() {
 
 /** Where along the path the robot is shown: for keys and fingers, what pointing at the charts is for a mouse. */
 function Along() {
-  const plan = state.comparison.value?.[state.focus.value];
+  const plan = focusedPath.value;
   if (!plan) return null;
   const at_m = Math.min(state.along_m.value ?? 0, plan.distance_m);
   const t_s = plan.poses.find(({ distance_m }) => distance_m >= at_m)?.t_s ?? 0;

@@ -4,7 +4,7 @@ import { ask, isAbort } from "../api/ask";
 import { problemOf } from "../api/problem";
 import { reachable, type ReachQuestion } from "../api/reachable";
 import type { Robot } from "../api/robots";
-import { J_PER_WH } from "./charge";
+import { J_PER_WH, USUAL_RESERVE } from "./charge";
 import * as state from "./state";
 
 /** About so many contours are drawn. */
@@ -16,7 +16,7 @@ const BEYOND = 1.25;
 /** Round steps of energy, up to somewhat more than the path takes; but no more than the charge gives, which is a contour too. */
 export function energiesOf(robot: Robot, charge: number, path_j: number | undefined): number[] {
   const { battery } = robot;
-  const available_j = battery ? (charge - (battery.reserve_fraction ?? 0.2)) * battery.capacity_wh * J_PER_WH : Infinity;
+  const available_j = battery ? (charge - (battery.reserve_fraction ?? USUAL_RESERVE)) * battery.capacity_wh * J_PER_WH : Infinity;
   const most_j = Math.min(available_j, path_j && path_j > 0 ? BEYOND * path_j : available_j);
   if (!(most_j > 0) || !Number.isFinite(most_j)) return [];
   const rough_j = most_j / CONTOURS;

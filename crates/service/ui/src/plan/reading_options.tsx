@@ -1,17 +1,18 @@
 /** How the next map is to be read: what its file does not say. */
 import { signal } from "@preact/signals";
+import { readNumber } from "../number";
 
 const nodata = signal("");
 const fillVoids = signal("");
 
-const isNumber = (text: string) => text.trim() === "" || Number.isFinite(Number(text.replace(",", ".").replace("−", "-")));
+const isNumber = (text: string) => text.trim() === "" || readNumber(text) !== null;
 
 /** What stands in the fields, as the query of `POST /v1/maps` takes it; null where one of them is no number. */
 export function readingQuery(): Record<string, string> | null {
   const said: Record<string, string> = {};
   for (const [name, { value }] of [["nodata_m", nodata] as const, ["fill_voids_m", fillVoids] as const]) {
     if (!isNumber(value)) return null;
-    if (value.trim() !== "") said[name] = value.trim().replace(",", ".").replace("−", "-");
+    if (value.trim() !== "") said[name] = String(readNumber(value));
   }
   return said;
 }

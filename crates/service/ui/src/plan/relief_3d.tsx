@@ -4,7 +4,10 @@ import { useEffect, useRef } from "preact/hooks";
 import { Progress } from "../widgets/progress";
 import { groundPicture } from "../map/map_view";
 import { poseAt } from "../map/along";
+import { elevationAt } from "../map/ends";
+import { markers } from "../map/markers";
 import { color, theme } from "../theme";
+import { backdrops, focusedPath, followedPaths } from "./shown_paths";
 import * as state from "./state";
 
 const stretch = signal(2);
@@ -35,11 +38,16 @@ export function Relief3d() {
           }),
           effect(() => {
             void [theme.value, stretch.value, state.cells.value];
-            shown.paths(state.comparison.value, state.former.value, state.focus.value, color);
+            shown.paths(backdrops.value, followedPaths.value, color);
+          }),
+          effect(() => {
+            void [theme.value, stretch.value];
+            const cells = state.cells.value;
+            shown.overlays(markers.value, state.contours.value, (x_m, y_m) => elevationAt(cells, x_m, y_m), color);
           }),
           effect(() => {
             void stretch.value;
-            const plan = state.comparison.value?.[state.focus.value];
+            const plan = focusedPath.value;
             shown.robot(plan && state.along_m.value !== null ? poseAt(plan.poses, state.along_m.value) : null);
           }),
         ];

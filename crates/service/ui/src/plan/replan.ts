@@ -14,7 +14,7 @@ const DRAGGED_BOUND = 1.05;
 /** The question that the page asks now, for a robot; null while something is missing. */
 export function question(known = state.robot.value): PlanQuestion | null {
   const [map, start, goal] = [state.map.value, state.start.value, state.goal.value];
-  if (!map || !known || !start || !goal) return null;
+  if (state.journey.value === "stops" || !map || !known || !start || !goal) return null;
   const speed_mps = state.speed_mps.value;
   return {
     map_id: map.id,

@@ -1,13 +1,18 @@
 /** What the Plan tab shows and asks, as signals. */
 import { computed, signal } from "@preact/signals";
 import type { Cells, MapSummary } from "../api/maps";
+import type { Mission, RangeAnswer } from "../api/missions";
 import type { Comparison, Objective, Place, Plan } from "../api/plans";
 import type { Problem } from "../api/problem";
 import type { Contour, ReachKind } from "../api/reachable";
 import type { KnownRobot, Robot } from "../api/robots";
 
 export type Layer = "elevation" | "slope" | "surface";
-export type Tool = "start" | "goal" | "move" | "areas";
+export type Tool = "start" | "goal" | "stops" | "move" | "areas" | "measure";
+/** One goal with three paths compared, or several stops in the order of least energy. */
+export type Journey = "goal" | "stops";
+/** Whether the battery lasts is asked for the way there, or there and back. */
+export type RangeKind = "there" | "return";
 
 export const maps = signal<MapSummary[] | null>(null);
 export const mapId = signal<string | null>(null);
@@ -20,8 +25,17 @@ export const robot = computed(() => robots.value?.find(({ id }) => id === robotI
 /** The robot before a correction was accepted: its path is shown beside. */
 export const formerId = signal<string | null>(null);
 
+export const formerRobot = computed(() => robots.value?.find(({ id }) => id === formerId.value) ?? null);
+/** Whether the robot beside is the same one before a diagnosis or a calibration. */
+export const isCorrection = computed(() => / (corrected|calibrated)$/.test(robot.value?.robot.name ?? ""));
+
 export const start = signal<Place | null>(null);
 export const goal = signal<Place | null>(null);
+export const journey = signal<Journey>("goal");
+/** Places to visit, in the order in which they were given. */
+export const stops = signal<Place[]>([]);
+/** Whether the mission ends at its start. */
+export const returnsHome = signal(false);
 export const tool = signal<Tool>("start");
 
 /** Null: what the service takes by itself. */
@@ -41,6 +55,10 @@ export const hasTiles = signal(false);
 export const reach = signal<ReachKind | null>(null);
 export const hasReach = signal(false);
 export const contours = signal<Contour[]>([]);
+
+export const mission = signal<Mission | null>(null);
+export const rangeKind = signal<RangeKind | null>(null);
+export const range = signal<RangeAnswer | null>(null);
 
 export const comparison = signal<Comparison | null>(null);
 /** The former robot's energy-minimal path. */

@@ -2,6 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import type { Place, Steering } from "../api/plans";
+import { readNumber } from "../number";
 import { goal } from "./state";
 
 export const mayReverse = signal(false);
@@ -86,8 +87,8 @@ function Check({ name, about, isOn, isOff = false, set }: CheckProps) {
 function Radius() {
   const [wrong, setWrong] = useState<string | null>(null);
   const take = (text: string) => {
-    const number = text.trim() === "" ? null : Number(text.trim().replace(",", "."));
-    const isNumber = number === null || (Number.isFinite(number) && number >= 0);
+    const number = text.trim() === "" ? null : (readNumber(text) ?? NaN);
+    const isNumber = number === null || number >= 0;
     setWrong(isNumber ? null : "Give metres from 0 up, or nothing.");
     if (isNumber) leastRadius_m.value = number;
   };

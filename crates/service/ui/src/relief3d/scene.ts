@@ -20,15 +20,20 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Cells } from "../api/maps";
-import { OBJECTIVES, type Comparison, type Objective, type Plan, type Pose } from "../api/plans";
+import type { Pose } from "../api/plans";
+import type { Contour } from "../api/reachable";
 import { STYLE } from "../map/draw";
+import type { Marker } from "../map/markers";
+import type { Backdrop, ShownPath } from "../plan/shown_paths";
+import { addContours, addMarkers, clearOverlays, type Ground } from "./overlays";
 
 /** Most cells along a side of the mesh. */
 const MESH_SIDE = 400;
 
 export interface Shown {
   ground: (cells: Cells, picture: HTMLCanvasElement, stretch: number, tint: string) => void;
-  paths: (plans: Comparison | null, former: Plan | null, focus: Objective, color: (name: string) => string) => void;
+  paths: (backdrops: Backdrop[], followed: ShownPath[], color: (name: string) => string) => void;
+  overlays: (markers: Marker[], contours: Contour[], z_m: Ground["z_m"], color: (name: string) => string) => void;
   robot: (pose: Pose | null) => void;
   end: () => void;
 }
@@ -68,9 +73,10 @@ export function showRelief(element: HTMLElement): Shown | null {
   let isPlaced = false;
   const terrain = new Group();
   const lines = new Group();
+  const overlays = new Group();
   const robot = new Mesh(new ConeGeometry(0.028, 0.08, 4), new MeshLambertMaterial({ color: 0xffb000 }));
   robot.visible = false;
-  scene.add(terrain, lines, robot);
+  scene.add(terrain, lines, overlays, robot);
 
   return {
     ground(cells, picture, stretch, tint) {
@@ -89,16 +95,22 @@ export function showRelief(element: HTMLElement): Shown | null {
       }
       draw();
     },
-    paths(plans, former, focus, color) {
+    paths(backdrops, followed, color) {
       clear(lines);
-      const add = (plan: Plan, name: string, radius: number) => {
-        const points = thinned(plan.poses).map((p) => toScene(p.x_m, p.y_m, p.z_m).add(new Vector3(0, 0.008, 0)));
+      const add = ({ poses, style }: Backdrop, radius: number) => {
+        const points = thinned(poses).map((p) => toScene(p.x_m, p.y_m, p.z_m).add(new Vector3(0, 0.008, 0)));
         if (points.length < 2) return;
         const tube = new TubeGeometry(new CatmullRomCurve3(points), points.length * 3, radius, 6);
-        lines.add(new Mesh(tube, new MeshBasicMaterial({ color: color(name) })));
+        lines.add(new Mesh(tube, new MeshBasicMaterial({ color: color(STYLE[style].color) })));
       };
-      if (former) add(former, STYLE.former.color, 0.004);
-      if (plans) for (const objective of OBJECTIVES) add(plans[objective], STYLE[objective].color, objective === focus ? 0.008 : 0.0045);
+      for (const path of backdrops) add(path, 0.004);
+      followed.forEach((path, i) => add(path, i === followed.length - 1 ? 0.008 : 0.0045));
+      draw();
+    },
+    overlays(markers, contours, z_m, color) {
+      clearOverlays(overlays);
+      addContours(overlays, contours, { z_m, toScene }, color);
+      addMarkers(overlays, markers, { z_m, toScene }, color);
       draw();
     },
     robot(pose) {
@@ -115,6 +127,7 @@ export function showRelief(element: HTMLElement): Shown | null {
       controls.dispose();
       clear(terrain);
       clear(lines);
+      clearOverlays(overlays);
       renderer.dispose();
       renderer.domElement.remove();
     },
@@ -133,7 +146,7 @@ function clear(group: Group): void {
 }
 
 /** Every so many poses: a tube needs no more. */
-const thinned = (poses: Pose[]) => poses.filter((_, i) => i % Math.ceil(poses.length / 300) === 0 || i === poses.length - 1);
+const thinned = (poses: Backdrop["poses"]) => poses.filter((_, i) => i % Math.ceil(poses.length / 300) === 0 || i === poses.length - 1);
 
 function meshOf(cells: Cells, stretch: number) {
   const { rows, columns, cell_size_m, x_m, y_m, z_m } = cells;

@@ -128,9 +128,13 @@ export function mechanismGroups(mechanisms: unknown, at: string): FieldGroup[] {
 /** What is wrong with a value, before the service is asked. */
 export function complaint({ least, greatest, isOptional, unit }: Field, value: unknown): string | undefined {
   if (value === undefined || value === null) return isOptional ? undefined : "Give a number";
-  if (typeof value !== "number" || !Number.isFinite(value)) return "Give a number";
+  if (typeof value !== "number" || !Number.isFinite(value)) return "Give a number, as 95.5 or 95,5";
   if (value < least || value > greatest) return `Must lie between ${short(least)} and ${short(greatest)}${unit ? ` ${unit}` : ""}`;
   return undefined;
 }
 
-const short = (value: number) => String(Number(value.toPrecision(3)));
+/** The range of a field in words; none where it is open. */
+export const bounds = ({ least, greatest, unit }: Field) =>
+  Number.isFinite(least) ? `${short(least)} to ${short(greatest)}${unit ? ` ${unit}` : ""}` : "";
+
+const short = (value: number) => String(Number(value.toPrecision(3))).replace("-", "\u2212");

@@ -1,7 +1,8 @@
 /** One number of a robot, with its unit, its range and what is wrong with it. */
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import type { Robot } from "../api/robots";
-import { complaint, type Field } from "./fields";
+import { readNumber } from "../number";
+import { bounds, complaint, type Field } from "./fields";
 import { changed, read } from "./pointer";
 import { edited, problem, shown } from "./state";
 
@@ -14,9 +15,13 @@ export function NumberField({ field }: { field: Field }) {
   const [typed, setTyped] = useState<string | null>(null);
   const wrong = complaint(field, value) ?? problem.value?.at(field.pointer);
   const id = `field${field.pointer.replace(/[^a-z0-9]/gi, "-")}`;
+  // A robot that is undone or chosen anew takes the place of what was typed.
+  useEffect(() => {
+    if (!edited.value) setTyped(null);
+  }, [edited.value === null, robot?.name]);
   const change = (text: string) => {
     setTyped(text);
-    const number = text.trim() === "" ? undefined : Number(text);
+    const number = text.trim() === "" ? undefined : (readNumber(text) ?? NaN);
     edited.value = changed(robot as Robot, field.pointer, number);
     problem.value = null;
   };
@@ -32,11 +37,12 @@ export function NumberField({ field }: { field: Field }) {
           aria-invalid={wrong !== undefined}
           aria-describedby={`${id}-about`}
           onInput={(event) => change(event.currentTarget.value)}
-          onBlur={() => setTyped(null)}
+          // What is no number stays as it was typed, beside what is wrong with it.
+          onBlur={() => typed !== null && readNumber(typed) !== null && setTyped(null)}
         />
         <span>{field.unit}</span>
       </div>
-      <small id={`${id}-about`}>{wrong ?? field.about ?? ""}</small>
+      <small id={`${id}-about`}>{wrong ?? [field.about, bounds(field)].filter(Boolean).join("; ")}</small>
     </div>
   );
 }

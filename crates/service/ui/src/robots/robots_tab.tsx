@@ -11,7 +11,8 @@ import { Progress } from "../widgets/progress";
 import { complaint, GROUPS, mechanismGroups, surfaceFields, type FieldGroup } from "./fields";
 import { NumberField } from "./number_field";
 import { escaped, read } from "./pointer";
-import { choose, edited, isSaving, knownShown, open, problem, save, shown, use } from "./state";
+import { Compare } from "./compare";
+import { choose, deletingId, edited, isSaving, knownShown, open, problem, remove, save, shown, use } from "./state";
 
 export function RobotsTab() {
   if (loadProblem.value && !plan.robots.value) return <Unreachable />;
@@ -76,6 +77,11 @@ function Editor({ robot }: { robot: Robot }) {
               Undo
             </button>
           )}
+          {knownShown.value?.isStored && !edited.value && (
+            <button type="button" class="delete" onClick={() => void remove()}>
+              {deletingId.value === knownShown.value.id ? "Delete for good" : "Delete"}
+            </button>
+          )}
           {edited.value ? (
             <button type="submit" class="primary" disabled={isSaving.value || wrong.length > 0}>
               Save as new
@@ -93,6 +99,7 @@ function Editor({ robot }: { robot: Robot }) {
           To save, mend {wrong.map((field) => field.name).join(", ")}.
         </p>
       )}
+      {!edited.value && <Compare robot={robot} />}
       <div class="robot-groups">
         {groups.map((group) => (
           <fieldset key={group.name}>

@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { announce } from "../announce";
 import { problemOf, type Problem } from "../api/problem";
-import { storeRobot, type Robot } from "../api/robots";
+import { deleteRobot, storeRobot, type Robot } from "../api/robots";
 import { loadRobots } from "../plan/load";
 import * as plan from "../plan/state";
 import { tab } from "../tab";
@@ -20,6 +20,7 @@ export const knownShown = known;
 
 export function choose(id: string): void {
   shownId.value = id;
+  deletingId.value = null;
   edited.value = null;
   problem.value = null;
 }
@@ -50,12 +51,34 @@ export async function open(file: File): Promise<void> {
   }
 }
 
+/** The robot whose deletion waits to be confirmed. */
+export const deletingId = signal<string | null>(null);
+
+/** Deletes the robot shown, after it was asked for twice. */
+export async function remove(): Promise<void> {
+  const robot = known.value;
+  if (!robot?.isStored) return;
+  if (deletingId.value !== robot.id) {
+    deletingId.value = robot.id;
+    return;
+  }
+  deletingId.value = null;
+  try {
+    await deleteRobot(robot.id);
+    if (plan.formerId.value === robot.id) plan.formerId.value = null;
+    await loadRobots();
+    choose(plan.robotId.value);
+    announce(`${robot.robot.name} is deleted.`);
+  } catch (thrown) {
+    problem.value = problemOf(thrown);
+  }
+}
+
 /** Plans with the robot shown. */
 export function use(): void {
   const id = known.value?.id;
   if (!id) return;
   plan.robotId.value = id;
   plan.formerId.value = null;
-  plan.surface.value = null;
   tab.value = "plan";
 }

@@ -48,7 +48,7 @@ function options(
     width,
     height,
     legend: { show: false },
-    padding: [6, 8, hasAxis ? 0 : 4, 0],
+    padding: [6, 20, hasAxis ? 0 : 4, 0],
     scales: { x: { time: false } },
     cursor: { y: false, drag: { x: false, y: false }, points: { size: 8 } },
     axes: [

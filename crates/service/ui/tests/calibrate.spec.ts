@@ -1,0 +1,93 @@
+import { answered, checkAccessible, expect, openSample, picture, test, PHONE_TOO } from "./service";
+
+const { readFileSync } = process.getBuiltinModule("node:fs");
+
+/** Names that no map of the program has, units beside them, dates, decimal commas and another order. */
+const HEADER = [
+  "Uhrzeit / time",
+  "Rad rechts right wheel [rad/s]",
+  "Rad links left wheel [rad/s]",
+  "Akku P battery [kW]",
+  "Neigung pitch (deg)",
+  "Notiz",
+];
+const WHEEL_RADIUS_M = 0.165;
+
+/** A recording of the simulator, written as somebody's own logger would. */
+function oddly(path: string): string {
+  const [header = "", ...rows] = readFileSync(path, "utf8").trim().split("\n");
+  const names = header.split(",");
+  const at = (name: string) => names.indexOf(name);
+  const comma = (value: number, places: number) => (Number.isFinite(value) ? value.toFixed(places).replace(".", ",") : "");
+  const lines = rows.map((row) => {
+    const cells = row.split(",");
+    const value = (name: string) => (cells[at(name)] === "" ? NaN : Number(cells[at(name)]));
+    const power_w = at("power_w") >= 0 ? value("power_w") : value("power_left_w") + value("power_right_w");
+    return [
+      new Date(Date.UTC(2026, 10, 28, 9) + 1000 * value("t_s")).toISOString(),
+      comma(value("v_right_mps") / WHEEL_RADIUS_M, 4),
+      comma(value("v_left_mps") / WHEEL_RADIUS_M, 4),
+      comma(power_w / 1000, 5),
+      comma((value("pitch_rad") * 180) / Math.PI, 3),
+      "",
+    ].join(";");
+  });
+  return [HEADER.join(";"), ...lines].join("\n");
+}
+
+test(
+  "from odd CSV files to a corrected plan: columns are picked once, the robot is fitted, and plans stand side by side",
+  PHONE_TOO,
+  async ({ page, service }, info) => {
+    const world = { terrain: { rolling: { grade: 0.04 } }, robot_seed: 11 };
+    const files = [1, 2].map((seed) => ({
+      name: `tag-${seed}.csv`,
+      mimeType: "text/csv",
+      buffer: Buffer.from(oddly(service.simulate(`drive-${seed}`, { ...world, seed }, { kind: "rich", duration_s: 300, seed: 6 + seed }))),
+    }));
+    await openSample(page, service);
+    await page.getByRole("button", { name: "Calibrate" }).click();
+    await page.locator(".recordings input[type=file]").setInputFiles(files);
+    const picker = page.getByRole("region", { name: "Columns of the log" }).first();
+    await expect(picker.getByLabel(`${HEADER[2]} is`)).toHaveValue("v_left_mps");
+    await expect(picker.getByLabel(`Unit of ${HEADER[2]}`)).toHaveValue("rad/s");
+    await expect(picker.getByLabel(`${HEADER[3]} is`)).toHaveValue("power_w");
+    await expect(picker.getByLabel("Wheel radius")).toHaveValue(String(WHEEL_RADIUS_M));
+    await picker.getByLabel(`${HEADER[3]} is`).selectOption("");
+    await expect(picker.getByRole("status")).toContainText("Say which column is the power");
+    await expect(picker.getByRole("button", { name: "Read with these columns" })).toBeDisabled();
+    await picker.getByLabel(`${HEADER[3]} is`).selectOption("Battery power");
+    await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("kW");
+    await picture(page, `columns-${info.project.name}`);
+    await checkAccessible(page, "columns");
+    await picker.getByRole("button", { name: "Read with these columns" }).click();
+    // The other file has the same columns, and is read with them too.
+    await expect(page.getByText("3,000")).toHaveCount(2);
+    await page.locator(".diagnose-start").getByRole("button", { name: "Calibrate" }).click();
+    await expect(page.locator(".calibration .verdict")).toBeVisible({ timeout: 120_000 });
+    await expect(page.getByRole("region", { name: "Skill" })).toContainText("R², one-second averages");
+    await expect(page.getByRole("region", { name: "Parameters", exact: true })).toContainText("mu skid");
+    await picture(page, `calibrated-${info.project.name}`);
+    await checkAccessible(page, "calibration");
+    await expect.poll(() => page.url()).toContain("calibration=");
+    await page.getByRole("button", { name: "Save the fitted robot and plan with it" }).click();
+    await answered(page);
+    await expect(page.getByRole("row", { name: /^Before correction/ })).toBeVisible();
+  },
+);
+
+test("a refusal for doubtful recordings names the doubts, and they may be overruled", async ({ page, service }) => {
+  const id = "b".repeat(32);
+  const detail =
+    "no robot was written, because the recording is doubtful: power is negative; if it is right, calibrate `--despite power_sign`";
+  const problem = { type: "invalid-recording", title: "The recording cannot be used", status: 400, detail };
+  const failed = { id, kind: "calibrate", state: "failed", progress: { step: "fitting", fraction: null }, problem };
+  await page.route(`**/v1/jobs/${id}`, (route) => route.fulfill({ json: failed }));
+  await page.route("**/v1/calibrate", (route) => route.fulfill({ status: 202, json: failed }));
+  await page.goto(`${service.url}/#calibrate?calibration=${id}`);
+  await expect(page.getByRole("alert")).toContainText("power is negative");
+  await expect(page.getByText("overrule the doubts: power_sign")).toBeVisible();
+  const asked = page.waitForRequest("**/v1/calibrate");
+  await page.getByRole("button", { name: "Calibrate despite them" }).click();
+  expect((await asked).postDataJSON()).toMatchObject({ despite: ["power_sign"] });
+});
