@@ -1,0 +1,182 @@
+"""Units beyond their fleet: tests of level, step and drift with one bound on the chance of any false alarm.
+
+Three questions are asked of every parameter of every unit, each with the spreads that the other units show:
+
+* `level`: is the unit's mean one that the fleet has? t = (y_i - mu) / sqrt(tau^2 + v_i + v_mu), with n - 2 degrees of freedom;
+* `step`: did it change from one drive to the next? The largest |t| over all places of a step, its p-value times their number;
+* `drift`: does it change from week to week, beyond what the fleet shares?
+
+The smallest p-value of a unit times the number of its tests, times the number of units, is its p-value (Bonferroni). The unit with the least is
+set aside and all is fitted anew, up to a third of the fleet; the last one whose p-value is below the false-alarm rate is named with all that
+were set aside before it (the generalised extreme Studentised deviate procedure of Rosner, Technometrics 25, 1983,
+doi:10.1080/00401706.1983.10487848), so that ill units hide neither each other nor themselves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from .random_effects import Between, Series, Within, fit_between, fit_within, unit_mean
+
+FALSE_ALARM_RATE = 0.01
+"""Chance that a report names any unit of a fleet that has none to name [-]: one false alarm in two years of weekly reports."""
+LARGEST_SHARE_SET_ASIDE = 1.0 / 3.0
+"""Most of a fleet that can be named: what more than a third of the units does is what the fleet does."""
+FEWEST_UNITS = 4
+"""Units from which on a fleet has a spread to compare with."""
+FEWEST_DRIVES = 3
+"""Drives of a unit from which on a change can be told from the scatter of drives."""
+CREDIBLE_DEVIANCE = 3.84
+"""Deviance within which places of a step are credible: 95 % of a chi-squared variable of one degree of freedom."""
+
+
+@dataclass(frozen=True)
+class Departure:
+    """One way in which a unit differs from its fleet, or from what it was."""
+
+    unit: str
+    parameter: str
+    kind: str
+    """`level`, `step` or `drift`."""
+    size: float
+    """How far the unit lies from the fleet's mean; how much it changed; how much it drifts in a week. In the unit of the series."""
+    sigma: float
+    """Standard error of the size; for `level`, spread of the fleet included."""
+    t: float
+    p_value: float
+    """Chance of one as large among all tests of all units of a healthy fleet, at most 1."""
+    since: int | None = None
+    """Of a step: the number of the first drive after it."""
+    since_range: tuple[int, int] | None = None
+    """Of a step: the first and last credible number of that drive."""
+
+
+@dataclass(frozen=True)
+class FleetFit:
+    """A parameter over the units that are not named."""
+
+    within: Within
+    between: Between | None
+    """None with fewer than two units."""
+    week_mean: float
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a fleet's parameters show."""
+
+    named: list[str]
+    """Units that differ from their fleet, the clearest first."""
+    departures: dict[str, list[Departure]]
+    """Of every unit, all departures whose p-value is below the false-alarm rate, or the smallest one alone; the clearest first."""
+    fits: dict[str, FleetFit]
+    """Of every parameter, over the units that are not named."""
+    tests: int
+    """How many tests a unit was put to."""
+
+
+def find_departures(parameters: dict[str, list[Series]], false_alarm_rate: float = FALSE_ALARM_RATE) -> Found:
+    """Tests every unit against its fleet and against what it was."""
+    units = sorted({one.unit for fleet in parameters.values() for one in fleet})
+    most = int(len(units) * LARGEST_SHARE_SET_ASIDE)
+    aside: list[str] = []
+    at_step: list[dict[str, list[Departure]]] = []
+    while len(aside) <= most:
+        present = {name: [one for one in fleet if one.unit not in aside] for name, fleet in parameters.items()}
+        found = _all_departures(present, len(units) - len(aside))
+        at_step.append(found)
+        if not found or len(aside) == most:
+            break
+        aside.append(min(found, key=lambda unit: (found[unit][0].p_value, -abs(found[unit][0].t))))
+    clear = [i for i, unit in enumerate(aside) if at_step[i][unit][0].p_value < false_alarm_rate]
+    named = aside[: clear[-1] + 1] if clear else []
+    # What a unit's departures are is told against the fleet without all that are named.
+    rest = {name: [one for one in fleet if one.unit not in named] for name, fleet in parameters.items()}
+    departures = {unit: found for unit, found in at_step[len(named)].items()}
+    for i, unit in enumerate(named):
+        own = {name: [one for one in fleet if one.unit not in named or one.unit == unit] for name, fleet in parameters.items()}
+        departures[unit] = _departures_of(unit, own, len(units) - i) or at_step[i][unit]
+    kept = {unit: [one for one in all if one.p_value < false_alarm_rate] or all[:1] for unit, all in departures.items()}
+    tests = max((sum(1 for _ in _tests(unit, parameters)) for unit in units), default=0)
+    return Found(named, kept, {name: fleet_fit(fleet) for name, fleet in rest.items() if fleet}, tests)
+
+
+def fleet_fit(fleet: list[Series]) -> FleetFit:
+    """The random-effects model of one parameter."""
+    within = fit_within(fleet)
+    weeks = np.concatenate([one.week for one in fleet])
+    week_mean = float(np.mean(weeks)) if np.all(np.isfinite(weeks)) else 0.0
+    means = np.array([unit_mean(one, within, week_mean) for one in fleet])
+    between = fit_between(means[:, 0], means[:, 1]) if len(fleet) >= 2 else None
+    return FleetFit(within, between, week_mean)
+
+
+def _all_departures(parameters: dict[str, list[Series]], units: int) -> dict[str, list[Departure]]:
+    names = sorted({one.unit for fleet in parameters.values() for one in fleet})
+    found = {unit: _departures_of(unit, parameters, units) for unit in names}
+    return {unit: departures for unit, departures in found.items() if departures}
+
+
+def _departures_of(unit: str, parameters: dict[str, list[Series]], units: int) -> list[Departure]:
+    """All tests of a unit, the clearest first, their p-values as those of the clearest of so many."""
+    departures = list(_tests(unit, parameters))
+    at_once = len(departures) * units
+    adjusted = [Departure(**{**vars(one), "p_value": min(1.0, one.p_value * at_once)}) for one in departures]
+    return sorted(adjusted, key=lambda one: (one.p_value, -abs(one.t)))
+
+
+def _tests(unit: str, parameters: dict[str, list[Series]]):
+    for name, fleet in parameters.items():
+        own = next((one for one in fleet if one.unit == unit), None)
+        others = [one for one in fleet if one.unit != unit]
+        if own is None or len(others) < FEWEST_UNITS - 1:
+            continue
+        fit = fleet_fit(others)
+        yield from _level(name, own, fit)
+        if own.dated and len(own.value) >= FEWEST_DRIVES and fit.within.dof >= 1:
+            yield from _step(name, own, fit.within)
+            yield from _drift(name, own, fit.within)
+
+
+def _level(name: str, own: Series, fit: FleetFit):
+    mean, sigma = unit_mean(own, fit.within, fit.week_mean)
+    between = fit.between
+    if between is None or between.dof < 1:
+        return
+    spread = float(np.hypot(np.hypot(between.tau, sigma), between.mean_sigma))
+    t = (mean - between.mean) / spread
+    yield Departure(own.unit, name, "level", mean - between.mean, spread, t, float(2.0 * stats.t.sf(abs(t), between.dof)))
+
+
+def _step(name: str, own: Series, within: Within):
+    """The best place of a step between two drives."""
+    value = own.value - within.slope_per_week * own.week
+    weight = 1.0 / (own.sigma**2 + within.omega**2)
+    sums = np.array([np.cumsum(weight), np.cumsum(weight * value)])
+    before, after = sums[:, :-1], sums[:, -1:] - sums[:, :-1]
+    size = after[1] / after[0] - before[1] / before[0]
+    sigma = np.sqrt(1.0 / before[0] + 1.0 / after[0])
+    # Drives of one day are not parted.
+    possible = np.flatnonzero(np.diff(own.week) > 0.0)
+    if len(possible) == 0:
+        return
+    t = size / sigma
+    best = possible[np.argmax(np.abs(t[possible]))]
+    credible = possible[t[possible] ** 2 >= t[best] ** 2 - CREDIBLE_DEVIANCE]
+    p_value = min(1.0, len(possible) * float(2.0 * stats.t.sf(abs(t[best]), within.dof)))
+    since_range = (int(credible[0]) + 1, int(credible[-1]) + 1)
+    yield Departure(own.unit, name, "step", float(size[best]), float(sigma[best]), float(t[best]), p_value, int(best) + 1, since_range)
+
+
+def _drift(name: str, own: Series, within: Within):
+    weight = 1.0 / (own.sigma**2 + within.omega**2)
+    week = own.week - np.sum(weight * own.week) / np.sum(weight)
+    information = float(np.sum(weight * week * week))
+    if not information > 0.0:
+        return
+    slope = float(np.sum(weight * week * own.value)) / information - within.slope_per_week
+    sigma = float(np.hypot(information**-0.5, np.nan_to_num(within.slope_sigma)))
+    yield Departure(own.unit, name, "drift", slope, sigma, slope / sigma, float(2.0 * stats.t.sf(abs(slope / sigma), within.dof)))
