@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from .errors import FleetError
 
-LOOPBACK = "127.0.0.1"
-"""Address of a Ray that is started here for one call, so that nobody else reaches it."""
+LOOPBACK = "127.0.0.2"
+"""Address of a Ray that is started here for one call. Ray takes 127.0.0.1 for the machine's outside address; 127.0.0.2 is the machine's own as
+well where the system is Linux."""
 QUEUED_PER_CORE = 2
 """Pieces that are handed to Ray for each core: one under way and one that waits, so that no core idles and the rest stays here."""
 LOOK_AROUND_S = 5.0
@@ -61,19 +63,27 @@ def connected(ways: Ways) -> Iterator[Any]:
         yield ray
         return
     address = ways.address or os.environ.get("RAY_ADDRESS")
-    here = {} if address else {"include_dashboard": False, "_node_ip_address": LOOPBACK}
     try:
-        ray.init(address=address, log_to_driver=False, logging_level="ERROR", **here)
+        ray.init(address=address, log_to_driver=False, logging_level="ERROR", **_own_address(address))
     except (ConnectionError, RuntimeError, ValueError, OSError) as error:
         raise FleetError(
             "no-ray",
-            f"there is no Ray at {address or 'this machine'} ({str(error).splitlines()[0]}): start one with `ray start --head "
-            f"--node-ip-address {LOOPBACK}`, or leave the address out to start one for this call",
+            f"there is no Ray at {address or 'this machine'} that lets us in ({str(error).splitlines()[0]}): start one with `ray start --head "
+            f"--node-ip-address {LOOPBACK}`, give RAY_AUTH_MODE and RAY_AUTH_TOKEN_PATH the values that it has, or leave the address out to "
+            "start one for this call",
         ) from error
     try:
         yield ray
     finally:
         ray.shutdown()
+
+
+def _own_address(cluster: str | None) -> dict[str, Any]:
+    """Which address of this machine Ray is to use: that of the loopback where the cluster is there, or is started for this call."""
+    if not cluster:
+        return {"include_dashboard": False, **({"_node_ip_address": LOOPBACK} if sys.platform == "linux" else {})}
+    host = cluster.removeprefix("ray://").rpartition(":")[0]
+    return {"_node_ip_address": host} if host.startswith("127.") else {}
 
 
 def spread(ray: Any, ways: Ways, work: Callable[..., Any], shared: Any, pieces: Sequence[Any]) -> Iterator[tuple[int, Any]]:

@@ -9,7 +9,8 @@ Three questions are asked of every parameter of every unit, each with the spread
 The smallest p-value of a unit times the number of its tests, times the number of units, is its p-value (Bonferroni). The unit with the least is
 set aside and all is fitted anew, up to a third of the fleet; the last one whose p-value is below the false-alarm rate is named with all that
 were set aside before it (the generalised extreme Studentised deviate procedure of Rosner, Technometrics 25, 1983,
-doi:10.1080/00401706.1983.10487848), so that ill units hide neither each other nor themselves.
+doi:10.1080/00401706.1983.10487848), so that ill units hide neither each other nor themselves. Each of them is named only if it also differs
+from the fleet that is left.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ class Departure:
     """Standard error of the size; for `level`, spread of the fleet included."""
     t: float
     p_value: float
-    """Chance of one as large among all tests of all units of a healthy fleet, at most 1."""
+    """Bound on the chance of one as large among all tests of all units of a healthy fleet; says nothing where it exceeds 1."""
     since: int | None = None
     """Of a step: the number of the first drive after it."""
     since_range: tuple[int, int] | None = None
@@ -85,23 +86,38 @@ def find_departures(parameters: dict[str, list[Series]], false_alarm_rate: float
     aside: list[str] = []
     at_step: list[dict[str, list[Departure]]] = []
     while len(aside) <= most:
-        present = {name: [one for one in fleet if one.unit not in aside] for name, fleet in parameters.items()}
-        found = _all_departures(present, len(units) - len(aside))
+        found = _all_departures(_without(parameters, set(aside)), len(units) - len(aside))
         at_step.append(found)
         if not found or len(aside) == most:
             break
         aside.append(min(found, key=lambda unit: (found[unit][0].p_value, -abs(found[unit][0].t))))
     clear = [i for i, unit in enumerate(aside) if at_step[i][unit][0].p_value < false_alarm_rate]
-    named = aside[: clear[-1] + 1] if clear else []
-    # What a unit's departures are is told against the fleet without all that are named.
-    rest = {name: [one for one in fleet if one.unit not in named] for name, fleet in parameters.items()}
-    departures = {unit: found for unit, found in at_step[len(named)].items()}
-    for i, unit in enumerate(named):
-        own = {name: [one for one in fleet if one.unit not in named or one.unit == unit] for name, fleet in parameters.items()}
-        departures[unit] = _departures_of(unit, own, len(units) - i) or at_step[i][unit]
+    named = _confirmed(aside[: clear[-1] + 1] if clear else [], parameters, len(units), false_alarm_rate)
+    rest = _without(parameters, set(named))
+    departures = {**named, **_all_departures(rest, len(units) - len(named))}
     kept = {unit: [one for one in all if one.p_value < false_alarm_rate] or all[:1] for unit, all in departures.items()}
     tests = max((sum(1 for _ in _tests(unit, parameters)) for unit in units), default=0)
-    return Found(named, kept, {name: fleet_fit(fleet) for name, fleet in rest.items() if fleet}, tests)
+    return Found(list(named), kept, {name: fleet_fit(fleet) for name, fleet in rest.items() if fleet}, tests)
+
+
+def _confirmed(
+    aside: list[str], parameters: dict[str, list[Series]], units: int, false_alarm_rate: float
+) -> dict[str, list[Departure]]:
+    """Of the units that were set aside, those that differ from the fleet without the others, with their departures, the clearest first.
+
+    A healthy unit may be set aside first where several ill ones widen the spread together; it goes back to the fleet.
+    """
+    candidates = list(aside)
+    while True:
+        found = {unit: _departures_of(unit, _without(parameters, set(candidates) - {unit}), units) for unit in candidates}
+        confirmed = {unit: all for unit, all in found.items() if all and all[0].p_value < false_alarm_rate}
+        if len(confirmed) == len(candidates):
+            return dict(sorted(confirmed.items(), key=lambda one: one[1][0].p_value))
+        candidates = list(confirmed)
+
+
+def _without(parameters: dict[str, list[Series]], units: set[str]) -> dict[str, list[Series]]:
+    return {name: [one for one in fleet if one.unit not in units] for name, fleet in parameters.items()}
 
 
 def fleet_fit(fleet: list[Series]) -> FleetFit:
@@ -124,7 +140,7 @@ def _departures_of(unit: str, parameters: dict[str, list[Series]], units: int) -
     """All tests of a unit, the clearest first, their p-values as those of the clearest of so many."""
     departures = list(_tests(unit, parameters))
     at_once = len(departures) * units
-    adjusted = [Departure(**{**vars(one), "p_value": min(1.0, one.p_value * at_once)}) for one in departures]
+    adjusted = [Departure(**{**vars(one), "p_value": one.p_value * at_once}) for one in departures]
     return sorted(adjusted, key=lambda one: (one.p_value, -abs(one.t)))
 
 

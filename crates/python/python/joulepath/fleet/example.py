@@ -10,13 +10,12 @@ import datetime
 import json
 import os
 import random
-import subprocess
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .command import joulepath_command
+from .command import called
 from .errors import FleetError
 
 FIRST_DAY = datetime.date(2026, 3, 2)
@@ -116,8 +115,8 @@ def _simulate(recording: Path, robot: str, world: dict[str, object], drive: dict
         files["world"].write_text(json.dumps(world))
         files["drive"].write_text(json.dumps(drive))
         made = Path(room, "drive.csv")
-        command = [*joulepath_command(), "simulate", "--robot", robot, "--world", files["world"], "--drive", files["drive"], "--out", made]
-        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            raise FleetError("invalid-request", f"the simulator refused {recording.name}: {done.stderr.strip()}")
+        try:
+            called(["simulate", "--robot", robot, "--world", files["world"], "--drive", files["drive"], "--out", made])
+        except ValueError as error:
+            raise FleetError("invalid-request", f"the simulator refused {recording.name}: {error}") from error
         made.replace(recording)
