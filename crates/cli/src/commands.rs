@@ -6,6 +6,7 @@ pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
+pub(crate) mod fleet;
 pub(crate) mod inspect;
 pub(crate) mod matrix;
 pub(crate) mod mission;
