@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from . import Drive, FleetError, Ways, calibrate, diagnose, matrix, prove, read_list, report
+import joulepath
+
+from . import Drive, Ways, calibrate, diagnose, matrix, prove, read_list, report
 from .blocks import BlockProgress
 from .departures import FALSE_ALARM_RATE
 from .example import Scale, simulate_fleet
@@ -28,7 +30,7 @@ def main(words: list[str] | None = None) -> int:
     arguments = _parser().parse_args(words)
     try:
         return arguments.run(arguments)
-    except (FleetError, ValueError) as error:
+    except (joulepath.Error, ValueError) as error:
         print(f"joulepath fleet: {error}", file=sys.stderr)
         return WRONG_INPUT
     except OSError as error:

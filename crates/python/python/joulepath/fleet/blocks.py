@@ -7,8 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import joulepath
+
 from .cluster import Lost, Ways, connected, spread
 from .storage import Storage, id_of
+from .task import LEAST_FAULT
 
 BlockProgress = Callable[[int, int], None]
 """Is told after every block how many of how many have ended."""
@@ -21,7 +24,7 @@ class Work:
     kind: str
     """First part of the blocks' names in the storage, below `fleet/`."""
     compute: Callable[[Any], Any]
-    """Works out a block from what it depends on. Raises `ValueError` where the block itself is at fault."""
+    """Works out a block from what it depends on. Raises a `joulepath.Error` where the block itself is at fault."""
     place: str
 
 
@@ -47,8 +50,10 @@ def _answer(work: Work, block: dict[str, Any]) -> dict[str, Any]:
         return known
     try:
         answer = {"result": work.compute(block)}
-    except ValueError as error:
-        answer = {"failed": str(error)}
+    except joulepath.Error as error:
+        if error.status >= LEAST_FAULT:
+            raise OSError(error.detail) from error
+        answer = {"failed": error.detail}
     storage.write(name, answer)
     return answer
 

@@ -31,14 +31,14 @@ def joulepath_command() -> list[str]:
 def called(words: list[str | Path]) -> str:
     """Returns what the command prints.
 
-    Raises `ValueError` with its own words where the question is at fault, and `OSError` where the command died.
+    Raises a [`FleetError`] with its own words where the question is at fault, and `OSError` where the command died.
     """
     done = subprocess.run([*joulepath_command(), *map(str, words)], capture_output=True, text=True, check=False)
     if done.returncode == 0:
         return done.stdout
     said = done.stderr.strip().removeprefix("joulepath: ")
     if done.returncode in AT_FAULT:
-        raise ValueError(said)
+        raise FleetError("invalid-request", said)
     raise OSError(f"`joulepath {words[0]}` ended with status {done.returncode}: {said}")
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+import joulepath
 
-class FleetError(Exception):
-    """A question that cannot be answered, with its kind and the mend.
 
-    `type` is a word for programs, as the HTTP API's problem documents have it; the text says what is wrong and how to mend it.
-    """
+class FleetError(joulepath.Error):
+    """A question that cannot be answered; the detail says what is wrong and how to mend it."""
 
     def __init__(self, type: str, detail: str) -> None:
         super().__init__(detail)
         self.type = type
-        self.detail = detail
+        self.title, self.status = ("The request cannot be read", 400) if type.startswith("invalid-") else ("The fleet cannot be asked", 503)
 
     def __reduce__(self) -> tuple[type[FleetError], tuple[str, str]]:
-        return (FleetError, (self.type, self.detail))
+        return FleetError, (self.type, self.detail)

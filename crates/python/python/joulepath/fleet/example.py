@@ -10,12 +10,13 @@ import datetime
 import json
 import os
 import random
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from .command import called
+import joulepath
+
 from .errors import FleetError
 
 FIRST_DAY = datetime.date(2026, 3, 2)
@@ -100,23 +101,16 @@ def simulate_fleet(
             }
             drive = {"kind": "rich", "duration_s": scale.duration_s, "seed": drive_seed}
             date = FIRST_DAY + datetime.timedelta(weeks=week)
-            _simulate(folder / unit / f"{date.isoformat()}.csv", robot, world, drive)
+            simulate_drive(folder / unit / f"{date.isoformat()}.csv", robot, world, drive)
             progress(i * scale.weeks + week + 1, len(units) * scale.weeks)
     return folder
 
 
-def _simulate(recording: Path, robot: str, world: dict[str, object], drive: dict[str, object]) -> None:
+def simulate_drive(recording: Path, robot: str, world: dict[str, Any], drive: dict[str, Any]) -> None:
     """Simulates one drive, unless it is there."""
     if recording.exists():
         return
     recording.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=recording.parent, prefix=".simulating-") as room:
-        files = {name: Path(room, f"{name}.json") for name in ("world", "drive")}
-        files["world"].write_text(json.dumps(world))
-        files["drive"].write_text(json.dumps(drive))
-        made = Path(room, "drive.csv")
-        try:
-            called(["simulate", "--robot", robot, "--world", files["world"], "--drive", files["drive"], "--out", made])
-        except ValueError as error:
-            raise FleetError("invalid-request", f"the simulator refused {recording.name}: {error}") from error
-        made.replace(recording)
+    beside = recording.with_name(f".{recording.name}.part")
+    joulepath.simulate(world, drive, robot).save(beside)
+    beside.replace(recording)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +13,6 @@ import numpy as np
 from . import compute
 from .blocks import BlockProgress, Work, answered
 from .cluster import Ways
-from .command import called, robot_words
 from .errors import FleetError
 from .question import robot_document
 from .storage import Storage, content_id, local_copy
@@ -62,16 +59,15 @@ def matrix(
     *,
     robot: Any = "husky-a200",
     storage: str | os.PathLike[str] | Storage,
-    speed_mps: float | None = None,
-    reverse: bool = False,
     block_sources: int = BLOCK_SOURCES,
     ways: Ways = Ways(),
     progress: BlockProgress | None = None,
+    **options: Any,
 ) -> FleetMatrix:
     """Works out the path between every source and every target, which are the sources unless given.
 
     `map` is a file or an `s3://` address, as tasks read it. Each block of sources is kept in the storage, so that a matrix whose driver died is
-    taken up by asking again. Raises a [`FleetError`] where the question itself is wrong.
+    taken up by asking again. `options` are those of `Planner.matrix`, as `speed_mps` and `reverse`. Raises a [`FleetError`] where the question itself is wrong.
     """
     storage = storage if isinstance(storage, Storage) else Storage(storage)
     targets = sources if targets is None else targets
@@ -89,8 +85,7 @@ def matrix(
         "map_id": map_id,
         "robot": robot_document(robot),
         "targets": [list(place) for place in targets],
-        "speed_mps": speed_mps,
-        "reverse": reverse,
+        "options": options,
         "version": compute.version(),
     }
     starts = range(0, len(sources), block_sources)
@@ -109,21 +104,17 @@ def _check(field: str, places: Sequence[Place]) -> None:
 
 def _block(block: dict[str, Any]) -> dict[str, Any]:
     """The figures of a block, as the HTTP API has them."""
-    with tempfile.TemporaryDirectory(prefix="joulepath-fleet-") as room, local_copy(block["map"]) as map:
-        if content_id(map) != block["map_id"]:
-            raise OSError(f"{block['map']} is not the map that was asked about: it was changed, or another machine has another one")
-        words = ["matrix", "--map", map, *robot_words(block["robot"], Path(room)), "--json"]
-        for flag in ("source", "target"):
-            words += [f"--{flag}={_place(place)}" for place in block[f"{flag}s"]]
-        words += [f"--speed-mps={block['speed_mps']}"] if block["speed_mps"] is not None else []
-        words += ["--reverse"] if block["reverse"] else []
-        return json.loads(called(words))
+    planner = _planner(block["map"], block["map_id"], json.dumps(block["robot"]))
+    return planner.matrix(block["sources"], block["targets"], **block["options"]).to_dict()
 
 
-def _place(place: list[float]) -> str:
-    """A place as the command line has it, headings in degrees."""
-    x_m, y_m, *heading = place
-    return ",".join(str(x) for x in [x_m, y_m, *np.degrees(heading)])
+@functools.lru_cache(maxsize=1)
+def _planner(map: str, map_id: str, robot: str) -> joulepath.Planner:
+    """A planner, which a worker keeps from block to block: the costs of the map are worked out once."""
+    with local_copy(map) as file:
+        if content_id(file) != map_id:
+            raise OSError(f"{map} is not the map that was asked about: it was changed, or this machine has another one")
+        return joulepath.Planner(joulepath.Map.open(file), json.loads(robot))
 
 
 def _joined(answers: list[dict[str, Any]], spans: list[tuple[int, int]], shape: tuple[int, int]) -> FleetMatrix:

@@ -11,8 +11,10 @@ import numpy as np
 from .parameters import Parameter
 from .random_effects import Series
 
-WIDTH, HEIGHT, MARGIN = 640.0, 220.0, 44.0
-"""Size of a chart and of the room for its axes, in CSS pixels."""
+WIDTH, HEIGHT, MARGIN = 640.0, 220.0, 56.0
+"""Size of a chart and of the room for the values at its left, in CSS pixels."""
+FOOT = 22.0
+"""Room for the days below a chart, in CSS pixels."""
 DAYS_OF_WEEK = 7.0
 
 
@@ -57,7 +59,7 @@ def page(document: dict[str, Any], parameters: list[Parameter]) -> str:
     by_name = {one.name: one for one in parameters}
     charts = {one["unit"]: _chart(one, by_name) for one in document["named"]}
     template = environment.get_template("report.html.j2")
-    return template.render(report=document, charts=charts, width=WIDTH, height=HEIGHT, margin=MARGIN)
+    return template.render(report=document, charts=charts, width=WIDTH, height=HEIGHT, margin=MARGIN, foot=FOOT)
 
 
 def _chart(named: dict[str, Any], parameters: dict[str, Parameter]) -> Chart | None:
@@ -71,7 +73,7 @@ def _chart(named: dict[str, Any], parameters: dict[str, Parameter]) -> Chart | N
     weeks = np.concatenate([one.week for one in series])
     values = np.concatenate([_values(one, parameter) for one in series])
     across = _scale(float(weeks.min()), float(weeks.max()), MARGIN, WIDTH - 12.0)
-    up = _scale(float(values.min()), float(values.max()), HEIGHT - MARGIN / 2.0, 12.0)
+    up = _scale(float(values.min()), float(values.max()), HEIGHT - FOOT, 12.0)
 
     def line(one: Series) -> Line:
         points = zip(one.week, _values(one, parameter), strict=True)
@@ -108,7 +110,7 @@ def _figure(value: float | None) -> str:
 
 
 def _percent(value: float | None) -> str:
-    return "–" if value is None else f"{100.0 * value:.2g} %"
+    return "–" if value is None else f"{100.0 * value:.3g} %"
 
 
 def _probability(value: float | None) -> str:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from .errors import FleetError
+import joulepath
 
 
 @dataclass(frozen=True)
@@ -30,31 +27,21 @@ class Question:
         return request
 
 
-class Unanswerable(Exception):
-    """A recording of which nothing can be found, now or later: a problem of the recording, not of the machines."""
+def robot_document(robot: joulepath.Robot | str | dict[str, Any]) -> str | dict[str, Any]:
+    """Returns what tasks on other machines are told of a robot, once it is checked: the name of a built-in one, or a document.
 
-    def __init__(self, type: str, detail: str, errors: list[dict[str, str]] | None = None) -> None:
-        super().__init__(detail)
-        self.type, self.detail, self.errors = type, detail, errors or []
-
-
-def robot_document(robot: Any) -> str | dict[str, Any]:
-    """Returns what tasks on other machines are told of a robot: the name of a built-in one, or the document of a file or object."""
-    if hasattr(robot, "to_dict"):
+    Raises a `joulepath.Error` where it cannot be used.
+    """
+    if isinstance(robot, str) and robot in joulepath.Robot.names():
+        return robot
+    if isinstance(robot, joulepath.Robot):
         return robot.to_dict()
-    if isinstance(robot, Mapping):
-        return dict(robot)
-    name = os.fspath(robot)
-    if not name.endswith(".json") and not os.path.exists(name):
-        return name
-    import json
-
+    if isinstance(robot, dict):
+        return joulepath.Robot(robot).to_dict()
     try:
-        document = json.loads(Path(name).read_text(encoding="utf-8"))
+        return joulepath.Robot.open(robot).to_dict()
     except OSError as error:
-        raise FleetError("invalid-robot", f"cannot read the robot {name}: {error.strerror}") from error
-    except ValueError as error:
-        raise FleetError("invalid-robot", f"the robot {name} is no JSON: {error}") from error
-    if not isinstance(document, dict):
-        raise FleetError("invalid-robot", f"the robot {name} must be a JSON object")
-    return document
+        names = ", ".join(joulepath.Robot.names())
+        raise joulepath.errors.InvalidRobotError(
+            f"{robot} is neither a built-in robot ({names}) nor a robot file that can be read: {error.strerror}", pointer="/robot"
+        ) from error

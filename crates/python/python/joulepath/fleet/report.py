@@ -109,7 +109,7 @@ def _sentence(named: list[dict[str, Any]], units: int) -> str:
 
 
 def _named(unit: str, found: Found, by_name: dict[str, Parameter], mechanisms: list[dict[str, Any]]) -> dict[str, Any]:
-    departures = [_departure(one, by_name[one.parameter], found) for one in found.departures[unit]]
+    departures = [_departure(one, by_name[one.parameter], found) for one in _distinct(found.departures[unit])]
     foremost = departures[0]
     steps = [one for one in departures if one["kind"] == "step"]
     since = steps[0]["since"] if steps else None
@@ -131,6 +131,14 @@ def _named(unit: str, found: Found, by_name: dict[str, Parameter], mechanisms: l
     if likely:
         sentence += f". Its diagnoses name {', '.join(one['mechanism'] for one in likely)}"
     return {"unit": unit, "sentence": sentence + ".", "since": since, "departures": departures, "mechanisms": likely}
+
+
+def _distinct(departures: list[Departure]) -> list[Departure]:
+    """Departures without those that tell again, less clearly, of the change of a parameter: a step looks like a drift, and a drift like a step."""
+    kept: dict[tuple[str, bool], Departure] = {}
+    for one in departures:
+        kept.setdefault((one.parameter, one.kind == "level"), one)
+    return list(kept.values())
 
 
 def _departure(one: Departure, parameter: Parameter, found: Found) -> dict[str, Any]:

@@ -8,12 +8,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import joulepath
+
 from .cluster import Lost, Ways, connected, spread
 from .drives import Drive
 from .errors import FleetError
 from .question import Question
 from .storage import Storage, id_of
-from .task import DONE, FAILED, Piece, Shared, brief, problem, report_on
+from .task import DONE, FAILED, Piece, Shared, brief, fault, report_on
 
 DUPLICATE = "duplicate"
 """State of a recording that has the content of another one of the run, and counts once."""
@@ -132,7 +134,7 @@ def ask(
         shared = Shared(question, storage.place, storage.tenant)
         for number, outcome in spread(ray, ways, report_on, shared, pieces):
             if isinstance(outcome, Lost):
-                outcome = brief(pieces[number].drive, FAILED, problem=problem("internal", str(outcome)))
+                outcome = brief(pieces[number].drive, FAILED, problem=fault(str(outcome)))
             outcomes[number] = outcome
             tell(counted([one for one in outcomes if one is not None], len(pieces)))
     run = Run(_run_id(question, pieces), question.kind, _without_duplicates([one for one in outcomes if one is not None]), _notes(pieces, by_unit))
@@ -162,7 +164,7 @@ def _without_duplicates(outcomes: list[dict[str, Any]]) -> list[dict[str, Any]]:
         known = first.setdefault(outcome["recording_id"], outcome) if outcome["recording_id"] else outcome
         if known is not outcome:
             detail = f"it has the same content as {known['path']} of {known['unit']}"
-            outcome = {**outcome, "state": DUPLICATE, "problem": problem("invalid-recording", detail)}
+            outcome = {**outcome, "state": DUPLICATE, "problem": joulepath.errors.InvalidRecordingError(detail).to_dict()}
         kept.append(outcome)
     return kept
 

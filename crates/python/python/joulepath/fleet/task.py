@@ -8,12 +8,16 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+import joulepath
+
 from . import compute
 from .drives import Drive
-from .question import Question, Unanswerable
+from .question import Question
 from .storage import Storage, content_id, id_of, local_copy
 
 DONE, FAILED = "done", "failed"
+LEAST_FAULT = 500
+"""Least status of a problem that is the machine's: the recording may be answered another time."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,7 @@ def report_on(shared: Shared, piece: Piece) -> dict[str, Any]:
             healthy = [copies.enter_context(local_copy(drive.path)) for drive in piece.healthy]
             recording_id, healthy_ids = content_id(recording), [content_id(one) for one in healthy]
         except (FileNotFoundError, PermissionError, IsADirectoryError) as error:
-            return brief(piece.drive, FAILED, problem=problem("internal", f"cannot read {error.filename or piece.drive.path}: {error.strerror}"))
+            return brief(piece.drive, FAILED, problem=fault(f"cannot read {error.filename or piece.drive.path}: {error.strerror}"))
         id = _job_id(question, (recording_id, recording.name), list(zip(healthy_ids, (one.name for one in healthy), strict=True)))
         known = storage.read(storage.report_name(id))
         if known is not None:
@@ -85,13 +89,9 @@ def brief(
     }
 
 
-def problem(type: str, detail: str, errors: list[dict[str, str]] | None = None) -> dict[str, Any]:
-    """A problem document as the service keeps it."""
-    titles = {"internal": ("Internal error", 500), "insufficient-recording": ("The recording does not suffice", 422)}
-    titles["unknown-surface"] = ("A surface is unknown", 422)
-    title, status = titles.get(type, (f"The {type.removeprefix('invalid-')} cannot be used", 400))
-    document = {"type": type, "title": title, "status": status, "detail": detail}
-    return {**document, "errors": errors} if errors else document
+def fault(detail: str) -> dict[str, Any]:
+    """A problem of the machines, not of the recording: asked again, it may be gone."""
+    return joulepath.Error(detail).to_dict()
 
 
 def _job(question: Question, id: str, recording: Any, healthy: list[Any]) -> dict[str, Any]:
@@ -99,8 +99,10 @@ def _job(question: Question, id: str, recording: Any, healthy: list[Any]) -> dic
     job = {"id": id, "kind": question.kind, "state": DONE, "attempt": 1, "progress": {"step": question.kind, "fraction": 1.0}}
     try:
         return {**job, "result": compute.answer(question, recording, healthy)}
-    except Unanswerable as error:
-        return {**job, "state": FAILED, "problem": problem(error.type, error.detail, error.errors)}
+    except joulepath.Error as error:
+        if error.status >= LEAST_FAULT:
+            raise OSError(error.detail) from error
+        return {**job, "state": FAILED, "problem": error.to_dict()}
 
 
 def _job_id(question: Question, recording: tuple[str, str], healthy: list[tuple[str, str]]) -> str:

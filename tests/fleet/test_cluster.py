@@ -6,7 +6,7 @@ import time
 import uuid
 
 import pytest
-from conftest import OTHER
+from nodes import OTHER
 
 from joulepath.fleet import FleetError, Ways
 from joulepath.fleet.cluster import Lost, connected, spread
