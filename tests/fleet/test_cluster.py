@@ -6,10 +6,9 @@ import time
 import uuid
 
 import pytest
-from nodes import OTHER
-
 from joulepath.fleet import FleetError, Ways
 from joulepath.fleet.cluster import Lost, connected, spread
+from nodes import OTHER
 
 
 def outcomes(work, shared, pieces, **ways):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from joulepath.fleet.departures import find_departures
 from joulepath.fleet.random_effects import Series
 

@@ -1,7 +1,6 @@
 """Which drives are meant, and what is refused."""
 
 import pytest
-
 from joulepath.fleet import Drive, FleetError, read_list
 from joulepath.fleet.drives import date_in, drives_of
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from joulepath.fleet.random_effects import Series, fit_between, fit_within, unit_mean
 
 # Log risk ratios and variances of 13 trials of the BCG vaccine (Colditz et al., JAMA 271, 1994), as meta-analysis software is checked with.

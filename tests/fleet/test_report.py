@@ -6,7 +6,6 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-
 from joulepath import fleet
 from joulepath.fleet.run import Run
 

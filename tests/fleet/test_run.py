@@ -10,7 +10,6 @@ import urllib.request
 
 import pytest
 from conftest import documents
-
 from joulepath import fleet
 
 pytestmark = pytest.mark.usefixtures("cluster")

@@ -3,7 +3,6 @@
 import hashlib
 
 import pytest
-
 from joulepath.fleet import FleetError, Storage
 from joulepath.fleet.storage import content_id, id_of
 

@@ -13,10 +13,9 @@ import sys
 import time
 from pathlib import Path
 
-from nodes import OTHER, Cluster
-
 from joulepath import fleet
 from joulepath.fleet.example import Scale, simulate_fleet
+from nodes import OTHER, Cluster
 
 WEEKS = 4
 LEAST_SPEEDUP = 1.8

@@ -11,7 +11,6 @@ from typing import Any
 import joulepath
 
 from . import Drive, Ways, calibrate, diagnose, matrix, prove, read_list, report
-from .blocks import BlockProgress
 from .departures import FALSE_ALARM_RATE
 from .example import Scale, simulate_fleet
 from .matrix import BLOCK_SOURCES
@@ -153,9 +152,14 @@ def _report(arguments: argparse.Namespace) -> int:
 
 def _example(arguments: argparse.Namespace) -> int:
     scale = Scale(arguments.units, arguments.ill, arguments.weeks, arguments.duration_s)
-    tell: BlockProgress = lambda done, of: print(f"\r{done} of {of} drives", end="", file=sys.stderr) if sys.stderr.isatty() else None
+
+    def tell(done: int, of: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{done} of {of} drives", end="\n" if done == of else "", file=sys.stderr)
+
     folder = simulate_fleet(arguments.out, scale, seed=arguments.seed, progress=tell)
-    print(json.dumps({"folder": str(folder)}) if arguments.json else f"{folder}: {scale.units} units, what is wrong with {scale.ill} is in truth.json")
+    said = f"{folder}: {scale.units} units, what is wrong with {scale.ill} is in truth.json"
+    print(json.dumps({"folder": str(folder)}) if arguments.json else said)
     return 0
 
 
