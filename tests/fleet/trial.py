@@ -49,7 +49,7 @@ def speed_and_losses(cluster, arguments):
     paths = sorted(logs.glob("*/*.csv"))[: arguments.recordings]
     ask = getattr(fleet, arguments.kind)
 
-    def timed(name, progress=lambda counts: None):
+    def timed(name, progress=False):
         began_s, load = time.monotonic(), os.getloadavg()[0]
         run = ask([str(path) for path in paths], storage=arguments.out / name, progress=progress)
         spent_s = time.monotonic() - began_s
@@ -64,10 +64,10 @@ def speed_and_losses(cluster, arguments):
     two, two_s = timed("two-nodes")
     killed = []
 
-    def kill(counts):
-        if counts.ended >= len(paths) // 3 and not killed:
+    def kill(step, share):
+        if share >= 1 / 3 and not killed:
             killed.append(kill_worker(cluster))
-        if counts.ended >= 2 * len(paths) // 3 and len(killed) == 1:
+        if share >= 2 / 3 and len(killed) == 1:
             cluster.kill(OTHER)
             killed.append(OTHER)
 

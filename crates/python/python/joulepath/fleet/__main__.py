@@ -103,7 +103,7 @@ def _ask(arguments: argparse.Namespace) -> int:
     if arguments.list:
         paths += read_list(arguments.list)
     columns = json.loads(Path(arguments.columns).read_text()) if arguments.columns and Path(arguments.columns).exists() else arguments.columns
-    shared = {"robot": arguments.robot, "storage": arguments.storage, "map": columns, "ways": _ways(arguments)}
+    shared = {"robot": arguments.robot, "storage": arguments.storage, "map": columns, "ways": _ways(arguments), "progress": sys.stderr.isatty()}
     if arguments.kind == "diagnose":
         run = diagnose(paths, healthy=arguments.reference, ruled_out=arguments.ruled_out, **shared)
     else:
@@ -122,6 +122,7 @@ def _matrix(arguments: argparse.Namespace) -> int:
         storage=arguments.storage,
         block_sources=arguments.block_sources,
         ways=_ways(arguments),
+        progress=sys.stderr.isatty(),
     )
     if arguments.out:
         Path(arguments.out).write_text(json.dumps(found.to_dict(), allow_nan=False))
@@ -137,6 +138,7 @@ def _prove(arguments: argparse.Namespace) -> int:
         storage=arguments.storage,
         block_cases=arguments.block_cases,
         ways=_ways(arguments),
+        progress=sys.stderr.isatty(),
     )
     _print(found, arguments.json)
     return SOME_FAILED if found.failed else 0

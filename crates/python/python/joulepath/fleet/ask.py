@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from .._progress import Progress
 from .cluster import Ways
 from .departures import FALSE_ALARM_RATE
 from .drives import Recordings, drives_of
 from .question import Question, robot_document
 from .report import FleetReport, report_of
-from .run import Progress, Run, ask
+from .run import Run, ask
 from .storage import Storage
 
 
@@ -23,13 +24,13 @@ def diagnose(
     ruled_out: list[str] | None = None,
     map: str | dict[str, Any] | None = None,
     ways: Ways = Ways(),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Run:
     """Diagnoses every recording of a fleet, one task each.
 
     `paths` are recordings, folders or patterns; the folder of a file names its unit and a date in its name the day, or see [`Drive`]. `healthy`
     are recordings known to be healthy: each drive is compared with those of its own unit. `robot` is the fleet's: a built-in one, a file, a
-    document or a `joulepath.Robot`. `map` names columns or topics. Paths are read where tasks run, so that every machine must see them.
+    document or a `joulepath.Robot`. `progress` is that of `joulepath.diagnose`. `map` names columns or topics. Paths are read where tasks run, so that every machine must see them.
 
     Returns what became of each recording. Raises a [`FleetError`] where the question itself is wrong; a recording that fails is counted and named.
     """
@@ -52,7 +53,7 @@ def calibrate(
     storage: str | os.PathLike[str] | Storage,
     map: str | dict[str, Any] | None = None,
     ways: Ways = Ways(),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Run:
     """Fits the robot to every recording of a fleet by itself, one task each, so that a report sees units differ and change.
 

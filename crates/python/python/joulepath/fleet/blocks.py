@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import joulepath
 
+from .._progress import Progress, told
 from .cluster import Lost, Ways, connected, spread
 from .storage import Storage, id_of
 from .task import LEAST_FAULT
-
-BlockProgress = Callable[[int, int], None]
-"""Is told after every block how many of how many have ended."""
-
 
 @dataclass(frozen=True)
 class Work:
@@ -29,15 +25,16 @@ class Work:
 
 
 def answered(
-    work: Work, blocks: Sequence[dict[str, Any]], ways: Ways, progress: BlockProgress | None = None
+    work: Work, blocks: Sequence[dict[str, Any]], ways: Ways, progress: Progress = None
 ) -> list[dict[str, Any]]:
     """Returns for every block, in their order, `{"result"}`, or `{"failed"}` with the reason."""
     answers: list[dict[str, Any]] = [{} for _ in blocks]
-    tell = progress or _on_terminal
+    tell = told(progress)
     with connected(ways) as ray:
         for done, (number, answer) in enumerate(spread(ray, ways, _answer, work, blocks), 1):
             answers[number] = {"failed": str(answer)} if isinstance(answer, Lost) else answer
-            tell(done, len(blocks))
+            if tell is not None:
+                tell(f"{done} of {len(blocks)} blocks", done / len(blocks))
     return answers
 
 
@@ -56,9 +53,3 @@ def _answer(work: Work, block: dict[str, Any]) -> dict[str, Any]:
         answer = {"failed": error.detail}
     storage.write(name, answer)
     return answer
-
-
-def _on_terminal(done: int, total: int) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r{done} of {total} blocks" + ("\n" if done == total else ""))
-        sys.stderr.flush()

@@ -15,7 +15,7 @@ from the fleet that is left.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -26,6 +26,10 @@ FALSE_ALARM_RATE = 0.01
 """Chance that a report names any unit of a fleet that has none to name [-]: one false alarm in two years of weekly reports."""
 LARGEST_SHARE_SET_ASIDE = 1.0 / 3.0
 """Most of a fleet that can be named: what more than a third of the units does is what the fleet does."""
+MOST_MASKED = 10
+"""Most units that can hide one another: the search for more ends when so many in a row were not clear."""
+MOST_GROUPS = 20
+"""Groups that the spreads of others are worked out without, one after the other, so that a large fleet takes as many fits as one of 20 units."""
 FEWEST_UNITS = 4
 """Units from which on a fleet has a spread to compare with."""
 FEWEST_DRIVES = 3
@@ -84,20 +88,20 @@ def find_departures(parameters: dict[str, list[Series]], false_alarm_rate: float
     units = sorted({one.unit for fleet in parameters.values() for one in fleet})
     most = int(len(units) * LARGEST_SHARE_SET_ASIDE)
     aside: list[str] = []
-    at_step: list[dict[str, list[Departure]]] = []
-    while len(aside) <= most:
+    clear = 0
+    while len(aside) < min(most, clear + MOST_MASKED):
         found = _all_departures(_without(parameters, set(aside)), len(units) - len(aside))
-        at_step.append(found)
-        if not found or len(aside) == most:
+        if not found:
             break
         aside.append(min(found, key=lambda unit: (found[unit][0].p_value, -abs(found[unit][0].t))))
-    clear = [i for i, unit in enumerate(aside) if at_step[i][unit][0].p_value < false_alarm_rate]
-    named = _confirmed(aside[: clear[-1] + 1] if clear else [], parameters, len(units), false_alarm_rate)
+        if found[aside[-1]][0].p_value < false_alarm_rate:
+            clear = len(aside)
+    named = _confirmed(aside[:clear], parameters, len(units), false_alarm_rate)
     rest = _without(parameters, set(named))
     departures = {**named, **_all_departures(rest, len(units) - len(named))}
     kept = {unit: [one for one in all if one.p_value < false_alarm_rate] or all[:1] for unit, all in departures.items()}
-    tests = max((sum(1 for _ in _tests(unit, parameters)) for unit in units), default=0)
-    return Found(list(named), kept, {name: fleet_fit(fleet) for name, fleet in rest.items() if fleet}, tests)
+    fits = {name: fleet_fit(fleet) for name, fleet in rest.items() if fleet}
+    return Found(list(named), kept, fits, max((len(_tests(unit, parameters, fits)) for unit in units), default=0))
 
 
 def _confirmed(
@@ -109,7 +113,8 @@ def _confirmed(
     """
     candidates = list(aside)
     while True:
-        found = {unit: _departures_of(unit, _without(parameters, set(candidates) - {unit}), units) for unit in candidates}
+        fits = _fits(_without(parameters, set(candidates)))
+        found = {unit: _departures_of(unit, parameters, fits, units) for unit in candidates}
         confirmed = {unit: all for unit, all in found.items() if all and all[0].p_value < false_alarm_rate}
         if len(confirmed) == len(candidates):
             return dict(sorted(confirmed.items(), key=lambda one: one[1][0].p_value))
@@ -131,43 +136,51 @@ def fleet_fit(fleet: list[Series]) -> FleetFit:
 
 
 def _all_departures(parameters: dict[str, list[Series]], units: int) -> dict[str, list[Departure]]:
+    """The departures of every unit from a fleet without it, or without a group that it is in."""
     names = sorted({one.unit for fleet in parameters.values() for one in fleet})
-    found = {unit: _departures_of(unit, parameters, units) for unit in names}
+    found = {}
+    for group in (names[i::MOST_GROUPS] for i in range(min(MOST_GROUPS, len(names)))):
+        fits = _fits(_without(parameters, set(group)))
+        found.update({unit: _departures_of(unit, parameters, fits, units) for unit in group})
     return {unit: departures for unit, departures in found.items() if departures}
 
 
-def _departures_of(unit: str, parameters: dict[str, list[Series]], units: int) -> list[Departure]:
+def _fits(parameters: dict[str, list[Series]]) -> dict[str, FleetFit]:
+    """The model of each parameter that enough units determine."""
+    return {name: fleet_fit(fleet) for name, fleet in parameters.items() if len(fleet) >= FEWEST_UNITS - 1}
+
+
+def _departures_of(unit: str, parameters: dict[str, list[Series]], fits: dict[str, FleetFit], units: int) -> list[Departure]:
     """All tests of a unit, the clearest first, their p-values as those of the clearest of so many."""
-    departures = list(_tests(unit, parameters))
+    departures = _tests(unit, parameters, fits)
     at_once = len(departures) * units
-    adjusted = [Departure(**{**vars(one), "p_value": one.p_value * at_once}) for one in departures]
+    adjusted = [replace(one, p_value=one.p_value * at_once) for one in departures]
     return sorted(adjusted, key=lambda one: (one.p_value, -abs(one.t)))
 
 
-def _tests(unit: str, parameters: dict[str, list[Series]]):
-    for name, fleet in parameters.items():
-        own = next((one for one in fleet if one.unit == unit), None)
-        others = [one for one in fleet if one.unit != unit]
-        if own is None or len(others) < FEWEST_UNITS - 1:
+def _tests(unit: str, parameters: dict[str, list[Series]], fits: dict[str, FleetFit]) -> list[Departure]:
+    departures: list[Departure | None] = []
+    for name, fit in fits.items():
+        own = next((one for one in parameters[name] if one.unit == unit), None)
+        if own is None:
             continue
-        fit = fleet_fit(others)
-        yield from _level(name, own, fit)
+        departures.append(_level(name, own, fit))
         if own.dated and len(own.value) >= FEWEST_DRIVES and fit.within.dof >= 1:
-            yield from _step(name, own, fit.within)
-            yield from _drift(name, own, fit.within)
+            departures += [_step(name, own, fit.within), _drift(name, own, fit.within)]
+    return [one for one in departures if one is not None]
 
 
-def _level(name: str, own: Series, fit: FleetFit):
+def _level(name: str, own: Series, fit: FleetFit) -> Departure | None:
     mean, sigma = unit_mean(own, fit.within, fit.week_mean)
     between = fit.between
     if between is None or between.dof < 1:
-        return
+        return None
     spread = float(np.hypot(np.hypot(between.tau, sigma), between.mean_sigma))
     t = (mean - between.mean) / spread
-    yield Departure(own.unit, name, "level", mean - between.mean, spread, t, float(2.0 * stats.t.sf(abs(t), between.dof)))
+    return Departure(own.unit, name, "level", mean - between.mean, spread, t, float(2.0 * stats.t.sf(abs(t), between.dof)))
 
 
-def _step(name: str, own: Series, within: Within):
+def _step(name: str, own: Series, within: Within) -> Departure | None:
     """The best place of a step between two drives."""
     value = own.value - within.slope_per_week * own.week
     weight = 1.0 / (own.sigma**2 + within.omega**2)
@@ -178,21 +191,21 @@ def _step(name: str, own: Series, within: Within):
     # Drives of one day are not parted.
     possible = np.flatnonzero(np.diff(own.week) > 0.0)
     if len(possible) == 0:
-        return
+        return None
     t = size / sigma
     best = possible[np.argmax(np.abs(t[possible]))]
     credible = possible[t[possible] ** 2 >= t[best] ** 2 - CREDIBLE_DEVIANCE]
     p_value = min(1.0, len(possible) * float(2.0 * stats.t.sf(abs(t[best]), within.dof)))
     since_range = (int(credible[0]) + 1, int(credible[-1]) + 1)
-    yield Departure(own.unit, name, "step", float(size[best]), float(sigma[best]), float(t[best]), p_value, int(best) + 1, since_range)
+    return Departure(own.unit, name, "step", float(size[best]), float(sigma[best]), float(t[best]), p_value, int(best) + 1, since_range)
 
 
-def _drift(name: str, own: Series, within: Within):
+def _drift(name: str, own: Series, within: Within) -> Departure | None:
     weight = 1.0 / (own.sigma**2 + within.omega**2)
     week = own.week - np.sum(weight * own.week) / np.sum(weight)
     information = float(np.sum(weight * week * week))
     if not information > 0.0:
-        return
+        return None
     slope = float(np.sum(weight * week * own.value)) / information - within.slope_per_week
     sigma = float(np.hypot(information**-0.5, np.nan_to_num(within.slope_sigma)))
-    yield Departure(own.unit, name, "drift", slope, sigma, slope / sigma, float(2.0 * stats.t.sf(abs(slope / sigma), within.dof)))
+    return Departure(own.unit, name, "drift", slope, sigma, slope / sigma, float(2.0 * stats.t.sf(abs(slope / sigma), within.dof)))

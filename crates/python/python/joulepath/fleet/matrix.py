@@ -13,8 +13,9 @@ import numpy as np
 
 import joulepath
 
+from .._progress import Progress
 from . import compute
-from .blocks import BlockProgress, Work, answered
+from .blocks import Work, answered
 from .cluster import Ways
 from .errors import FleetError
 from .question import robot_document
@@ -64,7 +65,7 @@ def matrix(
     storage: str | os.PathLike[str] | Storage,
     block_sources: int = BLOCK_SOURCES,
     ways: Ways = Ways(),
-    progress: BlockProgress | None = None,
+    progress: Progress = None,
     **options: Any,
 ) -> FleetMatrix:
     """Works out the path between every source and every target, which are the sources unless given.

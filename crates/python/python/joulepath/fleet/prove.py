@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .._progress import Progress
 from . import compute
-from .blocks import BlockProgress, Work, answered
+from .blocks import Work, answered
 from .cluster import Ways
 from .command import called, robot_words
 from .errors import FleetError
@@ -51,7 +52,7 @@ def prove(
     storage: str | os.PathLike[str] | Storage,
     block_cases: int = BLOCK_CASES,
     ways: Ways = Ways(),
-    progress: BlockProgress | None = None,
+    progress: Progress = None,
 ) -> FleetTrial:
     """Conceals effects in `cases` drives, diagnoses them without the keys and scores what was found.
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import datetime
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import joulepath
 
+from .._progress import Progress, told
 from .cluster import Lost, Ways, connected, spread
 from .drives import Drive
 from .errors import FleetError
@@ -21,10 +21,6 @@ DUPLICATE = "duplicate"
 """State of a recording that has the content of another one of the run, and counts once."""
 RUNS = "fleet/runs"
 """Where runs are kept in the storage."""
-
-Progress = Callable[["Counts"], None]
-"""Is told after every recording how many have ended."""
-
 
 @dataclass(frozen=True)
 class Counts:
@@ -116,7 +112,7 @@ def ask(
     *,
     healthy: Sequence[Drive] = (),
     ways: Ways = Ways(),
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> Run:
     """Asks a question of every recording on the cluster and writes the run down.
 
@@ -129,14 +125,16 @@ def ask(
         by_unit.setdefault(drive.unit, []).append(drive)
     pieces = [Piece(drive, tuple(one for one in by_unit.get(drive.unit, ()) if one.path != drive.path)) for drive in drives]
     outcomes: list[dict[str, Any] | None] = [None] * len(pieces)
-    tell = progress or _on_terminal
+    tell = told(progress)
     with connected(ways) as ray:
         shared = Shared(question, storage.place, storage.tenant)
         for number, outcome in spread(ray, ways, report_on, shared, pieces):
             if isinstance(outcome, Lost):
                 outcome = brief(pieces[number].drive, FAILED, problem=fault(str(outcome)))
             outcomes[number] = outcome
-            tell(counted([one for one in outcomes if one is not None], len(pieces)))
+            counts = counted([one for one in outcomes if one is not None], len(pieces))
+            if tell is not None:
+                tell(str(counts), counts.ended / counts.total)
     run = Run(_run_id(question, pieces), question.kind, _without_duplicates([one for one in outcomes if one is not None]), _notes(pieces, by_unit))
     storage.write(f"{RUNS}/{run.id}.json", {"written": datetime.datetime.now(datetime.timezone.utc).isoformat(), **run.to_dict()})
     return run
@@ -179,9 +177,3 @@ def _notes(pieces: list[Piece], healthy: dict[str, list[Drive]]) -> list[str]:
 def _run_id(question: Question, pieces: list[Piece]) -> str:
     listed = [[piece.drive.to_dict(), [drive.path for drive in piece.healthy]] for piece in pieces]
     return id_of({"kind": question.kind, "request": question.request([], []), "drives": listed})
-
-
-def _on_terminal(counts: Counts) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r{counts}" + ("\n" if counts.ended == counts.total else ""))
-        sys.stderr.flush()
