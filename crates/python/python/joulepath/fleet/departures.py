@@ -7,15 +7,18 @@ Three questions are asked of every parameter of every unit, each with the spread
 * `drift`: does it change from week to week, beyond what the fleet shares?
 
 The smallest p-value of a unit times the number of its tests, times the number of units, is its p-value (Bonferroni). The unit with the least is
-set aside and all is fitted anew, up to a third of the fleet; the last one whose p-value is below the false-alarm rate is named with all that
-were set aside before it (the generalised extreme Studentised deviate procedure of Rosner, Technometrics 25, 1983,
-doi:10.1080/00401706.1983.10487848), so that ill units hide neither each other nor themselves. Each of them is named only if it also differs
-from the fleet that is left.
+set aside and all is fitted anew, up to a third of the fleet, so that ill units hide neither each other nor themselves, as in the generalised extreme
+Studentised deviate procedure (Rosner, Technometrics 25, 1983, doi:10.1080/00401706.1983.10487848). Critical values of that are too small for
+fleets of a dozen: healthy units that are set aside narrow the spread of the others. Here a unit that comes after j others which were not clear by themselves
+pays for all sets of j that could have been set aside, and half of the false-alarm rate is kept for j = 0, a quarter for j = 1, and so on. So the
+chance that any unit of a healthy fleet is named is at most the false-alarm rate, whatever its size. Each unit is named only if it also differs from
+the fleet that is left.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import comb
 
 import numpy as np
 from scipy import stats
@@ -90,11 +93,14 @@ def find_departures(parameters: dict[str, list[Series]], false_alarm_rate: float
     aside: list[str] = []
     clear = 0
     while len(aside) < min(most, clear + MOST_MASKED):
+        masked = len(aside) - clear
         found = _all_departures(_without(parameters, set(aside)), len(units) - len(aside))
         if not found:
             break
         aside.append(min(found, key=lambda unit: (found[unit][0].p_value, -abs(found[unit][0].t))))
-        if found[aside[-1]][0].p_value < false_alarm_rate:
+        # So many sets could have been put aside before this unit was looked at; shares of the rate add up to one.
+        choices = comb(len(units) - clear, masked)
+        if found[aside[-1]][0].p_value * choices < false_alarm_rate * 0.5 ** (masked + 1):
             clear = len(aside)
     named = _confirmed(aside[:clear], parameters, len(units), false_alarm_rate)
     rest = _without(parameters, set(named))
