@@ -148,6 +148,18 @@ pub enum Error {
         /// How to mend it.
         remedy: String,
     },
+    /// Columns in memory that do not belong to one table.
+    #[error("column `{column}` has {rows} rows, but `{first}` has {expected}; give every column as many")]
+    Ragged {
+        /// The column.
+        column: String,
+        /// Its rows.
+        rows: usize,
+        /// The first column.
+        first: String,
+        /// Rows of the first column.
+        expected: usize,
+    },
     /// A row of units below the header that contradicts what the columns are taken to be in.
     #[error(
         "line {line}, column `{column}`: the row of units says `{found}`, {}",

@@ -19,6 +19,7 @@ mod clock;
 mod clock_offset;
 mod coarse;
 mod column;
+mod columns;
 mod combine;
 mod compression;
 mod container;
@@ -72,6 +73,7 @@ mod watch;
 
 pub use channel::{Channel, Quantity};
 pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, TimeUnit};
+pub use columns::{ColumnValues, NamedColumn};
 pub use combine::Combine;
 pub use error::{Error, TimeError};
 pub use format::Format;

@@ -103,7 +103,7 @@ pub fn read_file(
 }
 
 /// A map as far as it is of tables: one that names topics only leaves columns to their names.
-fn of_columns(map: Option<&Map>) -> Option<&Map> {
+pub(crate) fn of_columns(map: Option<&Map>) -> Option<&Map> {
     map.filter(|map| map.names_columns())
 }
 

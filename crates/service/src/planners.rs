@@ -22,7 +22,7 @@ const PATCH_TIME: Duration = Duration::from_millis(50);
 
 /// Planners by what they are for, the latest at the end.
 #[derive(Default)]
-pub(crate) struct Planners {
+pub struct Planners {
     kept: Mutex<Vec<(Key, Arc<Planner>)>>,
 }
 
@@ -79,7 +79,7 @@ impl Planners {
     }
 
     /// Forgets what was not asked for lately until the rest holds so many bytes at most.
-    pub(crate) fn shrink(&self, most_bytes: usize) {
+    pub fn shrink(&self, most_bytes: usize) {
         let mut kept = self.lock();
         let mut held: usize = kept.iter().map(|(_, planner)| planner.bytes()).sum();
         while held > most_bytes && !kept.is_empty() {

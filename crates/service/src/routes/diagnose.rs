@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use diagnosis::{Question, diagnose_watched};
+use diagnosis::{Diagnosis, Question, diagnose_watched};
 use model::{
     Robot,
     mechanism::{self, Mechanism},
@@ -170,14 +170,26 @@ impl job_run::Work for Work {
         };
         let found = diagnose_watched(&question, &tell, &job.watch());
         let found = found.map_err(|error| Problem::no_diagnosis(&error))?;
-        let mut answer = to_value(&found)?;
-        answer["robot"] = to_value(&found.corrected_robot)?;
-        answer["trace"] = to_value(&found.trace.thinned(MOST_POINTS))?;
-        Ok(answer)
+        document(&found)
     }
 }
 
-fn mechanisms(names: &[String]) -> Result<Vec<&'static dyn Mechanism>, Problem> {
+/// The document of a diagnosis: the report, the corrected robot, and power over time for drawing.
+///
+/// # Errors
+/// A report that cannot be written.
+pub fn document(found: &Diagnosis) -> Result<Value, Problem> {
+    let mut answer = to_value(found)?;
+    answer["robot"] = to_value(&found.corrected_robot)?;
+    answer["trace"] = to_value(&found.trace.thinned(MOST_POINTS))?;
+    Ok(answer)
+}
+
+/// Mechanisms by their names.
+///
+/// # Errors
+/// A name that no mechanism has.
+pub fn mechanisms(names: &[String]) -> Result<Vec<&'static dyn Mechanism>, Problem> {
     let of = |(i, name): (usize, &String)| {
         mechanism::by_name(name).ok_or_else(|| {
             let known = mechanism::ALL.map(|one| one.name()).join(", ");

@@ -28,6 +28,7 @@ use crate::{
     geojson,
     metrics::CacheLabels,
     place::{Place, absent, settle_all},
+    planners::Planners,
     problem::{Problem, ProblemType},
     route_file,
 };
@@ -477,17 +478,30 @@ impl PlanRequest {
         (map_id, terrain): (&str, &Terrain),
         patience: &Patience,
     ) -> Result<Arc<Planner>, Problem> {
+        let (planner, at_hand) = self.kept_planner(engine.planners(), (map_id, terrain), patience)?;
+        let outcome = if at_hand { "hit" } else { "miss" };
+        engine.metrics().planners.get_or_create(&CacheLabels { outcome }).inc();
+        Ok(planner)
+    }
+
+    /// The planner over a map for the request's robot out of those that are kept, made unless it is at hand, and whether it was.
+    ///
+    /// # Errors
+    /// As [`PlanRequest::planner`].
+    pub fn kept_planner(
+        &self,
+        planners: &Planners,
+        (map_id, terrain): (&str, &Terrain),
+        patience: &Patience,
+    ) -> Result<(Arc<Planner>, bool), Problem> {
         let robot = self.limited_robot()?;
         let own = self.ground(terrain)?;
         let (key, terrain) = match &own {
             Some(own) => (self.ground_key(map_id), own),
             None => (map_id.to_owned(), terrain),
         };
-        let planner = engine.planners().get(&key, terrain, &robot, self.settings(&robot), patience);
-        let (planner, at_hand) = planner.map_err(|e| Problem::no_plan(&e))?;
-        let outcome = if at_hand { "hit" } else { "miss" };
-        engine.metrics().planners.get_or_create(&CacheLabels { outcome }).inc();
-        Ok(planner)
+        let planner = planners.get(&key, terrain, &robot, self.settings(&robot), patience);
+        planner.map_err(|e| Problem::no_plan(&e))
     }
 
     fn settings(&self, robot: &Robot) -> Settings {

@@ -81,6 +81,12 @@ pub struct Layer<C> {
 }
 
 impl<C> Layer<C> {
+    /// A layer of cells that are in memory, row by row from the south-west. Whether there are as many as rows and columns say is for
+    /// who made them to see to.
+    pub fn new(cells: C, rows: usize, columns: usize) -> Self {
+        Layer { cells, rows, columns, ragged: None }
+    }
+
     /// Number of cells that were kept.
     pub fn cells(&self) -> usize {
         self.rows.saturating_mul(self.columns)
