@@ -115,7 +115,7 @@ def test_a_matrix_in_blocks_is_the_matrix_and_a_block_that_fails_is_named(tmp_pa
         (["calibrate", "--storage", "store"], "there is no recording to ask about"),
         (["report", "--storage", "store"], "holds no run"),
         (["diagnose", "--recording", "a/b.csv", "--storage", "gs://x", "--robot", "husky-a200"], "give a folder or s3://BUCKET/PREFIX"),
-        (["calibrate", "--recording", "a/b.csv", "--storage", "store", "--robot", "none.json"], "cannot read the robot none.json"),
+        (["calibrate", "--recording", "a/b.csv", "--storage", "store", "--robot", "none.json"], "none.json is neither a built-in robot"),
         (["example", "--out", "x", "--weeks", "1"], "4 or more weeks"),
     ],
 )

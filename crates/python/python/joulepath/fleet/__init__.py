@@ -11,6 +11,10 @@ Results are kept by the hash of all that they depend on, where the service keeps
 driver died is taken up by asking again.
 """
 
+from .._optional import needed
+
+needed("scipy")
+
 from .ask import calibrate, diagnose, report
 from .cluster import Ways
 from .drives import Drive, read_list

@@ -113,7 +113,8 @@ def _ask(arguments: argparse.Namespace) -> int:
 
 
 def _matrix(arguments: argparse.Namespace) -> int:
-    places, targets = (json.loads(Path(file).read_text()) if file else None for file in (arguments.places, arguments.targets))
+    places = json.loads(Path(arguments.places).read_text())
+    targets = json.loads(Path(arguments.targets).read_text()) if arguments.targets else None
     found = matrix(
         arguments.map,
         places,

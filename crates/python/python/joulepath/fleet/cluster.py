@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from .._optional import needed
 from .errors import FleetError
 
 LOOPBACK = "127.0.0.2"
@@ -55,10 +56,7 @@ def connected(ways: Ways) -> Iterator[Any]:
     """Gives Ray, connected to the cluster meant; leaves a connection alone that was there before."""
     ways.check()
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-    try:
-        import ray
-    except ImportError as error:
-        raise FleetError("no-ray", "fleets need Ray: pip install 'joulepath[ray]'") from error
+    ray = needed("ray")
     if ray.is_initialized():
         yield ray
         return

@@ -68,7 +68,8 @@ def date_in(name: str) -> str | None:
 
 
 Recordings = Union[str, os.PathLike[str], Iterable[Union[str, os.PathLike[str], Drive]], Mapping[str, Iterable[str]]]
-"""Recordings of a fleet: paths, folders and patterns (`logs/*/*.mcap`), [`Drive`]s, or lists of paths by unit."""
+"""Recordings of a fleet: paths, folders and patterns (`logs/*/*.mcap`), [`Drive`]s, lists of paths by unit, or a `pandas.DataFrame` with the columns
+`path`, `unit` and `date`."""
 
 
 def drives_of(recordings: Recordings, field: str = "paths") -> list[Drive]:
@@ -83,8 +84,8 @@ def drives_of(recordings: Recordings, field: str = "paths") -> list[Drive]:
         for unit, paths in recordings.items():
             for path in [paths] if isinstance(paths, (str, os.PathLike)) else paths:
                 found += [Drive(one, str(unit), date_in(PurePosixPath(one).name)) for one in _expanded(os.fspath(path), field)]
-    elif hasattr(recordings, "itertuples"):
-        found += _of_rows(recordings.to_dict("records"), field)
+    elif (to_dict := getattr(recordings, "to_dict", None)) is not None:
+        found += _of_rows(to_dict("records"), field)
     else:
         for one in recordings:
             found += [one] if isinstance(one, Drive) else [Drive.from_path(path) for path in _expanded(os.fspath(one), field)]

@@ -77,7 +77,7 @@ def simulate_fleet(
     draw = random.Random(seed)
     units = [f"unit-{number:02d}" for number in range(1, scale.units + 1)]
     robot_seeds = {unit: draw.randrange(2**48) for unit in units}
-    truth = []
+    truth: list[dict[str, Any]] = []
     for unit, effect in zip(draw.sample(units, scale.ill), draw.sample(sorted(EFFECTS), scale.ill), strict=True):
         strength = round(draw.uniform(*EFFECTS[effect]), 3)
         week = draw.randrange(2, scale.weeks - 1)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .._optional import needed
 from .parameters import Parameter
 from .random_effects import Series
 
@@ -48,13 +49,9 @@ class Chart:
 
 def page(document: dict[str, Any], parameters: list[Parameter]) -> str:
     """Returns the page of a report's document."""
-    try:
-        from jinja2 import Environment, PackageLoader, StrictUndefined
-    except ImportError as error:
-        from .errors import FleetError
-
-        raise FleetError("no-ray", "the page of a fleet needs Jinja2: pip install 'joulepath[ray]'") from error
-    environment = Environment(loader=PackageLoader("joulepath.fleet", "templates"), autoescape=True, undefined=StrictUndefined)
+    jinja2 = needed("jinja2")
+    loader = jinja2.PackageLoader("joulepath.fleet", "templates")
+    environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined)
     environment.filters.update(figure=_figure, percent=_percent, probability=_probability)
     by_name = {one.name: one for one in parameters}
     charts = {one["unit"]: _chart(one, by_name) for one in document["named"]}

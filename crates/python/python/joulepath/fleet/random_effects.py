@@ -11,6 +11,7 @@ moments). The interval of mu is that of Hartung & Knapp (Statistics in Medicine 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -132,7 +133,7 @@ def fit_between(mean: Array, sigma: Array) -> Between:
     return Between(centre, float((factor / np.sum(weight)) ** 0.5), tau, dof)
 
 
-def _least(deviance: object, scale: float) -> float:
+def _least(deviance: Callable[[float], float], scale: float) -> float:
     """Returns the non-negative spread of least deviance."""
     if not scale > 0.0:
         return 0.0

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from .._optional import needed
 from .departures import FALSE_ALARM_RATE, Departure, Found, find_departures
 from .errors import FleetError
 from .parameters import Parameter, parameters_of
@@ -41,9 +42,7 @@ class FleetReport:
 
     def to_pandas(self) -> Any:
         """The units as a `pandas.DataFrame`, a row for each."""
-        import pandas
-
-        return pandas.DataFrame(self.document["units"])
+        return needed("pandas").DataFrame(self.document["units"])
 
     def to_html(self) -> str:
         """The report as one page without scripts or outside resources."""
@@ -119,7 +118,7 @@ def _named(unit: str, found: Found, by_name: dict[str, Parameter], mechanisms: l
     for one in acting:
         if one["mechanism"] is not None:
             shares[one["mechanism"]] = shares.get(one["mechanism"], 0.0) + one["probability"]
-    likely = [
+    likely: list[dict[str, Any]] = [
         {"mechanism": name, "mean_probability": share / drives, "drives": drives}
         for name, share in sorted(shares.items(), key=lambda one: -one[1])
         if share / drives >= PROBABLE

@@ -9,6 +9,7 @@ from typing import Any
 
 import joulepath
 
+from .._optional import needed
 from .._progress import Progress, told
 from .cluster import Lost, Ways, connected, spread
 from .drives import Drive
@@ -95,9 +96,7 @@ class Run:
 
     def to_pandas(self) -> Any:
         """The outcomes as a `pandas.DataFrame`, a row for each recording."""
-        import pandas
-
-        return pandas.DataFrame(self.outcomes)
+        return needed("pandas").DataFrame(self.outcomes)
 
     def __str__(self) -> str:
         lines = [f"{self.kind} {self.id}: {self.counts}", *self.notes]
@@ -142,8 +141,8 @@ def ask(
 
 def read_runs(storage: Storage, kind: str) -> list[Run]:
     """Returns the runs of a kind that the storage holds, the latest last."""
-    documents = [storage.read(name) for name in storage.names(RUNS)]
-    documents = sorted((one for one in documents if one is not None and one["kind"] == kind), key=lambda one: one["written"])
+    documents: list[dict[str, Any]] = [one for name in storage.names(RUNS) if (one := storage.read(name)) is not None]
+    documents = sorted((one for one in documents if one["kind"] == kind), key=lambda one: one["written"])
     return [Run(one["id"], one["kind"], one["outcomes"], one["notes"]) for one in documents]
 
 

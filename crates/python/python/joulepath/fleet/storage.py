@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from .._optional import needed
 from .errors import FleetError
 
 ID_CHARACTERS = 32
@@ -133,10 +134,7 @@ def files_below(place: str, endings: tuple[str, ...]) -> list[str]:
 
 
 def _opened(place: str, make: bool = True) -> tuple[Any, str]:
-    try:
-        from pyarrow import fs
-    except ImportError as error:
-        raise FleetError("no-ray", "fleets need pyarrow and Ray: pip install 'joulepath[ray]'") from error
+    fs = needed("pyarrow.fs")
     if "://" not in place:
         root = os.path.abspath(place)
         if make:
