@@ -7,6 +7,7 @@ pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
+pub(crate) mod fleet;
 pub(crate) mod inspect;
 pub(crate) mod man;
 pub(crate) mod matrix;

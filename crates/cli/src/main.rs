@@ -69,6 +69,8 @@ enum Command {
     Simulate(commands::simulate::Arguments),
     /// Conceal effects, diagnose the recordings without the keys, and score what was found
     Prove(commands::prove::Arguments),
+    /// Ask a fleet's recordings on a cluster, and see which robots differ
+    Fleet(commands::fleet::Arguments),
     /// Print what plans take, beside general-purpose searches on the same graphs
     Bench(commands::bench::Arguments),
     /// List robots, describe one from its data sheet, and tell what plans with it are worth
@@ -118,6 +120,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Diagnose(arguments) => commands::diagnose::run(arguments),
         Command::Simulate(arguments) => commands::simulate::run(arguments),
         Command::Prove(arguments) => commands::prove::run(arguments),
+        Command::Fleet(arguments) => commands::fleet::run(arguments),
         Command::Bench(arguments) => commands::bench::run(arguments),
         Command::Robot(arguments) => commands::robot::run(arguments),
         Command::Schema(arguments) => commands::schema::run(arguments),

@@ -17,6 +17,9 @@ EXTRAS = {
     "geopandas": "earth",
     "shapely": "earth",
     "ray": "ray",
+    "pyarrow.fs": "ray",
+    "scipy": "ray",
+    "jinja2": "ray",
 }
 
 
