@@ -21,10 +21,11 @@ use self::{
 };
 
 /// Why a block is not run here. Whatever else a block needs has to be there.
-const NEEDS: [&str; 7] = ["bucket", "cargo", "docker", "minutes", "recordings", "root", "python"];
+const NEEDS: [&str; 8] = ["bucket", "cargo", "docker", "file", "minutes", "recordings", "root", "python"];
 
-/// Languages of blocks that hold no commands: what a file holds, formulas and drawings, output of measurements.
-const NO_COMMANDS: [&str; 7] = ["json", "text", "toml", "xml", "csv", "rust", "yaml"];
+/// Languages of blocks that hold no commands: what a file holds, formulas and drawings, output of measurements; and those of Python,
+/// which `tests/python_package/run` runs.
+const NO_COMMANDS: [&str; 8] = ["json", "text", "toml", "xml", "csv", "rust", "yaml", "pycon"];
 
 /// Pages of the README and the guide, relative to the root.
 fn pages() -> Vec<String> {
