@@ -100,8 +100,8 @@ pub(crate) fn plan<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a PlanAnswe
 /// The energy-minimal, shortest and fastest paths.
 pub(crate) fn compare<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a CompareAnswer) -> Scene<'a> {
     let headline = format!("{:.0} % less energy", 100.0 * found.saving_fraction);
-    let further = 100.0 * (found.energy.distance_m / found.distance.distance_m - 1.0);
-    let mut about = vec![format!("than the shortest path, by driving {further:.0} % further")];
+    let further_m = found.energy.distance_m - found.distance.distance_m;
+    let mut about = vec![format!("than the shortest path, by driving {further_m:.0} m further")];
     about.extend(short_conditions(robot));
     // The fastest path often lies on the shortest: it is drawn after it, in dashes.
     let lines = vec![
