@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Mutex, time::Duration};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 use prove::Stage;
 
 /// A bar over the bytes of files that are about to be read.
@@ -12,10 +12,12 @@ pub(crate) fn reading(files: &[PathBuf]) -> ProgressBar {
     ProgressBar::new(bytes).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// A sign of life for work whose length is not known.
+/// A sign of life for work whose length is not known; it goes when it is dropped, as by an error.
 pub(crate) fn working(what: &'static str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}");
-    let bar = ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    let bar = ProgressBar::no_length()
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+        .with_finish(ProgressFinish::AndClear);
     bar.set_message(what);
     bar.enable_steady_tick(Duration::from_millis(100));
     bar

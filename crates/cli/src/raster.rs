@@ -116,16 +116,21 @@ impl Raster {
     }
 }
 
-/// Pixels of red, green and blue as a PNG.
+/// Pixels of red, green and blue as a PNG, of gray where they have no colour.
 ///
 /// # Errors
 /// Pixels that cannot be encoded.
 pub(crate) fn encode(rgb: &[u8], width: usize, height: usize) -> anyhow::Result<Vec<u8>> {
+    let (pixels, _) = rgb.as_chunks::<3>();
+    let is_gray = pixels.iter().all(|[red, green, blue]| red == green && green == blue);
+    let gray: Vec<u8> = if is_gray { pixels.iter().map(|[gray, ..]| *gray).collect() } else { Vec::new() };
+    let (color, samples) =
+        if is_gray { (png::ColorType::Grayscale, &gray[..]) } else { (png::ColorType::Rgb, rgb) };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, u32::try_from(width)?, u32::try_from(height)?);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(color);
     encoder.set_compression(png::Compression::High);
-    encoder.write_header()?.write_image_data(rgb)?;
+    encoder.write_header()?.write_image_data(samples)?;
     Ok(bytes)
 }
 

@@ -9,7 +9,7 @@ use service::routes::{
 use crate::{
     arguments::{PathLimits, Question, patience},
     failure::Refused,
-    output,
+    output, progress,
     table::{aligned, energy, time},
 };
 
@@ -65,8 +65,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let plan = request.plan().map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let sign = progress::working("planning");
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
+    sign.finish_and_clear();
     if arguments.question.driving.json {
         output::json(&found)?;
     } else {

@@ -9,7 +9,7 @@ use service::routes::{
 use crate::{
     arguments::{Driving, Place, patience, warn_of_answer},
     failure::Refused,
-    output,
+    output, progress,
     table::{energy, time},
 };
 
@@ -48,8 +48,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let plan = request.plan().map_err(Refused)?;
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let sign = progress::working("planning");
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &patience).map_err(Refused)?;
+    sign.finish_and_clear();
     warn_of_answer(&found.warnings, &terrain);
     if driving.json {
         output::json(&found)?;

@@ -10,7 +10,7 @@ use service::routes::{
 use crate::{
     arguments::{MapArguments, Place, patience, warn_of_answer},
     failure::{OutOfCharge, Refused},
-    output,
+    output, progress,
     robot_arguments::RobotArguments,
     table::{energy, time},
 };
@@ -91,8 +91,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let plan = request.plan();
     let patience = plan.patience(&patience()).map_err(Refused)?;
+    let sign = progress::working("planning");
     let planner = plan.planner(&terrain, &patience).map_err(Refused)?;
     let found = answer(&planner, &request, &plan, &patience).map_err(Refused)?;
+    sign.finish_and_clear();
     warn_of_answer(&found.warnings, &terrain);
     if arguments.json {
         output::json(&found)?;

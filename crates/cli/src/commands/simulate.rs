@@ -7,7 +7,7 @@ use world::{Drive, Key, RobotFile, World, simulate};
 
 use crate::{
     failure::BadInput,
-    files, output,
+    files, output, progress,
     recorded::{robot, text},
 };
 
@@ -42,7 +42,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .into_iter()
         .flatten()
         .try_for_each(|path| files::check(path))?;
+    let sign = progress::working("driving");
     let log = simulate(&world, &robot, &drive).map_err(|error| BadInput(error.to_string()))?;
+    sign.finish_and_clear();
     files::write_with(&arguments.out, |out| Ok(log.write_csv(out)?))?;
     if let Some(path) = &arguments.key {
         let key = Key::of(&world, &robot, &drive).map_err(|error| BadInput(error.to_string()))?;
