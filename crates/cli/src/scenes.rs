@@ -38,9 +38,14 @@ pub(crate) fn conditions(terrain: &Terrain, robot: &Robot) -> String {
 }
 
 /// The same in short lines beside a picture.
-fn short_conditions(robot: &Robot) -> Vec<String> {
+fn short_conditions(terrain: &Terrain, robot: &Robot) -> Vec<String> {
+    let default = robot.default_surface.replace('_', " ");
+    let ground = match terrain.surfaces().is_some_and(|surfaces| !surfaces.names.is_empty()) {
+        true => format!("the map's surfaces, else {default}"),
+        false => default,
+    };
     vec![
-        format!("{} of {:.0} kg on {}", robot.name, robot.mass_kg, robot.default_surface.replace('_', " ")),
+        format!("{} of {:.0} kg on {ground}", robot.name, robot.mass_kg),
         format!(
             "standing load {} W, {:.0} % of braking recovered",
             robot.hotel_power_w,
@@ -55,7 +60,7 @@ fn empty<'a>(terrain: &'a Terrain, robot: &Robot, headline: String) -> Scene<'a>
         terrain,
         caption: "Shaded relief, north up".to_owned(),
         headline,
-        about: short_conditions(robot),
+        about: short_conditions(terrain, robot),
         lines: Vec::new(),
         marks: Vec::new(),
         ground: None,
@@ -100,9 +105,9 @@ pub(crate) fn plan<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a PlanAnswe
 /// The energy-minimal, shortest and fastest paths.
 pub(crate) fn compare<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a CompareAnswer) -> Scene<'a> {
     let headline = format!("{:.0} % less energy", 100.0 * found.saving_fraction);
-    let further = 100.0 * (found.energy.distance_m / found.distance.distance_m - 1.0);
-    let mut about = vec![format!("than the shortest path, by driving {further:.0} % further")];
-    about.extend(short_conditions(robot));
+    let further_m = found.energy.distance_m - found.distance.distance_m;
+    let mut about = vec![format!("than the shortest path, by driving {further_m:.0} m further")];
+    about.extend(short_conditions(terrain, robot));
     // The fastest path often lies on the shortest: it is drawn after it, in dashes.
     let lines = vec![
         path("shortest", VERMILION, &found.distance),
