@@ -7,7 +7,10 @@ use std::{
     fs,
 };
 
-use joulepath_tests::{Server, file, published::with_results};
+use joulepath_tests::{
+    Server, file,
+    published::{result, with_results},
+};
 use pulldown_cmark::{Event, Options, Parser, Tag};
 
 /// Values of an attribute in a page.
@@ -112,4 +115,19 @@ fn every_figure_of_a_result_is_that_of_its_file() {
         }
     }
     assert!(results >= 3, "{results}");
+}
+
+#[test]
+fn the_first_figure_of_the_readme_is_the_soberest_of_its_result() {
+    let measured = result("savings").unwrap().output;
+    let medians: Vec<f64> = measured
+        .lines()
+        .filter(|line| line.contains(" W "))
+        .map(|line| line.split_whitespace().nth(3).unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(medians.len(), 6, "{measured}");
+    let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
+    let readme = fs::read_to_string(file("README.md")).unwrap();
+    let first = readme.split(" saves ").nth(1).unwrap().split(" %").next().unwrap();
+    assert_eq!(first.parse(), Ok(least), "{measured}");
 }

@@ -124,7 +124,7 @@ fn without_a_token_only_probes_and_pages_answer() {
     }
     server.post_json("/v1/plan", &json!({})).problem(401, "unauthorized");
     assert_eq!(server.delete("/v1/maps/abc").status, 401);
-    for path in ["/healthz", "/readyz", "/openapi.json", "/docs/"] {
+    for path in ["/healthz", "/readyz", "/openapi.json", "/docs/", "/docs/guide/"] {
         assert_eq!(server.get(path).status, 200, "{path}");
     }
     for token in [TOKEN, "another-token-0123"] {

@@ -27,6 +27,9 @@ const NEEDS: [&str; 8] = ["bucket", "cargo", "docker", "file", "minutes", "recor
 /// which `tests/python_package/run` runs.
 const NO_COMMANDS: [&str; 8] = ["json", "text", "toml", "xml", "csv", "rust", "yaml", "pycon"];
 
+/// Pages whose blocks are run by tests of their own, or take minutes: Python's by doctest, those of fleets on a cluster.
+const RUN_ELSEWHERE: [&str; 3] = ["docs/python.md", "docs/fleets.md", "docs/performance.md"];
+
 /// Pages of the README and the guide, relative to the root.
 fn pages() -> Vec<String> {
     let mut found = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
@@ -36,6 +39,7 @@ fn pages() -> Vec<String> {
             found.push(format!("docs/{name}"));
         }
     }
+    found.retain(|page| !RUN_ELSEWHERE.contains(&page.as_str()));
     found.sort();
     found
 }
