@@ -23,9 +23,8 @@ use self::{
 /// Why a block is not run here. Whatever else a block needs has to be there.
 const NEEDS: [&str; 8] = ["bucket", "cargo", "docker", "file", "minutes", "recordings", "root", "python"];
 
-/// Languages of blocks that hold no commands: what a file holds, formulas and drawings, output of measurements; and those of Python,
-/// which `tests/python_package/run` runs.
-const NO_COMMANDS: [&str; 8] = ["json", "text", "toml", "xml", "csv", "rust", "yaml", "pycon"];
+/// Languages of blocks that hold no commands: what a file holds, formulas and drawings, output of measurements.
+const NO_COMMANDS: [&str; 7] = ["json", "text", "toml", "xml", "csv", "rust", "yaml"];
 
 /// Pages whose blocks are run by tests of their own, or take minutes: Python's by doctest, those of fleets on a cluster.
 const RUN_ELSEWHERE: [&str; 3] = ["docs/python.md", "docs/fleets.md", "docs/performance.md"];
