@@ -58,7 +58,8 @@ def speed_and_losses(cluster, arguments):
         began_s, load = time.monotonic(), os.getloadavg()[0]
         run = ask([str(path) for path in paths], storage=arguments.out / name, progress=progress)
         spent_s = time.monotonic() - began_s
-        print(f"{name}: {run.counts} in {spent_s:.1f} s (load of the machine before: {load:.1f})", flush=True)
+        at_work = sum(one["spent_s"] or 0.0 for one in run.outcomes) / (spent_s * len(cluster.nodes))
+        print(f"{name}: {run.counts} in {spent_s:.1f} s, nodes at work {100 * at_work:.0f} % of it (load of the machine before: {load:.1f})", flush=True)
         return run, spent_s
 
     # Workers are started, and programs and files are in memory, before time is taken.
