@@ -1,6 +1,7 @@
 """A question to recordings of a fleet, from their files to the service's list of jobs."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -123,3 +124,17 @@ def test_a_command_that_is_wrong_ends_with_2_and_a_line_with_the_mend(words, say
     done = subprocess.run([sys.executable, "-m", "joulepath.fleet", *words], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 2
     assert says in done.stderr and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("python", "says"),
+    [
+        (sys.executable, "holds no run: run `fleet calibrate` or `fleet diagnose` first"),
+        ("no-such-python", "install Python 3.10 or later, or let JOULEPATH_PYTHON name it"),
+    ],
+)
+def test_the_command_goes_on_as_the_package_or_says_what_it_needs(joulepath, python, says, tmp_path):
+    words = [*joulepath, "fleet", "report", "--storage", str(tmp_path / "store")]
+    done = subprocess.run(words, capture_output=True, text=True, env={**os.environ, "JOULEPATH_PYTHON": python})
+    assert done.returncode == 2
+    assert says in done.stderr

@@ -1,6 +1,6 @@
 """The long trial of fleets: one node against two, a killed worker and a killed node, and the example fleet of which three robots are ill.
 
-    python trial.py OUT [--recordings 1000] [--kind diagnose] [--seed 2026] [--only speed|fleet]
+    python trial.py OUT [--recordings 1000] [--kind diagnose] [--seed 2026] [--only speed|fleet|alarms]
 
 Prints a line for each figure and ends with 1 where one is not reached.
 """
@@ -14,11 +14,14 @@ import time
 from pathlib import Path
 
 from joulepath import fleet
+from joulepath.fleet.departures import find_departures
 from joulepath.fleet.example import Scale, simulate_fleet
 from nodes import OTHER, Cluster
+from test_departures import healthy
 
 WEEKS = 4
 LEAST_SPEEDUP = 1.8
+HEALTHY_FLEETS, ALARM_RATE = 200, 0.05
 
 
 def main():
@@ -27,8 +30,10 @@ def main():
     parser.add_argument("--recordings", type=int, default=1000)
     parser.add_argument("--kind", choices=["diagnose", "calibrate"], default="diagnose")
     parser.add_argument("--seed", type=int, default=2026)
-    parser.add_argument("--only", choices=["speed", "fleet"])
+    parser.add_argument("--only", choices=["speed", "fleet", "alarms"])
     arguments = parser.parse_args()
+    if arguments.only == "alarms":
+        sys.exit(0 if alarms() else 1)
     cluster = Cluster()
     reached = []
     try:
@@ -53,7 +58,8 @@ def speed_and_losses(cluster, arguments):
         began_s, load = time.monotonic(), os.getloadavg()[0]
         run = ask([str(path) for path in paths], storage=arguments.out / name, progress=progress)
         spent_s = time.monotonic() - began_s
-        print(f"{name}: {run.counts} in {spent_s:.1f} s (load of the machine before: {load:.1f})", flush=True)
+        at_work = sum(one["spent_s"] or 0.0 for one in run.outcomes) / (spent_s * len(cluster.nodes))
+        print(f"{name}: {run.counts} in {spent_s:.1f} s, nodes at work {100 * at_work:.0f} % of it (load of the machine before: {load:.1f})", flush=True)
         return run, spent_s
 
     # Workers are started, and programs and files are in memory, before time is taken.
@@ -77,6 +83,13 @@ def speed_and_losses(cluster, arguments):
     print(f"two nodes are {one_s / two_s:.2f} times as fast as one")
     print(f"killed: worker {killed[0]}, node {killed[1]}; same outcomes {all(same)}; one report for each recording {all(whole)}", flush=True)
     return [one_s / two_s >= LEAST_SPEEDUP, *same, *whole, one.counts.done == len(paths)]
+
+
+def alarms():
+    """How often a fleet of which nothing is wrong is given a name, against how often it may."""
+    named = sum(bool(find_departures(healthy(8, seed=seed), ALARM_RATE).named) for seed in range(HEALTHY_FLEETS))
+    print(f"{named} of {HEALTHY_FLEETS} healthy fleets of 8 robots were given a name at a false-alarm rate of {ALARM_RATE}")
+    return named <= ALARM_RATE * HEALTHY_FLEETS
 
 
 def outcomes(run):

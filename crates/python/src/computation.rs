@@ -22,10 +22,13 @@ use crate::problem::{Failure, exception, internal};
 /// below the 0.1 s that a computation may go on.
 const LOOK: Duration = Duration::from_millis(20);
 
+/// Takes note of a step and of the share of all that is done.
+type Tell = Box<dyn Fn(&str, f64) + Send + Sync>;
+
 /// What a computation is told, and what it tells.
 pub(crate) struct Computation {
     called_off: Arc<AtomicBool>,
-    tell: Box<dyn Fn(&str, f64) + Send + Sync>,
+    tell: Tell,
 }
 
 /// What comes from the thread that computes.

@@ -3,6 +3,9 @@
 //! Requests are the JSON documents of the HTTP API and answers are too, by the functions that the service answers with; numbers by
 //! row or by pose are numpy arrays. What Python people see of it is written in Python, in `python/joulepath`.
 
+// Arguments come out of Python by value.
+#![allow(clippy::needless_pass_by_value)]
+
 mod computation;
 mod data_sheet;
 mod diagnosis;

@@ -1,6 +1,6 @@
 //! A planned path: totals as a document, poses as columns.
 
-use std::mem;
+use std::{mem, time::Instant};
 
 use numpy::PyArray1;
 use pyo3::{prelude::*, types::PyDict};
@@ -19,14 +19,19 @@ pub(crate) struct Path {
     totals_answer: PlanAnswer,
     poses: Vec<PoseAnswer>,
     refined: Option<Vec<PoseAnswer>>,
+    /// Time that the answer took, without the way to it and back [s].
+    #[pyo3(get)]
+    answered_s: f64,
 }
 
 impl Path {
-    pub(crate) fn of(mut answer: PlanAnswer) -> Result<Self, Problem> {
+    /// The path of an answer that was begun at a moment.
+    pub(crate) fn of(mut answer: PlanAnswer, began: Instant) -> Result<Self, Problem> {
+        let answered_s = began.elapsed().as_secs_f64();
         let poses = mem::take(&mut answer.poses);
         let refined = answer.refined.as_mut().map(|refined| mem::take(&mut refined.poses));
         let totals = serde_json::to_string(&answer).map_err(internal)?;
-        Ok(Path { totals, totals_answer: answer, poses, refined })
+        Ok(Path { totals, totals_answer: answer, poses, refined, answered_s })
     }
 }
 

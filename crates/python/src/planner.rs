@@ -1,6 +1,6 @@
 //! Questions over one map, answered by the functions that answer the HTTP API.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Instant};
 
 use planner::Patience;
 use pyo3::prelude::*;
@@ -45,8 +45,9 @@ impl Planner {
         beside(py, None, |computation| {
             let request: PlanRequest = read(request)?;
             let patience = &request.patience(&computation.patience())?;
-            let found = plan::answer(&*self.planner(&request, patience)?, &request, patience)?;
-            Path::of(found)
+            let planner = self.planner(&request, patience)?;
+            let began = Instant::now();
+            Path::of(plan::answer(&planner, &request, patience)?, began)
         })
     }
 
@@ -55,9 +56,16 @@ impl Planner {
         beside(py, None, |computation| {
             let request: PlanRequest = read(request)?;
             let patience = &request.patience(&computation.patience())?;
-            let found = compare::answer(&*self.planner(&request, patience)?, &request, patience)?;
+            let planner = self.planner(&request, patience)?;
+            let began = Instant::now();
+            let found = compare::answer(&planner, &request, patience)?;
             let (energy, distance, time) = (found.energy, found.distance, found.time);
-            Ok::<_, Problem>((Path::of(energy)?, Path::of(distance)?, Path::of(time)?, found.saving_fraction))
+            Ok::<_, Problem>((
+                Path::of(energy, began)?,
+                Path::of(distance, began)?,
+                Path::of(time, began)?,
+                found.saving_fraction,
+            ))
         })
     }
 
@@ -67,9 +75,10 @@ impl Planner {
             let mut request: AlternativesRequest = read(request)?;
             let asked = request.plan()?;
             let patience = &asked.patience(&computation.patience())?;
-            let mut found =
-                alternatives::answer(&*self.planner(&asked, patience)?, &request, &asked, patience)?;
-            let paths = std::mem::take(&mut found.alternatives).into_iter().map(Path::of);
+            let planner = self.planner(&asked, patience)?;
+            let began = Instant::now();
+            let mut found = alternatives::answer(&planner, &request, &asked, patience)?;
+            let paths = std::mem::take(&mut found.alternatives).into_iter().map(|path| Path::of(path, began));
             Ok::<_, Problem>((paths.collect::<Result<_, Problem>>()?, written(&found)?))
         })
     }
@@ -81,26 +90,29 @@ impl Planner {
                 let mut request: MatrixRequest = read(request)?;
                 let asked = request.plan()?;
                 let patience = &asked.patience(&computation.patience())?;
-                written(&matrix::answer(&*self.planner(&asked, patience)?, &request, patience)?)
+                let planner = self.planner(&asked, patience)?;
+                written(&matrix::answer(&planner, &request, patience)?)
             }
             "reachable" => {
                 let mut request: ReachableRequest = read(request)?;
                 let asked = request.plan();
                 let patience = &asked.patience(&computation.patience())?;
-                let found = Found::of(&*self.planner(&asked, patience)?, &request, patience)?;
-                written(&found.contours(patience)?)
+                let planner = self.planner(&asked, patience)?;
+                written(&Found::of(&planner, &request, patience)?.contours(patience)?)
             }
             "range" => {
                 let mut request: RangeRequest = read(request)?;
                 let asked = request.plan();
                 let patience = &asked.patience(&computation.patience())?;
-                written(&range::answer(&*self.planner(&asked, patience)?, &request, &asked, patience)?)
+                let planner = self.planner(&asked, patience)?;
+                written(&range::answer(&planner, &request, &asked, patience)?)
             }
             "mission" => {
                 let mut request: MissionRequest = read(request)?;
                 let asked = request.plan();
                 let patience = &asked.patience(&computation.patience())?;
-                written(&mission::answer(&*self.planner(&asked, patience)?, &request, &asked, patience)?)
+                let planner = self.planner(&asked, patience)?;
+                written(&mission::answer(&planner, &request, &asked, patience)?)
             }
             other => Err(Problem::new(ProblemType::NotFound, format!("there is no question `{other}`"))),
         })

@@ -15,7 +15,8 @@ const PYTHON: &str = "JOULEPATH_PYTHON";
 /// Variable by which the package finds this program.
 const PROGRAM: &str = "JOULEPATH";
 /// Ends with success where the package is installed.
-const IS_INSTALLED: &str = "import importlib.util, sys; sys.exit(importlib.util.find_spec('joulepath') is None)";
+const IS_INSTALLED: &str =
+    "import importlib.util, sys; sys.exit(importlib.util.find_spec('joulepath') is None)";
 
 #[derive(Args)]
 #[command(disable_help_flag = true)]
@@ -31,7 +32,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let named = python.to_string_lossy().into_owned();
     let looked = Command::new(&python).args(["-c", IS_INSTALLED]).stdin(Stdio::null()).output();
     let installed = looked.map_err(|error| {
-        BadInput(format!("cannot run `{named}`: {error}; install Python 3.10 or later, or let {PYTHON} name it"))
+        BadInput(format!(
+            "cannot run `{named}`: {error}; install Python 3.10 or later, or let {PYTHON} name it"
+        ))
     })?;
     if !installed.status.success() {
         let detail = format!(

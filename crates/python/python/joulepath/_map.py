@@ -55,7 +55,7 @@ class Map:
         >>> import joulepath, numpy
         >>> east = numpy.arange(60) * 0.5
         >>> hill = joulepath.Map.from_array(numpy.tile(0.1 * east, (40, 1)), 0.5, crs="EPSG:32632")
-        >>> hill.elevation_m[0, :3].tolist()
+        >>> hill.elevation_m[0, :3].round(3).tolist()
         [0.0, 0.05, 0.1]
         >>> joulepath.Map.from_array(numpy.zeros(5), 0.5)
         Traceback (most recent call last):

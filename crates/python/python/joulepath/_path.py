@@ -28,8 +28,8 @@ class Path(Answer):
     >>> import joulepath, numpy
     >>> planner = joulepath.Planner(joulepath.Map.from_array(numpy.zeros((40, 60)), 0.5))
     >>> path = planner.plan((2.0, 10.0, 0.0), (20.0, 10.0))
-    >>> path.energy_j > 0, path.poses["x_m"][-1] > 19.0
-    (True, True)
+    >>> path.energy_j > 0, round(path.poses["x_m"].max())
+    (True, 20)
     """
 
     energy_j: float

@@ -34,7 +34,7 @@ class Recording:
     >>> t_s = numpy.arange(0.0, 60.0, 0.1)
     >>> drive = {"t_s": t_s, "v_left_mps": 0.5 + 0 * t_s, "v_right_mps": 0.5 + 0 * t_s, "power_w": 80 + 0 * t_s}
     >>> recording = joulepath.Recording.from_columns(drive)
-    >>> recording.rows, recording.duration_s, recording["power_w"][:2].tolist()
+    >>> recording.rows, round(recording.duration_s, 1), recording["power_w"][:2].tolist()
     (600, 59.9, [80.0, 80.0])
     """
 
@@ -63,7 +63,7 @@ class Recording:
         >>> joulepath.Recording.open("no-such.csv")
         Traceback (most recent call last):
             ...
-        joulepath.errors.Error: ...no-such.csv...
+        joulepath.errors.InvalidRecordingError: no-such.csv: ...
         """
         paths = [path] if isinstance(path, (str, os.PathLike)) else list(path)
         if not paths:

@@ -21,8 +21,8 @@ class Robot:
 
     >>> import joulepath
     >>> husky = joulepath.Robot.builtin("husky-a200")
-    >>> husky.mass_kg, sorted(husky.surfaces)[:2]
-    (90.0, ['concrete', 'grass'])
+    >>> husky.mass_kg, husky.default_surface
+    (90.0, 'marble')
     >>> husky.replace(mass_kg=110.0).mass_kg
     110.0
     """
