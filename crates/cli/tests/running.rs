@@ -20,6 +20,17 @@ fn joulepath(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// A command that does not outlive a test that fails.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // One that has ended is past killing.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 fn interrupt(child: &Child) {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
@@ -64,12 +75,13 @@ fn open_serves_the_files_it_is_given_in_the_browser_until_an_interrupt() {
     fs::write(&browser, format!("#!/bin/sh\necho \"$1\" > '{}'\n", told.display())).unwrap();
     assert!(Command::new("chmod").arg("+x").arg(&browser).status().unwrap().success());
     let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
-    let mut child = joulepath(folder.path(), &["open", "yard.json", "mine.json", "drive.csv"])
+    let child = joulepath(folder.path(), &["open", "yard.json", "mine.json", "drive.csv"])
         .env("PATH", path)
         .env("DISPLAY", ":0")
         .spawn()
         .unwrap();
-    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let mut running = Running(child);
+    let mut lines = BufReader::new(running.0.stdout.take().unwrap()).lines().map(Result::unwrap);
     let page = lines.find_map(|line| line.strip_prefix("page       ").map(str::to_owned)).unwrap();
     assert_eq!(fs::read_to_string(&told).unwrap().trim(), page);
     let (url, asked) = page.split_once("/#plan?map=").unwrap();
@@ -80,8 +92,8 @@ fn open_serves_the_files_it_is_given_in_the_browser_until_an_interrupt() {
     assert_eq!(get(&format!("/v1/maps/{map}"))["name"], "yard");
     assert_eq!(get(&format!("/v1/robots/{robot}"))["name"], "mine");
     assert_eq!(get("/v1/recordings")["recordings"].as_array().unwrap().len(), 1);
-    interrupt(&child);
-    assert!(child.wait().unwrap().success());
+    interrupt(&running.0);
+    assert!(running.0.wait().unwrap().success());
 }
 
 /// A short drive with power.
