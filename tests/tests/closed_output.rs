@@ -65,7 +65,7 @@ const COMMANDS: [&[&str]; 14] = [
     &["demo", "--out", "demo.svg"],
 ];
 /// What takes minutes, and the service, which prints before it serves. All print by the same function.
-const OTHERS: [&str; 7] = ["completions", "diagnose", "man", "open", "prove", "schema", "serve"];
+const OTHERS: [&str; 8] = ["completions", "diagnose", "fleet", "man", "open", "prove", "schema", "serve"];
 
 #[test]
 fn every_command_ends_without_a_word_when_nobody_reads() {

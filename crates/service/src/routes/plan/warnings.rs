@@ -98,11 +98,12 @@ fn stops(answer: &PlanAnswer, request: &PlanRequest) -> Option<Warning> {
 
 /// A warning where the robot has constants of other robots, with the drive that would tell the one that matters most.
 pub(crate) fn borrowed_constants(robot: &Robot) -> Option<Warning> {
-    let worst = robot.worst_borrowed()?;
+    let (worst, borrowed) = (robot.worst_borrowed()?, robot.borrowed());
     let detail = format!(
-        "{} of `{}` are borrowed from other robots or assumed; most would be gained by {worst}: `joulepath calibrate` with {}",
-        robot.borrowed().join(", "),
+        "{} of `{}` {} borrowed from other robots or assumed; most would be gained by {worst}: `joulepath calibrate` with {}",
+        borrowed.join(", "),
         robot.name,
+        if borrowed.len() == 1 { "is" } else { "are" },
         remedy(worst)
     );
     Some(Warning::new(WarningKind::BorrowedConstants, detail))
