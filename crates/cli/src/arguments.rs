@@ -1,6 +1,6 @@
 //! Arguments that several commands take, and what they mean.
 
-use std::{fs, path::PathBuf, str::FromStr, time::Instant};
+use std::{path::PathBuf, str::FromStr, time::Instant};
 
 use clap::Args;
 use model::PowerModel;
