@@ -29,6 +29,7 @@ pub mod robot;
 pub mod rolling;
 mod sides;
 pub mod skid;
+mod supporting_line;
 pub mod thermal;
 pub mod worth;
 
@@ -43,3 +44,4 @@ pub use motor::WarmMotor;
 pub use power::{Manoeuvre, Power, PowerModel, power};
 pub use robot::Robot;
 pub use sides::Sides;
+pub use supporting_line::SupportingLine;
