@@ -119,17 +119,6 @@ impl SidewaysPull<f64> {
         twice_atanh(drifting.clamp(-HELD, HELD)) / twice_atanh(mobilized.min(HELD))
     }
 
-    /// Least and most that is left of the skid resistance where the ground rises by at most so much along and across.
-    ///
-    /// What is left falls with the share that is taken, of which the pull has `per_tilt` times the tilt, and a load off the middle at most
-    /// its shift times what is left.
-    pub(crate) fn range_left(&self, steepest: f64) -> [f64; 2] {
-        let most = self.left_beside(0.0);
-        let shifted = (self.ahead.abs() + self.per_along.abs() * steepest) * most.max(1.0);
-        let least = self.left_beside(self.per_tilt.abs() * steepest + shifted);
-        [least.min(most), most]
-    }
-
     /// The same in single precision.
     pub(crate) fn single(&self) -> SidewaysPull<f32> {
         SidewaysPull {

@@ -29,7 +29,6 @@ pub mod robot;
 pub mod rolling;
 mod sides;
 pub mod skid;
-mod supporting_line;
 pub mod thermal;
 pub mod worth;
 
@@ -44,4 +43,3 @@ pub use motor::WarmMotor;
 pub use power::{Manoeuvre, Power, PowerModel, power};
 pub use robot::Robot;
 pub use sides::Sides;
-pub use supporting_line::SupportingLine;

@@ -77,11 +77,8 @@ impl Found {
     }
 }
 
-/// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost. The weight that
-/// proves the bound asked for comes between them.
+/// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost.
 const WEIGHTS: [f64; 3] = [1.2, 1.05, 1.0];
-/// Least weight above 1 that a pass is worth: with a smaller one it expands about as much as with 1.
-const LEAST_WEIGHT: f64 = 1.001;
 /// Expansions between two looks at the clock, less than a millisecond.
 const CLOCK_EVERY: u64 = 2048;
 /// Open states that are looked at to prove a bound, even where patience is over.
@@ -126,19 +123,15 @@ pub fn search(
     if passes.least == UNREACHED {
         return Outcome::Unreachable;
     }
-    let mut next = Some(query.bound.max(WEIGHTS[0]));
-    let mut tried_sufficient = false;
-    while let Some(weight) = next {
+    let loosest = query.bound.max(WEIGHTS[0]);
+    let weights = [loosest].into_iter().chain(WEIGHTS[1..].iter().copied());
+    for weight in weights {
         match passes.run(weight, workspace) {
             Ended::Astray => return Outcome::Untraceable,
             Ended::Late => return passes.outcome(true),
             Ended::Done if passes.is_proven() => break,
             Ended::Done => {}
         }
-        let sufficient = if tried_sufficient { 0.0 } else { passes.sufficient_weight() };
-        let smaller = WEIGHTS.into_iter().chain([sufficient].into_iter().filter(|w| *w >= LEAST_WEIGHT));
-        next = smaller.filter(|smaller| *smaller < weight).max_by(f64::total_cmp);
-        tried_sufficient |= next == Some(sufficient);
     }
     passes.outcome(false)
 }
@@ -326,20 +319,6 @@ impl Passes<'_> {
         // What follows at the goal is cut to whole units.
         let most = self.table.at_most(f64::from(best.total) + 1.0) + self.query.besides;
         (least > 0.0).then(|| most / least)
-    }
-
-    /// The largest weight with which a pass proves the bound asked for, by what is known of the least cost so far: a path costs
-    /// at most its weight times the least, C, and
-    ///
-    /// ```text
-    /// (w C + 1) (1 + σ) / U + b ≤ B (q C / U + b)
-    /// ```
-    ///
-    /// with the bound B, `besides` b, units U, and σ and q of the table's rounding.
-    fn sufficient_weight(&self) -> f64 {
-        let (least, proven) = (f64::from(self.least), self.proven_least());
-        let most = self.query.bound * proven - self.query.besides;
-        (most / self.table.at_most(1.0) - 1.0) / least.max(1.0)
     }
 
     fn outcome(self, late: bool) -> Outcome {

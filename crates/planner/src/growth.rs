@@ -11,7 +11,6 @@ use crate::{
     layout::{HEADING_BITS, TILE, TILE_CELLS},
     patience::{Patience, work},
     stencil::Stencil,
-    step_costs::{GrowingCosts, StepCosts},
     sweep::Sweep,
     table::CostTable,
 };
@@ -48,13 +47,12 @@ impl GoalField {
     /// when it ended before.
     pub(crate) fn grow(
         &mut self,
-        (table, costs): (&CostTable, StepCosts),
+        table: &CostTable,
         (known, start): (&[(usize, u32)], Option<usize>),
         home: &Home,
         touched: &mut [bool],
         patience: &Patience,
     ) -> Option<Option<u32>> {
-        let mut costs = GrowingCosts::new(table, costs);
         let mut front = Front::new(self.layout.tiles());
         let mut goals = BTreeSet::new();
         let mut pacer = patience.pacer();
@@ -78,8 +76,8 @@ impl GoalField {
                 Ok(taken) => taken,
                 Err(key) => return Some(Some(key)),
             };
-            let tiles: Vec<usize> = taken.iter().map(|(tile, _)| *tile).collect();
-            let least = costs.of(&tiles, patience)?;
+            let least =
+                taken.iter().map(|(tile, _)| table.least(*tile, patience)).collect::<Option<Vec<_>>>()?;
             let field = &*self;
             taken.par_iter().zip(&mut sweeps).zip(least).try_for_each(
                 |(((tile, change), sweep), least)| {

@@ -60,9 +60,6 @@ pub(crate) struct RowStep {
     grounds: Vec<GroundStep>,
 }
 
-/// Limits count as so much wider than they are where costs are not evaluated.
-const LIMIT_ROUNDING: f32 = 1.0001;
-
 /// A step on one kind of ground.
 #[derive(Clone, Copy)]
 struct GroundStep {
@@ -123,29 +120,6 @@ impl RowStep {
                 costs[x] += if classes[x] == class { step[x] } else { 0.0 };
             }
         }
-    }
-
-    /// Length on the map [m].
-    pub(crate) fn horizontal_m(&self) -> f64 {
-        f64::from(self.horizontal_m)
-    }
-
-    /// Start cells of a row, bit by bit, from which the robot would stand steeper than its limits half way, or touch the ground.
-    pub(crate) fn too_steep(&self, pricing: &Pricing, window: &Window, row: usize) -> u64 {
-        let [east, north] = &window.gradients[self.orientation];
-        let east = window.lanes(east, row, self.middle);
-        let north = window.lanes(north, row, self.middle);
-        let (cos, sin) = self.travel;
-        let mut too_steep = 0;
-        for x in 0..TILE {
-            let along = (east[x] * cos + north[x] * sin).abs();
-            let across = (north[x] * cos - east[x] * sin).abs();
-            // A grade at the limit is left to the evaluation, whose roundings are others; one of unknown ground fails.
-            let allowed = (along <= LIMIT_ROUNDING * pricing.pitch_grade)
-                & (across <= LIMIT_ROUNDING * pricing.roll_grade);
-            too_steep |= u64::from(!allowed) << x;
-        }
-        too_steep
     }
 
     /// Grades along and across the heading, and their cosines; see `PreparedStep::drive` for the same in double.

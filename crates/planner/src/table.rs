@@ -10,22 +10,20 @@ use std::{
 };
 
 use rayon::prelude::*;
-use terrain::{Cell, CellRange};
+use terrain::CellRange;
 
 use crate::{
     cost::{FORBIDDEN, LARGEST_ROUNDING, SINGLE_PRECISION, UNITS_OF_REFERENCE, decode},
     displacement::Displacement,
-    heading::Heading,
     lattice::{Lattice, State},
-    layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
+    layout::{Layout, TILE},
     least::least_cost_per_m,
     objective::{Objective, Surcharge, Weights},
     patience::Patience,
     prices::Prices,
-    proof::{Proof, cancellation},
+    proof::Proof,
     tile::TileKernel,
-    tile_bound::BoundKernel,
-    tile_builder::{Codes, LANES, Lanes, Least, QUAD, code_place},
+    tile_builder::{Codes, Lanes, Least, QUAD, code_place},
 };
 
 /// Costs of all motions, with gravity taken out of energy so that none is negative.
@@ -41,7 +39,6 @@ pub struct CostTable {
     codes: Vec<OnceLock<Codes>>,
     /// Least codes of each tile's cells, by row, group of lanes, displacement and lane, over headings and motions.
     least: Vec<OnceLock<Least>>,
-    bound_kernel: BoundKernel,
     /// Tiles whose codes are held.
     held: AtomicUsize,
     /// Held while a tile is evaluated, so that two threads that need it do not both do the work.
@@ -72,21 +69,18 @@ impl CostTable {
     pub fn weighted(lattice: &Arc<Lattice>, weights: Weights) -> Self {
         let units = units_per_cost(lattice, &weights);
         let cell_size_m = lattice.terrain.grid.cell_size_m;
-        let (kernel, displacements) = (TileKernel::new(lattice, weights, units), Displacement::of(lattice));
-        let slack = BOUND_ROUNDINGS * cancellation(lattice, &weights) * units;
         let takes_some =
             |columns, rows| weights.per_j > 0.0 || weights.per_s > 0.0 || (columns, rows) != (0, 0);
         CostTable {
             lattice: Arc::clone(lattice),
             weights,
-            bound_kernel: BoundKernel::new(lattice, weights, (&kernel, &displacements), (units, slack)),
-            kernel,
+            kernel: TileKernel::new(lattice, weights, units),
             units,
             codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             least: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             held: AtomicUsize::new(0),
             turns: [const { Mutex::new(()) }; TURNS],
-            displacements,
+            displacements: Displacement::of(lattice),
             least_units_per_cell: (least_cost_per_m(lattice, &weights) * units * cell_size_m) as f32,
             proof: Proof::of_sum(lattice, &weights, units, takes_some),
         }
@@ -186,7 +180,7 @@ impl CostTable {
         match self.codes[tile].get() {
             Some(codes) => Some(codes),
             None => {
-                self.evaluate(tile, true, patience)?;
+                self.evaluate_around(tile, true, patience)?;
                 self.codes[tile].get().map(|codes| &codes[..])
             }
         }
@@ -203,16 +197,6 @@ impl CostTable {
                 self.least[tile].get().map(|least| &least[..])
             }
         }
-    }
-
-    /// Lower bounds of the least codes of a tile, in the same order, which are not held; `None` when patience ends first.
-    pub(crate) fn bounds(&self, tile: usize, patience: &Patience) -> Option<Least> {
-        let (lattice, layout) = (&self.lattice, &self.lattice.layout);
-        if !layout.holds(tile) {
-            return Some(Least::default());
-        }
-        let place = layout.tile_place(tile);
-        self.bound_kernel.evaluate(&self.kernel, lattice, place, &self.displacements, patience)
     }
 
     /// A tile's codes if they are held.
@@ -293,59 +277,12 @@ impl CostTable {
         })
     }
 
-    /// Steps that motions make from the cells of the tile about a cell, with what each costs at least and the lower bound of it
-    /// that fields grow over, in the table's units; `None` where no motion makes the step, or none is known to.
-    pub fn steps_about(&self, cell: Cell) -> Vec<StepCost> {
-        let layout = &self.lattice.layout;
-        let tile = Layout::tile(layout.pack(State { cell, heading: Heading::new(0) }));
-        let patience = Patience::default();
-        let (Some(least), Some(bounds)) = (self.least(tile, &patience), self.bounds(tile, &patience)) else {
-            return Vec::new();
-        };
-        let count = self.displacements.len().max(1);
-        let mut steps = Vec::with_capacity(least.len() * LANES);
-        for (place, (least, bounds)) in least.iter().zip(&bounds[..]).enumerate() {
-            let (group, step) = (place / count, &self.displacements[place % count]);
-            for (x, (least, bound)) in least.0.into_iter().zip(bounds.0).enumerate() {
-                let within = ((group * LANES + x) << HEADING_BITS) as u32;
-                let (row, column) = layout.place(((tile * TILE_CELLS) << HEADING_BITS) as u32 | within);
-                let units = |code| (code != FORBIDDEN).then(|| decode(code));
-                steps.push(StepCost {
-                    from: Cell { row, column },
-                    columns: step.columns,
-                    rows: step.rows,
-                    least_units: units(least),
-                    bound_units: units(bound),
-                });
-            }
-        }
-        steps
-    }
-
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
     pub fn cost(&self, state: State, motion: usize) -> f64 {
         let code = self.code(self.lattice.layout.pack(state), motion);
         if code == FORBIDDEN { f64::INFINITY } else { f64::from(decode(code)) / self.units }
     }
 }
-
-/// What a step from one cell to another costs, whatever the heading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct StepCost {
-    /// The cell that it leads from.
-    pub from: Cell,
-    /// Columns to the east.
-    pub columns: i32,
-    /// Rows to the north.
-    pub rows: i32,
-    /// Cost of the cheapest motion.
-    pub least_units: Option<u32>,
-    /// A lower bound of it.
-    pub bound_units: Option<u32>,
-}
-
-/// Bounds and costs are rounded by as much each where lifting work is taken off energy.
-const BOUND_ROUNDINGS: f64 = 2.0;
 
 /// Tiles whose codes a field, which needs only the least of them, keeps for the search that follows: a gigabyte. On larger
 /// ground the search evaluates again what it comes across, which is little of what a field covers.

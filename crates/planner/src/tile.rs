@@ -3,7 +3,6 @@
 use std::{ops::Range, sync::Arc};
 
 use multiversion::multiversion;
-use rayon::prelude::*;
 use terrain::Cell;
 
 use crate::{
@@ -15,11 +14,10 @@ use crate::{
     lattice::Lattice,
     layout::TILE,
     objective::Weights,
-    patience::{Pacer, Patience, work},
+    patience::{Patience, work},
     row_step::{Lanes, Pricing, RowStep},
     spans::Span,
     stance::{Offset, orientation},
-    tile_bound::forbid,
     tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
     window::Window,
 };
@@ -102,26 +100,6 @@ impl TileKernel {
         self.swept.max(self.halo + self.beside)
     }
 
-    /// Heading and motion of each chain.
-    pub(crate) fn chain_motions(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.chains.iter().map(|chain| (chain.heading, chain.motion))
-    }
-
-    /// Horizontal length of a chain [m].
-    pub(crate) fn length_m(&self, chain: usize) -> f64 {
-        self.chains[chain].steps.iter().map(RowStep::horizontal_m).sum()
-    }
-
-    /// The ground that a tile's motions depend on.
-    pub(crate) fn window(&self, lattice: &Lattice, origin: Cell) -> Window {
-        Window::new(lattice, origin, self.halo)
-    }
-
-    /// What is blocked of the ground that a tile's motions sweep.
-    pub(crate) fn blocked(&self, lattice: &Lattice, origin: Cell) -> Blocked {
-        Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span)
-    }
-
     /// Costs of all motions from all states of a tile; `None` when patience ends first.
     pub(crate) fn evaluate(
         &self,
@@ -134,124 +112,37 @@ impl TileKernel {
         let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
         let mut tile = TileBuilder::new(self.stride, displacements);
-        let (window, blocked) = (self.window(lattice, origin), self.blocked(lattice, origin));
-        let mut parts = tile.rows();
-        parts.truncate(rows);
-        parts.par_chunks_mut(ROWS_TOGETHER).enumerate().try_for_each(|(i, part)| {
-            let mut work = Rows::new(self, &window, &blocked, columns, patience);
-            for (row, part) in (i * ROWS_TOGETHER..).zip(part) {
-                part.store(work.slots(row)?, displacements);
+        let window = Window::new(lattice, origin, self.halo);
+        let blocked = Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span);
+        let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
+        let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
+        let mut pacer = patience.pacer();
+        for row in 0..rows {
+            for group in &self.groups {
+                pacer.after((group.steps * window.present.len()) as u64 * STEP_OF_A_ROW)?;
+                evaluate_row(self, &window, row, (group.chains.clone(), &mut offered[group.chains.clone()]));
             }
-            Some(())
-        })?;
-        drop(parts);
+            self.forbid_blocked(&blocked, row, columns, &mut offered);
+            take_cheapest(self, &offered, &mut slots);
+            tile.store_row(row, &slots);
+        }
         Some(tile.finish())
     }
-}
 
-/// Rows of a tile that one thread evaluates.
-const ROWS_TOGETHER: usize = 16;
-
-/// The rows of a tile as they are evaluated one after the other.
-pub(crate) struct Rows<'t> {
-    kernel: &'t TileKernel,
-    pub(crate) window: &'t Window,
-    blocked: &'t Blocked,
-    /// Columns of the tile that the map has.
-    columns: usize,
-    pacer: Pacer<'t>,
-    /// Codes by chain, and by slot of a state.
-    offered: Vec<RowCodes>,
-    slots: Vec<RowCodes>,
-}
-
-impl<'t> Rows<'t> {
-    pub(crate) fn new(
-        kernel: &'t TileKernel,
-        window: &'t Window,
-        blocked: &'t Blocked,
-        columns: usize,
-        patience: &'t Patience,
-    ) -> Self {
-        Rows {
-            kernel,
-            window,
-            blocked,
-            columns,
-            pacer: patience.pacer(),
-            offered: vec![[FORBIDDEN; TILE]; kernel.chains.len()],
-            slots: Vec::new(),
-        }
-    }
-
-    /// Codes of all motions from a row of cells, by slot; `None` when patience ends first.
-    fn slots(&mut self, row: usize) -> Option<&[RowCodes]> {
-        for group in &self.kernel.groups {
-            self.pacer.after((group.steps * self.window.present.len()) as u64 * STEP_OF_A_ROW)?;
-            let chains = group.chains.clone();
-            evaluate_row(self.kernel, self.window, row, (chains.clone(), &mut self.offered[chains]));
-        }
-        for (i, codes) in self.offered.iter_mut().enumerate() {
-            codes[self.columns..].fill(FORBIDDEN);
-            forbid(codes, touched(self.kernel, self.blocked, row, i));
-        }
-        self.slots.resize(HEADINGS * self.kernel.stride, [FORBIDDEN; TILE]);
-        take_cheapest(self.kernel, &self.offered, &mut self.slots);
-        Some(&self.slots)
-    }
-
-    /// The least codes of steps from a row of cells; `None` when patience ends first.
-    pub(crate) fn evaluate(
-        &mut self,
-        row: usize,
-        displacements: &[Displacement],
-        codes: &mut [RowCodes],
-    ) -> Option<()> {
-        let slots = self.slots(row)?;
-        for (codes, displacement) in codes.iter_mut().zip(displacements) {
-            displacement.slots.iter().for_each(|slot| lower(codes, &slots[*slot]));
-        }
-        Some(())
-    }
-
-    /// Codes of one chain from a row of cells; `None` when patience ends first.
-    pub(crate) fn chain(&mut self, row: usize, chain: usize) -> Option<&RowCodes> {
-        let steps = self.kernel.chains[chain].steps.len() * self.window.present.len();
-        self.pacer.after(steps as u64 * STEP_OF_A_ROW)?;
-        let codes = &mut self.offered[chain..chain + 1];
-        evaluate_row(self.kernel, self.window, row, (chain..chain + 1, codes));
-        codes[0][self.columns..].fill(FORBIDDEN);
-        forbid(&mut codes[0], touched(self.kernel, self.blocked, row, chain));
-        Some(&self.offered[chain])
-    }
-
-    /// Counts the work of bounds from a row of cells; `None` when patience ends first.
-    pub(crate) fn worked(&mut self, bounds: usize) -> Option<()> {
-        self.pacer.after(bounds as u64 * STEP_OF_A_ROW)
-    }
-
-    /// Cells of a row, bit by bit, from which each of some chains would touch blocked ground or, if asked, stand too steep half
-    /// way, or that lie beyond the map.
-    pub(crate) fn forbidden(&self, row: usize, chains: &[usize], steep: bool) -> u64 {
-        let beyond = if self.columns < TILE { u64::MAX << self.columns } else { 0 };
-        let mut all = u64::MAX;
-        for chain in chains {
-            let steps = &self.kernel.chains[*chain].steps;
-            let half_way = steps.get(steps.len() / 2).filter(|_| steep);
-            let too_steep = half_way.map_or(0, |step| step.too_steep(&self.kernel.pricing, self.window, row));
-            all &= touched(self.kernel, self.blocked, row, *chain) | too_steep;
-            if all == 0 {
-                break;
+    /// Forbids motions that would touch blocked ground or start beyond the map.
+    fn forbid_blocked(&self, blocked: &Blocked, row: usize, columns: usize, offered: &mut [RowCodes]) {
+        let is_near = blocked.is_near(row);
+        for (chain, codes) in self.chains.iter().zip(offered) {
+            codes[columns..].fill(FORBIDDEN);
+            let mut touched = if is_near { blocked.touched(row, &chain.sweep) } else { 0 };
+            while touched != 0 {
+                codes[touched.trailing_zeros() as usize] = FORBIDDEN;
+                touched &= touched - 1;
             }
         }
-        all | beyond
     }
 }
 
-/// Cells of a row, bit by bit, from which a chain would touch blocked ground.
-fn touched(kernel: &TileKernel, blocked: &Blocked, row: usize, chain: usize) -> u64 {
-    if blocked.is_near(row) { blocked.touched(row, &kernel.chains[chain].sweep) } else { 0 }
-}
 /// Work of one step from a row of cells on one surface: 80 ns.
 const STEP_OF_A_ROW: u64 = 16 * work::CELL;
 /// Most steps of a group of chains, which are evaluated between two chances to look at the clock.

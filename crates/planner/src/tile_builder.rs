@@ -29,46 +29,37 @@ pub(crate) type Least = Arc<[Lanes]>;
 pub(crate) const TILE_STATES: usize = TILE_CELLS * HEADINGS;
 
 /// A tile in the making.
-pub(crate) struct TileBuilder {
+pub(crate) struct TileBuilder<'d> {
+    displacements: &'d [Displacement],
     codes: Codes,
     least: Least,
 }
 
-impl TileBuilder {
+impl<'d> TileBuilder<'d> {
     /// A tile without any motion.
-    pub(crate) fn new(stride: usize, displacements: &[Displacement]) -> Self {
+    pub(crate) fn new(stride: usize, displacements: &'d [Displacement]) -> Self {
         TileBuilder {
+            displacements,
             codes: repeat_n(FORBIDDEN, TILE_STATES * stride).collect(),
             least: repeat_n(Lanes([FORBIDDEN; LANES]), TILE * GROUPS * displacements.len()).collect(),
         }
     }
 
-    /// Its rows, each to be stored on its own.
-    pub(crate) fn rows(&mut self) -> Vec<TileRow<'_>> {
+    /// Stores the codes of a row of cells, given slot by slot.
+    pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
         let (Some(codes), Some(least)) = (Arc::get_mut(&mut self.codes), Arc::get_mut(&mut self.least))
         else {
             unreachable!("a tile in the making is shared with nobody");
         };
-        let rows = codes.chunks_exact_mut(codes.len() / TILE).zip(least.chunks_exact_mut(least.len() / TILE));
-        rows.map(|(codes, least)| TileRow { codes, least }).collect()
+        let codes = &mut codes[row * TILE * slots.len()..][..TILE * slots.len()];
+        let steps = self.displacements.len();
+        let least = &mut least[row * GROUPS * steps..][..GROUPS * steps];
+        store_row(slots, codes, self.displacements, least);
     }
 
     /// Codes by quad of cells, heading, motion and cell, and the least by displacement and cell.
     pub(crate) fn finish(self) -> (Codes, Least) {
         (self.codes, self.least)
-    }
-}
-
-/// A row of a tile in the making.
-pub(crate) struct TileRow<'t> {
-    codes: &'t mut [u16],
-    least: &'t mut [Lanes],
-}
-
-impl TileRow<'_> {
-    /// Stores the codes of its cells, given slot by slot.
-    pub(crate) fn store(&mut self, slots: &[RowCodes], displacements: &[Displacement]) {
-        store_row(slots, self.codes, displacements, self.least);
     }
 }
 

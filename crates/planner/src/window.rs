@@ -56,16 +56,6 @@ impl Window {
         window
     }
 
-    /// Cells along a side.
-    pub(crate) fn width(&self) -> usize {
-        self.width
-    }
-
-    /// Cells around the tile.
-    pub(crate) fn halo(&self) -> usize {
-        self.halo
-    }
-
     /// The values under a row of the tile's cells, moved by an offset (columns, rows).
     #[inline(always)]
     pub(crate) fn lanes<'w, T>(
