@@ -8,6 +8,7 @@ import time
 BEGAN_S = time.perf_counter()
 
 import json
+import logging
 import resource
 import sys
 
@@ -25,6 +26,8 @@ PER_SLOPE = 3.0
 
 def main() -> None:
     path, side = sys.argv[1], int(sys.argv[2])
+    # It complains of the map's value for unknown ground, which no cell has.
+    logging.getLogger("tifffile").setLevel(logging.CRITICAL)
     # Rows from the south, as the planner mirrors them.
     tile_m = tifffile.imread(path).astype(float)[::-1]
     rows, columns = (np.pad(np.arange(n), (0, side), mode="symmetric")[:side] for n in tile_m.shape)
