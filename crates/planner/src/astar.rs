@@ -77,8 +77,13 @@ impl Found {
     }
 }
 
-/// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost.
+/// Weights of the estimate, one pass after the other: the first answers at once, the last with the least cost. The weight that
+/// proves the bound asked for comes between them.
 const WEIGHTS: [f64; 3] = [1.2, 1.05, 1.0];
+/// Least weight above 1 that a pass is worth: with a smaller one it expands about as much as with 1.
+const LEAST_WEIGHT: f64 = 1.001;
+/// A weight of the ladder that exceeds 1 by at most so many times as much as the one that proves the bound is passed over.
+const NEXT_TO: f64 = 2.0;
 /// Expansions between two looks at the clock, less than a millisecond.
 const CLOCK_EVERY: u64 = 2048;
 /// Open states that are looked at to prove a bound, even where patience is over.
@@ -117,20 +122,20 @@ pub fn search(
         expanded: 0,
         least: 0,
         best: None,
+        tried_sufficient: false,
     };
     passes.least =
         query.starts.iter().map(|s| field.units_at(lattice.layout.pack(*s))).min().unwrap_or(UNREACHED);
     if passes.least == UNREACHED {
         return Outcome::Unreachable;
     }
-    let loosest = query.bound.max(WEIGHTS[0]);
-    let weights = [loosest].into_iter().chain(WEIGHTS[1..].iter().copied());
-    for weight in weights {
+    let mut next = Some(query.bound.max(WEIGHTS[0]));
+    while let Some(weight) = next {
         match passes.run(weight, workspace) {
             Ended::Astray => return Outcome::Untraceable,
             Ended::Late => return passes.outcome(true),
             Ended::Done if passes.is_proven() => break,
-            Ended::Done => {}
+            Ended::Done => next = passes.next_weight(weight),
         }
     }
     passes.outcome(false)
@@ -148,6 +153,8 @@ struct Passes<'p> {
     /// No path costs less than this.
     least: u32,
     best: Option<Best>,
+    /// Whether a pass had the weight that ought to prove the bound asked for.
+    tried_sufficient: bool,
 }
 
 /// The best path so far.
@@ -319,6 +326,34 @@ impl Passes<'_> {
         // What follows at the goal is cut to whole units.
         let most = self.table.at_most(f64::from(best.total) + 1.0) + self.query.besides;
         (least > 0.0).then(|| most / least)
+    }
+
+    /// The weight of the pass after one that has not proven the bound asked for: the next of the ladder, or the one that proves
+    /// it where the ladder's is next to it or smaller. `None` after the last.
+    fn next_weight(&mut self, weight: f64) -> Option<f64> {
+        let ladder = WEIGHTS.into_iter().find(|next| *next < weight);
+        let sufficient = self.sufficient_weight();
+        let is_next = (LEAST_WEIGHT..weight).contains(&sufficient)
+            && ladder.is_none_or(|ladder| ladder - 1.0 <= NEXT_TO * (sufficient - 1.0));
+        if is_next && !self.tried_sufficient {
+            self.tried_sufficient = true;
+            return Some(sufficient);
+        }
+        ladder
+    }
+
+    /// The largest weight with which a pass proves the bound asked for, by what is known of the least cost so far: a path costs
+    /// at most its weight times the least, C, and
+    ///
+    /// ```text
+    /// (w C + 1) (1 + σ) / U + b ≤ B (q C / U + b)
+    /// ```
+    ///
+    /// with the bound B, `besides` b, units U, and σ and q of the table's rounding.
+    fn sufficient_weight(&self) -> f64 {
+        let (least, proven) = (f64::from(self.least), self.proven_least());
+        let most = self.query.bound * proven - self.query.besides;
+        (most / self.table.at_most(1.0) - 1.0) / least.max(1.0)
     }
 
     fn outcome(self, late: bool) -> Outcome {

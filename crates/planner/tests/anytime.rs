@@ -43,6 +43,27 @@ fn amount(plan: &Plan, objective: Objective) -> f64 {
 }
 
 #[test]
+fn a_bound_just_above_the_least_is_proven_without_searching_for_the_least() {
+    let (mut bounded, mut least) = (0, 0);
+    for seed in 0..4 {
+        let terrain = hills(240, seed);
+        let robot = builtin::husky_a200();
+        let expanded = |bound| {
+            let query = across(&terrain, Patience::default(), bound);
+            let found = plan(&terrain, &robot, &query, Objective::Energy).unwrap();
+            assert!(
+                found.search.bound.is_some_and(|proven| proven <= bound.max(1.002)),
+                "{bound}: {found:?}"
+            );
+            found.search.expanded
+        };
+        bounded += expanded(1.01);
+        least += expanded(1.0);
+    }
+    assert!(2 * bounded < least, "{bounded} expansions at 1.01, {least} at 1");
+}
+
+#[test]
 fn an_answer_is_within_the_bound_asked_for_and_within_the_bound_it_states() {
     let mut random = ground::random(41);
     let (mut compared, mut looser) = (0, 0);
