@@ -5,6 +5,22 @@ from typing import Any, TypeAlias, final
 import numpy
 from numpy.typing import NDArray
 
+__all__ = [
+    "Diagnosed",
+    "Map",
+    "Path",
+    "Planner",
+    "Predicted",
+    "Recording",
+    "Robot",
+    "calibrate",
+    "diagnose",
+    "power",
+    "predict",
+    "robot_of_data_sheet",
+    "simulate",
+]
+
 _Progress: TypeAlias = Callable[[str, float], Any] | None
 
 @final
