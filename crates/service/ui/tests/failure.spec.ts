@@ -33,11 +33,11 @@ test("a goal moved to where no path leads leaves the map usable", async ({ page,
       body: JSON.stringify({ type: "no-path", title: "There is no path", status: 422, detail: "no way leads from the start to the goal" }),
     }),
   );
-  await page.getByRole("button", { name: "Goal" }).click();
+  await page.getByRole("button", { name: "Goal", exact: true }).click();
   await press(page, 0.5, 0.5);
   await expect(page.getByRole("alert")).toContainText("There is no path");
   await page.unroute("**/v1/compare");
-  await page.getByRole("button", { name: "Goal" }).click();
+  await page.getByRole("button", { name: "Goal", exact: true }).click();
   await press(page, info.project.name === "phone" ? 0.5 : 0.55, 0.55);
   await answered(page);
 });

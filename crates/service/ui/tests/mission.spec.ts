@@ -28,7 +28,7 @@ test("several stops are visited in the order of least energy, and one is removed
   await expect(page.locator(".chart")).toHaveCount(4);
   await picture(page, `mission-${info.project.name}`);
   await checkAccessible(page, "mission");
-  await expect.poll(() => page.url()).toMatch(/stops=[\d.]+,[\d.]+;[\d.]+,[\d.]+;[\d.]+,[\d.]+&return/);
+  await expect.poll(() => page.url()).toMatch(/visit=[\d.]+,[\d.]+;[\d.]+,[\d.]+;[\d.]+,[\d.]+&return/);
   await page.getByRole("button", { name: "Remove stop 3" }).click();
   await expect(mission.getByRole("row")).toHaveCount(5);
   await page.reload();

@@ -42,8 +42,8 @@ function takeUp(): void {
   state.formerId.value = said.get("former");
   state.start.value = place(said.get("start"));
   state.goal.value = place(said.get("goal"));
-  state.stops.value = (said.get("stops") ?? "").split(";").flatMap((text) => place(text || null) ?? []);
-  state.journey.value = said.has("stops") ? "stops" : "goal";
+  state.stops.value = (said.get("visit") ?? "").split(";").flatMap((text) => place(text || null) ?? []);
+  state.journey.value = said.has("visit") ? "stops" : "goal";
   state.returnsHome.value = said.has("return");
   const range = said.get("range");
   state.rangeKind.value = range === "there" || range === "return" ? range : null;
@@ -76,7 +76,7 @@ function link(): string {
   say("former", state.formerId.value);
   say("start", state.start.value && written(state.start.value));
   say("goal", state.goal.value && written(state.goal.value));
-  if (state.journey.value === "stops") said.set("stops", state.stops.value.map(written).join(";"));
+  if (state.journey.value === "stops") said.set("visit", state.stops.value.map(written).join(";"));
   if (state.returnsHome.value) said.set("return", "");
   say("range", state.rangeKind.value);
   say("speed_mps", state.speed_mps.value !== null ? rounded(state.speed_mps.value) : null);
