@@ -12,7 +12,7 @@ test("a parameter is changed, saved as a new robot, and planned with", PHONE_TOO
   const { stored } = (await (await page.request.get(`${service.url}/v1/robots`)).json()) as { stored: { robot: { mass_kg: number } }[] };
   expect(stored[0]!.robot.mass_kg).toBe(112.5);
   const comparison = page.getByRole("region", { name: "Compare robots" });
-  await comparison.getByLabel("Compare with").selectOption("husky-a200");
+  await comparison.getByLabel("Compare with").selectOption("husky-a200-field");
   await expect(comparison.getByRole("row", { name: /Body: Mass/ })).toHaveText(/kg\s*112\.5\s*90$/);
   await expect(comparison.getByRole("row")).toHaveCount(2);
   await picture(page, `robots-compared-${info.project.name}`);

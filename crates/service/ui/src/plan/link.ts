@@ -38,7 +38,8 @@ function takeUp(): void {
   const said = new URLSearchParams(query);
   tab.value = TABS.includes(name as Tab) ? (name as Tab) : "plan";
   state.mapId.value = said.get("map") ?? state.mapId.value;
-  state.robotId.value = said.get("robot") ?? "husky-a200";
+  // Links that name a start and no robot were made when the page began with this one.
+  state.robotId.value = said.get("robot") ?? (said.has("start") ? "husky-a200" : "husky-a200-field");
   state.formerId.value = said.get("former");
   state.start.value = place(said.get("start"));
   state.goal.value = place(said.get("goal"));
@@ -72,7 +73,7 @@ function link(): string {
   const said = new URLSearchParams();
   const say = (name: string, value: string | null | undefined) => value && said.set(name, value);
   say("map", state.mapId.value);
-  if (state.robotId.value !== "husky-a200") say("robot", state.robotId.value);
+  say("robot", state.robotId.value);
   say("former", state.formerId.value);
   say("start", state.start.value && written(state.start.value));
   say("goal", state.goal.value && written(state.goal.value));

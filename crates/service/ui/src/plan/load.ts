@@ -19,7 +19,7 @@ export const loadProblem = signal<Problem | null>(null);
 export async function loadRobots(): Promise<void> {
   state.robots.value = await listRobots();
   // A link may name a robot that this service has never had.
-  if (!state.robot.value) state.robotId.value = state.robots.value[0]?.id ?? "husky-a200";
+  if (!state.robot.value) state.robotId.value = state.robots.value[0]?.id ?? "husky-a200-field";
 }
 
 export async function loadAll(): Promise<void> {

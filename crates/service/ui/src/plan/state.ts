@@ -20,7 +20,7 @@ export const map = computed(() => maps.value?.find(({ id }) => id === mapId.valu
 export const cells = signal<Cells | null>(null);
 
 export const robots = signal<KnownRobot[] | null>(null);
-export const robotId = signal("husky-a200");
+export const robotId = signal("husky-a200-field");
 export const robot = computed(() => robots.value?.find(({ id }) => id === robotId.value) ?? null);
 /** The robot before a correction was accepted: its path is shown beside. */
 export const formerId = signal<string | null>(null);
