@@ -39,6 +39,7 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-prove",
         "joulepath-report",
         "joulepath-service",
+        "joulepath-python",
         "joulepath",
     ];
     for (package, needs) in arrows() {

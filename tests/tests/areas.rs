@@ -332,7 +332,7 @@ fn a_raster_of_classes_becomes_areas() {
     assert_eq!(areas["notes"][0], "classes 30 lie over the map, but not in the table: they change nothing");
     assert_eq!(
         areas["features"][0]["geometry"]["coordinates"],
-        json!([[[[10.0, 0.0], [20.0, 0.0], [20.0, 15.0], [10.0, 15.0], [10.0, 0.0]]]])
+        json!([[[[10.0, 15.0], [10.0, 0.0], [20.0, 0.0], [20.0, 15.0], [10.0, 15.0]]]])
     );
     let plan = server.post_json("/v1/plan", &across(json!({ "areas": areas }))).json();
     let around = |poses: &Value| {

@@ -8,7 +8,7 @@ use std::{
 
 use clap::Args;
 
-use crate::failure::BadInput;
+use crate::{failure::BadInput, output};
 
 /// Variable that names the Python interpreter.
 const PYTHON: &str = "JOULEPATH_PYTHON";
@@ -36,6 +36,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             "cannot run `{named}`: {error}; install Python 3.10 or later, or let {PYTHON} name it"
         ))
     })?;
+    let asks_for_help = arguments.words.iter().any(|word| word == "--help" || word == "-h");
+    if !installed.status.success() && asks_for_help {
+        return output::line(format_args!(
+            "Many recordings of many robots, on a Ray cluster: diagnose, calibrate, matrix, prove, report, example.\n\n\
+             It is part of the Python package: {named} -m pip install 'joulepath[ray]'. With it, this lists the arguments of each."
+        ));
+    }
     if !installed.status.success() {
         let detail = format!(
             "fleets are part of the Python package, which `{named}` does not have: {named} -m pip install 'joulepath[ray]', or let {PYTHON} \

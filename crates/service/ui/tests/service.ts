@@ -104,7 +104,7 @@ export const paths = (page: Page) => page.locator(".map-over");
 
 /** Opens the page with the sample map and waits for the answer. */
 export async function openSample(page: Page, service: Service): Promise<void> {
-  await page.goto(service.url);
+  await page.goto(`${service.url}/#plan?robot=husky-a200`);
   await page.getByRole("button", { name: "Open the sample map" }).click();
   await answered(page);
 }

@@ -89,6 +89,8 @@ export function listen(board: Board, signal: AbortSignal): void {
     doing = null;
     state.isDragging.value = false;
   };
+  // The map may come under a pointer that rests.
+  on("pointerenter", (event) => (pointer.value = pointOf(event)));
   on("pointerleave", () => (pointer.value = null));
   on("pointerup", end);
   on("pointercancel", end);
