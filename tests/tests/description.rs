@@ -126,8 +126,14 @@ fn every_operation_and_answer_is_described() {
         }
         // Forms of files have no examples.
         let body = operation.value.pointer("/requestBody/content").and_then(Value::as_object);
-        let is_form = |content: &serde_json::Map<String, Value>| content.keys().all(|kind| kind == "multipart/form-data");
-        assert!(body.is_none_or(is_form) || !operation.examples().is_empty(), "{} has no example", operation.id());
+        let is_form = |content: &serde_json::Map<String, Value>| {
+            content.keys().all(|kind| kind == "multipart/form-data")
+        };
+        assert!(
+            body.is_none_or(is_form) || !operation.examples().is_empty(),
+            "{} has no example",
+            operation.id()
+        );
     }
 }
 
