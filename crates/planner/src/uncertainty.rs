@@ -127,11 +127,11 @@ impl<'a> Replay<'a> {
         // Gauss and Hermite's rule of three points: nodes in standard deviations, and their weights.
         let nodes = [(-f64::sqrt(3.0), 1.0 / 6.0), (0.0, 2.0 / 3.0), (f64::sqrt(3.0), 1.0 / 6.0)];
         let mut added_j: HashMap<usize, f64> = HashMap::new();
-        let (mut energy_j, mut steps) = (0.0, hidden.iter());
-        self.each(robot, |manoeuvre, grade, duration_s| {
+        let mut energy_j = 0.0;
+        self.each(robot, |step, manoeuvre, grade, duration_s| {
             let own_j = manoeuvre.power_on_grade(grade, Acceleration::NONE).bus_w * duration_s;
             energy_j += own_j;
-            let Some(Hidden { cell, slope_rms }) = steps.next() else { return };
+            let Some(Hidden { cell, slope_rms }) = hidden.get(step) else { return };
             let of_node_j = |(node, weight): (f64, f64)| {
                 let (pitched, stretch) = pitched(grade, node * slope_rms);
                 weight * stretch * manoeuvre.power_on_grade(pitched, Acceleration::NONE).bus_w * duration_s
@@ -146,22 +146,22 @@ impl<'a> Replay<'a> {
     /// Sum of a power over the time of all steps [J].
     fn sum_j(&self, robot: &Robot, power_w: impl Fn(&Manoeuvre, Grade<f64>) -> f64) -> Option<f64> {
         let mut sum_j = 0.0;
-        self.each(robot, |manoeuvre, grade, duration_s| sum_j += power_w(manoeuvre, grade) * duration_s)?;
+        self.each(robot, |_, manoeuvre, grade, duration_s| sum_j += power_w(manoeuvre, grade) * duration_s)?;
         Some(sum_j)
     }
 
-    /// Visits all steps, as manoeuvre, grade and time [s]; `None` where patience ends first.
-    fn each(&self, robot: &Robot, mut visit: impl FnMut(&Manoeuvre, Grade<f64>, f64)) -> Option<()> {
+    /// Visits all steps, as position, manoeuvre, grade and time [s]; `None` where patience ends first.
+    fn each(&self, robot: &Robot, mut visit: impl FnMut(usize, &Manoeuvre, Grade<f64>, f64)) -> Option<()> {
         let prepared = self.kinds.iter().map(|(motion, surface)| {
             let surface = robot.surfaces.get(self.surfaces.get(*surface)?)?;
             Some(Manoeuvre::new(self.model, robot, surface, *motion, self.motor_c))
         });
         let prepared: Vec<Option<Manoeuvre>> = prepared.collect();
         let mut pacer = self.patience.pacer();
-        for (kind, grade, duration_s) in &self.steps {
+        for (step, (kind, grade, duration_s)) in self.steps.iter().enumerate() {
             pacer.after(work::STATE)?;
             if let Some(Some(manoeuvre)) = prepared.get(*kind) {
-                visit(manoeuvre, *grade, *duration_s);
+                visit(step, manoeuvre, *grade, *duration_s);
             }
         }
         Some(())

@@ -8,7 +8,7 @@ use approx::assert_relative_eq;
 use model::{Robot, builtin, robot::Uncertainty};
 use planner::{Goal, Objective, Patience, Plan, Query, Settings, Start, plan};
 use proptest::prelude::*;
-use terrain::{Cell, Grid, Terrain};
+use terrain::{Grid, Terrain, synthetic::coarsened};
 
 const CERTAIN: Uncertainty =
     Uncertainty { mu_roll: 0.0, mu_skid: 0.0, k1: 0.0, k2: 0.0, mass_kg: 0.0, hotel_power_w: 0.0 };
@@ -23,24 +23,11 @@ fn ahead(robot: &Robot) -> Plan {
     over(robot, 2.5, |_, _| 0.0)
 }
 
-/// The shipped lidar map in cells of so many of its own, each of their mean height.
-fn coarsened(fine: &Terrain, factor: usize) -> Terrain {
-    let (rows, columns) = (fine.grid.rows / factor, fine.grid.columns / factor);
-    let grid = Grid { rows, columns, cell_size_m: fine.grid.cell_size_m * factor as f64, ..fine.grid };
-    let mean = |index: usize| {
-        let Cell { row, column } = grid.cell(index);
-        let inside = (0..factor * factor)
-            .map(|i| Cell { row: row * factor + i / factor, column: column * factor + i % factor });
-        inside.map(|cell| fine.elevation_m(cell).unwrap()).sum::<f64>() / (factor * factor) as f64
-    };
-    Terrain::new(grid, &(0..grid.cells()).map(mean).collect::<Vec<_>>()).unwrap()
-}
-
 #[test]
 fn the_interval_over_coarse_cells_holds_what_the_fine_ground_takes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../maps/minnesota.tif");
     let fine = terrain::io::read_path(&path).unwrap();
-    let coarse = coarsened(&fine, 20);
+    let coarse = coarsened(&fine, 20).unwrap();
     let mut robot = builtin::husky_a200();
     robot.uncertainty = CERTAIN;
     let [west_m, south_m] = fine.grid.origin_m;

@@ -20,6 +20,26 @@ pub fn relief(grid: Grid, seed: u64, longest_m: f64, height_m: f64) -> Vec<f64> 
         .collect()
 }
 
+/// Ground in cells of so many of its own along each side, each of their mean height; what is left over at the far edges is cut off, and
+/// cells with unknown ground are unknown.
+///
+/// # Errors
+/// A factor of 0 or above the rows or columns, or ground without a known cell.
+pub fn coarsened(fine: &Terrain, factor: usize) -> Result<Terrain, Error> {
+    let per = |cells: usize| cells.checked_div(factor).unwrap_or(0);
+    let (rows, columns) = (per(fine.grid.rows), per(fine.grid.columns));
+    let cell_size_m = fine.grid.cell_size_m * factor as f64;
+    let grid = Terrain::check_size(rows as u64, columns as u64, cell_size_m, fine.grid.origin_m)?;
+    let mean = |index: usize| {
+        let Cell { row, column } = grid.cell(index);
+        let inside = (0..factor * factor)
+            .map(|i| Cell { row: row * factor + i / factor, column: column * factor + i % factor });
+        let sum_m: Option<f64> = inside.map(|cell| fine.elevation_m(cell)).sum();
+        sum_m.map_or(f64::NAN, |sum_m| sum_m / (factor * factor) as f64)
+    };
+    Terrain::new(grid, &(0..grid.cells()).map(mean).collect::<Vec<f64>>())
+}
+
 /// How much of an octave's height the next one has; 0.45 looks like the shipped lidar terrain.
 const ROUGHNESS: f64 = 0.45;
 const OCTAVES: u32 = 5;

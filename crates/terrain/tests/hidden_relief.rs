@@ -4,20 +4,7 @@
 
 use std::path::Path;
 
-use terrain::{Cell, Grid, Terrain, hidden_relief::slope_rms, io};
-
-/// The shipped lidar map in cells of so many of its own, each of their mean height.
-fn coarsened(fine: &Terrain, factor: usize) -> Terrain {
-    let (rows, columns) = (fine.grid.rows / factor, fine.grid.columns / factor);
-    let grid = Grid { rows, columns, cell_size_m: fine.grid.cell_size_m * factor as f64, ..fine.grid };
-    let mean = |index: usize| {
-        let Cell { row, column } = grid.cell(index);
-        let inside = (0..factor * factor)
-            .map(|i| Cell { row: row * factor + i / factor, column: column * factor + i % factor });
-        inside.map(|cell| fine.elevation_m(cell).unwrap()).sum::<f64>() / (factor * factor) as f64
-    };
-    Terrain::new(grid, &(0..grid.cells()).map(mean).collect::<Vec<_>>()).unwrap()
-}
+use terrain::{Cell, Grid, Terrain, hidden_relief::slope_rms, io, synthetic::coarsened};
 
 /// Mean square of the slopes between neighbours along rows.
 fn slope_2(terrain: &Terrain) -> f64 {
@@ -36,7 +23,7 @@ fn the_slopes_that_coarse_cells_hide_are_no_more_than_twice_overstated_and_hardl
     let fine =
         io::read_path(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../maps/minnesota.tif")).unwrap();
     for factor in [4, 8, 16, 24, 40] {
-        let coarse = coarsened(&fine, factor);
+        let coarse = coarsened(&fine, factor).unwrap();
         let hidden = (slope_2(&fine) - slope_2(&coarse)).sqrt();
         let cells = coarse.grid.cells();
         let told_2 =
