@@ -14,7 +14,7 @@ use recording::{PowerForm, Recording, Watch};
 use crate::{
     Error, Series,
     diagnose::{NEEDED_S, impossible},
-    evidence::linear_model::{LinearModel, transposed},
+    evidence::linear_model::{Amplitudes, LinearModel, transposed},
     fit::amplitude::Healthy,
     fit::{baseline::Baseline, temperature::UNTOLD},
     observe::observations::Observations,
@@ -150,7 +150,7 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let tempered = whitening.scaled(|_| 1.0 / UNTOLD.sqrt());
     let white = columns.iter().map(|column| tempered.apply(column));
     let basis = transposed(observed.rows(), columns.len(), white);
-    let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD);
+    let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD, &Amplitudes::AS_THEY_ARE);
     let error =
         |robot: &Robot| Ok::<_, Error>(file_error(&observed, &baseline, &series.predict(robot, &[])?));
     // Ground that only the calibration knows is as new to the file before as to its reader.
@@ -174,7 +174,7 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
         model_error: Some(ModelError {
             fraction,
             hours: thin.duration_s() / 3600.0,
-            regimes: observed.covered(),
+            regimes: observed.covered(0..observed.rows()),
         }),
         noise: noise(&observed, &baseline),
         ..calibrated.clone()

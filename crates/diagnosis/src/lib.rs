@@ -26,6 +26,7 @@ mod plain;
 mod evidence {
     pub(crate) mod linear_model;
     pub(crate) mod noise;
+    pub(crate) mod reduced;
 }
 
 /// Drives as the model sees them, second by second, and what a robot would have shown.
@@ -41,6 +42,7 @@ mod observe {
     pub(crate) mod observations;
     pub(crate) mod part;
     pub(crate) mod prepared;
+    pub(crate) mod reach;
     pub(crate) mod region;
     pub(crate) mod sag;
     pub(crate) mod sample;

@@ -6,16 +6,17 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::{
     Applied, Error, Span,
     evidence::{
-        linear_model::{Evidence, Group, Half, LinearModel, matrix, products, transposed},
+        linear_model::{Amplitudes, Group, LinearModel, matrix, products, transposed},
         noise::Whitening,
+        reduced::{Evidence, Half, Reduced},
     },
     fit::{baseline::Baseline, features::Features, member::Member},
     observe::observations::{Observations, REGIME},
 };
 
-/// Share by which an effect's form may be off, one sigma: in concealed worlds with forms of their own, sizes that noise told to 5 % were off
-/// by 8 %.
-const FORM_ERROR: f64 = 0.07;
+/// Shares by which an effect's form may be off, one sigma, each twice as far and half as likely as the one before: in concealed worlds with
+/// forms of their own, sizes that noise told to 5 % were off by 8 %, and a few by a third. The evidence is their weighted sum.
+const FORM_ERRORS: [f64; 3] = [0.07, 0.14, 0.28];
 /// Functions by which it is off, for each member: a third of the discrepancy's.
 const FORM_FUNCTIONS: usize = 8;
 /// Their length scales: of each quantity of the regime in its scatter, those of the discrepancy, and of time as a share of all time.
@@ -48,6 +49,43 @@ pub(crate) struct Joint<'a> {
     parameters_root: Option<Cholesky<f64, Dyn>>,
 }
 
+/// Evidence summed over the shares by which forms may be off.
+struct FormErrors {
+    evidence: Evidence,
+    /// The likeliest share.
+    likeliest: f64,
+    /// Log evidence with it alone.
+    log_of_likeliest: f64,
+}
+
+impl FormErrors {
+    /// Of reduced columns of sizes, then of forms that are off by 1, then the residual.
+    fn new(reduced: &Reduced, halves: &[Half], forms: usize) -> Self {
+        if forms == 0 {
+            let evidence = reduced.evidence(halves);
+            return FormErrors { likeliest: FORM_ERRORS[0], log_of_likeliest: evidence.log, evidence };
+        }
+        let weights = FORM_ERRORS.map(|share| FORM_ERRORS[0] / share);
+        let total: f64 = weights.iter().sum();
+        let of = |share: f64| reduced.scaled(&form_factors(halves.len(), forms, share)).evidence(halves);
+        let each = FORM_ERRORS.map(of);
+        let log = |i: &usize| each[*i].log + (weights[*i] / total).ln();
+        let best = (0..each.len()).max_by(|a, b| log(a).total_cmp(&log(b))).unwrap_or(0);
+        let (likeliest, log_of_likeliest) = (FORM_ERRORS[best], each[best].log);
+        let logs: Vec<f64> = (0..each.len()).map(|i| log(&i)).collect();
+        FormErrors {
+            evidence: Evidence::mixed(&logs, each.iter().map(|one| (&one.mean, &one.covariance))),
+            likeliest,
+            log_of_likeliest,
+        }
+    }
+}
+
+/// Factors of columns of sizes and of forms that are off by a share.
+fn form_factors(sizes: usize, forms: usize, share: f64) -> Vec<f64> {
+    (0..sizes + forms).map(|i| if i < sizes { 1.0 } else { share }).collect()
+}
+
 /// Members, their effect, and the log density that they reach.
 type Reached = (Vec<Member>, Vec<f64>, f64);
 
@@ -60,6 +98,9 @@ pub(crate) struct Fitted {
     pub(crate) evidence: Evidence,
     /// Log evidence and log priors of forms and windows.
     pub(crate) log: f64,
+    /// Log evidence that something unlisted beside [`Fitted::columns`] is compared with: theirs at the first amplitude of the discrepancy,
+    /// and what all amplitudes and form errors add to it.
+    pub(crate) log_beside: f64,
     /// Change of what the test drives show by all members together, row by row.
     pub(crate) effect: Vec<f64>,
     /// Fitted predictions of the test drives less those of the baseline, row by row.
@@ -86,6 +127,7 @@ impl<'a> Joint<'a> {
         others: &[Vec<f64>],
         whitening: Whitening,
         temperature: f64,
+        amplitudes: &Amplitudes<'_>,
     ) -> Self {
         let white = baseline.sensitivities.iter().chain(others).map(|column| whitening.apply(column));
         let basis = transposed(observed.rows(), baseline.sensitivities.len() + others.len(), white);
@@ -93,7 +135,7 @@ impl<'a> Joint<'a> {
         let parameters = basis.rows(0, count).into_owned();
         let gram = products(&parameters) * temperature + DMatrix::identity(count, count);
         let residual = DVector::from_vec(whitening.apply(&baseline.residual));
-        let model = LinearModel::new(basis, observed.rows() as f64 / temperature);
+        let model = LinearModel::new(basis, observed.rows() as f64 / temperature, amplitudes);
         Joint { observed, baseline, file, whitening, model, residual, parameters_root: gram.cholesky() }
     }
 
@@ -114,7 +156,7 @@ impl<'a> Joint<'a> {
         let mut columns = self.columns(&members, &effect)?;
         for _ in 0..STEPS {
             let sizes: Vec<f64> = members.iter().flat_map(Member::sizes).collect();
-            let (group, left) = self.groups(&columns, &effect, &sizes, &[]);
+            let (group, left) = self.groups(&columns, &effect, &sizes, &[], |all| self.model.group(all));
             let mean = self.model.reduce(&[&group, &left]).evidence(&[]).mean;
             let step: Vec<f64> = mean.iter().zip(&sizes).map(|(to, from)| to - from).collect();
             let Some((next, next_effect, next_objective)) = self.stepped(&members, &step, objective)? else {
@@ -165,7 +207,7 @@ impl<'a> Joint<'a> {
                 .enumerate()
                 .map(|(j, column)| if own.contains(&j) { masked(column, &|_| 0.0) } else { column.clone() })
                 .collect();
-            let (group, left) = self.groups(&columns, &in_span, &sizes, &[]);
+            let (group, left) = self.groups(&columns, &in_span, &sizes, &[], |all| self.model.group(all));
             self.model.reduce(&[&group, &left]).evidence(&[]).log
         };
         Ok(spans.iter().map(log).collect())
@@ -195,10 +237,15 @@ impl<'a> Joint<'a> {
     fn fitted(&self, members: Vec<Member>, effect: &[f64], columns: &[Vec<f64>]) -> Result<Fitted, Error> {
         let sizes: Vec<f64> = members.iter().flat_map(Member::sizes).collect();
         let forms = self.form_columns(&members, effect)?;
-        let (group, left) = self.groups(columns, effect, &sizes, &forms);
+        let (group, left) = self.groups(columns, effect, &sizes, &forms, |all| self.model.group_at_all(all));
         let reduced = self.model.reduce(&[&group, &left]);
         let halves: Vec<Half> = members.iter().flat_map(|m| m.free.iter().map(|size| size.half)).collect();
-        let evidence = reduced.evidence(&halves);
+        let FormErrors { evidence, likeliest, .. } = FormErrors::new(&reduced, &halves, forms.len());
+        let (group, left) = (self.model.at_first(&group), self.model.at_first(&left));
+        let at_first = FormErrors::new(&reduced.first(left.halves.len()), &halves, forms.len());
+        // What the first amplitude has of the evidence, of which the likeliest form error has its part.
+        let log_beside = at_first.log_of_likeliest + evidence.log - at_first.evidence.log;
+        let reduced = reduced.scaled(&form_factors(halves.len(), forms.len(), likeliest));
         let log = evidence.log + members.iter().map(|m| m.log_prior).sum::<f64>();
         let weights = self.model.basis_weights(&reduced, &self.less(effect));
         Ok(Fitted {
@@ -208,8 +255,9 @@ impl<'a> Joint<'a> {
             u: weights.rows(0, self.baseline.parameters.len()).into_owned(),
             raw_columns: columns.to_vec(),
             sizes,
+            log_beside,
             columns: if members.len() <= 1 {
-                group
+                group.scaled(&form_factors(halves.len(), forms.len(), at_first.likeliest))
             } else {
                 Group { columns: DMatrix::zeros(0, 0), halves: Vec::new() }
             },
@@ -281,6 +329,7 @@ impl<'a> Joint<'a> {
         effect: &[f64],
         sizes: &[f64],
         forms: &[DVector<f64>],
+        group: impl Fn(DMatrix<f64>) -> Group,
     ) -> (Group, Group) {
         let mut white = self.whiten(columns);
         let mut left = self.less(effect);
@@ -291,12 +340,12 @@ impl<'a> Joint<'a> {
         let rows = self.observed.test_rows;
         if left.len() == rows {
             white.push(left);
-            return LinearModel::split_last(&self.model.group(matrix(rows, &white)));
+            return LinearModel::split_last(&group(matrix(rows, &white)));
         }
-        (self.model.group(matrix(rows, &white)), self.model.group(DMatrix::from_columns(&[left])))
+        (group(matrix(rows, &white)), group(DMatrix::from_columns(&[left])))
     }
 
-    /// What the form of each member leaves open: its net effect times smooth functions.
+    /// What the form of each member leaves open, off by its own size: its net effect times smooth functions.
     fn form_columns(&self, members: &[Member], effect: &[f64]) -> Result<Vec<DVector<f64>>, Error> {
         let regime = Features::<REGIME>::new(FORM_FUNCTIONS, FORM_LENGTHS);
         let time = Features::<1>::new(FORM_FUNCTIONS, [FORM_TIME_LENGTH]);
@@ -322,7 +371,7 @@ impl<'a> Joint<'a> {
                     // What remembers follows the time.
                     false => time.at(k, &[self.observed.driven_s[i] / total_s]),
                 };
-                all.push(DVector::from_fn(net.len(), |i, _| FORM_ERROR * net[i] * share(i)));
+                all.push(DVector::from_fn(net.len(), |i, _| net[i] * share(i)));
             }
         }
         Ok(all)

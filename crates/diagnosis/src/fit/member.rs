@@ -5,7 +5,7 @@ use model::{
     mechanism::{Form, Mechanism, Sign, SizePrior},
 };
 
-use crate::{Applied, Span, evidence::linear_model::Half};
+use crate::{Applied, Span, evidence::reduced::Half};
 
 /// Sizes beyond so many prior standard deviations are not looked at: the prior gives them a chance of 2·10⁻⁹.
 const FARTHEST: f64 = 6.0;

@@ -6,7 +6,7 @@ use model::{
 };
 use rayon::prelude::*;
 
-use crate::{Applied, Error, Series, Span, evidence::linear_model::Half, fit::member::Size};
+use crate::{Applied, Error, Series, Span, evidence::reduced::Half, fit::member::Size};
 
 /// One form of a mechanism with a column for each free parameter.
 #[derive(Clone)]

@@ -4,7 +4,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    evidence::linear_model::{Group, LinearModel, log_sum},
+    evidence::{
+        linear_model::{Group, LinearModel},
+        reduced::log_sum,
+    },
     fit::{baseline::Baseline, discrepancy::Components, features::Features, joint::Joint},
     observe::observations::{Observations, REGIME, REST},
 };
@@ -110,7 +113,7 @@ pub(crate) struct Beside<'a> {
     /// Columns of named effects.
     pub(crate) columns: &'a Group,
     /// Their signs.
-    pub(crate) halves: &'a [crate::evidence::linear_model::Half],
+    pub(crate) halves: &'a [crate::evidence::reduced::Half],
     /// The residual.
     pub(crate) left: &'a Group,
 }

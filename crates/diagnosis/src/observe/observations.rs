@@ -1,5 +1,7 @@
 //! Rows of all drives as the model sees them: regime, place in their series, and what they are of.
 
+use std::ops::Range;
+
 use model::{Robot, knowledge::Regimes};
 
 use crate::{Average, Error, Series, evidence::noise::Place};
@@ -102,10 +104,10 @@ impl<'a> Observations<'a> {
         self.begins_s.last().copied().unwrap_or(0.0)
     }
 
-    /// What drives cover: the lowest and highest hundredth of each quantity.
-    pub(crate) fn covered(&self) -> Regimes {
+    /// What some rows cover: the lowest and highest hundredth of each quantity.
+    pub(crate) fn covered(&self, rows: Range<usize>) -> Regimes {
         let range = |of: fn(&crate::Input) -> f64| {
-            let mut values: Vec<f64> = self.averages().iter().map(|a| of(&a.input)).collect();
+            let mut values: Vec<f64> = self.averages()[rows.clone()].iter().map(|a| of(&a.input)).collect();
             values.retain(|value| value.is_finite());
             values.sort_by(f64::total_cmp);
             let at = |share: f64| {

@@ -1,9 +1,6 @@
 //! What a report has to say of its own assumptions: of the file, of its constants, and of seconds far off.
 
-use model::{
-    Robot,
-    knowledge::{ModelError, Provenance, Regimes},
-};
+use model::{Robot, knowledge::Provenance};
 
 use crate::{
     fit::{
@@ -11,8 +8,8 @@ use crate::{
         parameter::Parameter,
         temperature::UNTOLD,
     },
-    observe::observations::Observations,
-    search::engine::Found,
+    observe::{observations::Observations, reach::Beyond},
+    search::engine::{AMPLITUDES, Found},
 };
 
 /// Standard deviations from which a parameter is worth a note: among a dozen parameters one in seven robots has one by chance.
@@ -25,10 +22,12 @@ pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) 
         (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
         (false, None) => "by where its constants come from",
     };
-    let share = 100.0 * found.model_error;
-    let mut notes = vec![format!("the model is taken to miss {share:.1} % of power smoothly, {source}")];
+    let (share, most) = (100.0 * found.model_error, AMPLITUDES[AMPLITUDES.len() - 1]);
+    let mut notes = vec![format!(
+        "the model is taken to miss {share:.1} % of power smoothly or, less probably, up to {most:.0} times as much, {source}"
+    )];
     notes.push(known_to(file, &found.baseline.parameters.list));
-    notes.extend(file.model_error.iter().filter_map(|known| beyond(known, &observed.covered())));
+    notes.extend(said_of_reach(found, !observed.series.has_healthy()));
     if found.run_variation > 0.0 {
         let share = 100.0 * found.run_variation;
         notes.push(format!(
@@ -87,27 +86,14 @@ pub(crate) fn strays(held_out: HeldOut) -> Option<String> {
     })
 }
 
-/// What these drives do that those of a calibration did not.
-fn beyond(known: &ModelError, here: &Regimes) -> Option<String> {
-    /// What a smooth curve is good for beyond its ends, as a share of the range that it was fitted in.
-    const REACH: f64 = 0.1;
-    let quantities = [
-        ("speed", "m/s", known.regimes.speed_mps, here.speed_mps),
-        ("difference of the sides' speeds", "m/s", known.regimes.difference_mps, here.difference_mps),
-        ("pitch", "rad", known.regimes.pitch_rad, here.pitch_rad),
-    ];
-    let is_beyond = |[low, high]: [f64; 2], here: [f64; 2]| {
-        let reach = REACH * (high - low);
-        here[0] < low - reach || here[1] > high + reach
-    };
-    let said: Vec<String> = quantities
-        .into_iter()
-        .filter(|(_, _, known, here)| is_beyond(*known, *here))
-        .map(|(name, unit, [low, high], here)| {
-            format!("{name} {:.2} to {:.2} {unit} (calibrated on {low:.2} to {high:.2})", here[0], here[1])
-        })
-        .collect();
-    (!said.is_empty()).then(|| {
-        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", said.join(", "))
+/// What these drives do that those did not by which the model's error is known.
+fn said_of_reach(found: &Found, is_calibrated: bool) -> Option<String> {
+    let words: Vec<String> = found.beyond.iter().map(Beyond::words).collect();
+    let known_by = if is_calibrated { "that the robot was calibrated on" } else { "that are healthy" };
+    (!words.is_empty()).then(|| {
+        format!(
+            "these drives go beyond those {known_by}, where its model may miss more: {}",
+            words.join(", ")
+        )
     })
 }

@@ -70,7 +70,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let mut notes = subject.doubts.to_vec();
     notes.extend(of_corrected);
     notes.extend(assumed(file, observed, found));
-    notes.extend(untold(&found.detectable, &observed.covered(), file));
+    notes.extend(untold(&found.detectable, &observed.covered(0..observed.rows()), file));
     notes.extend(strays(found.held_out[usize::from(!findings.is_empty())]));
     let named: Vec<&str> = findings.iter().map(|one| one.mechanism.as_str()).collect();
     let information: Vec<_> = found.detectable.iter().map(|(effect, g)| (effect, *g)).collect();

@@ -2,7 +2,7 @@
 
 use crate::{
     Series, Span,
-    evidence::linear_model::Half,
+    evidence::reduced::Half,
     fit::{
         joint::Fitted,
         member::{Member, Size},
@@ -152,14 +152,16 @@ impl Reading<'_> {
     }
 }
 
-/// Posterior standard deviation of one free value of a member whose sizes begin at a column, in units of the size.
+/// Standard deviation of one free value about the most probable one, of a member whose sizes begin at a column, in units of the size: where
+/// forms may be off, the mean of the posterior lies elsewhere.
 fn value_sigma(fitted: &Fitted, member: &Member, first: usize, j: usize) -> f64 {
-    let covariance = &fitted.evidence.covariance;
-    let own = covariance[(first + j, first + j)];
+    let off = |i: usize| fitted.evidence.mean[i] - fitted.sizes[i];
+    let about = |i: usize, k: usize| fitted.evidence.covariance[(i, k)] + off(i) * off(k);
+    let own = about(first + j, first + j);
     let rho = member.correlation;
     let variance = if j == 1 {
-        let beside = covariance[(first, first)];
-        let both = covariance[(first, first + 1)];
+        let beside = about(first, first);
+        let both = about(first, first + 1);
         rho * rho * beside + (1.0 - rho * rho) * own + 2.0 * rho * (1.0 - rho * rho).sqrt() * both
     } else {
         own

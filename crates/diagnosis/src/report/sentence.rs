@@ -29,6 +29,11 @@ fn found(verdict: Verdict, findings: &[Finding]) -> String {
     let statements: Vec<String> = named.iter().map(|finding| stated(finding)).collect();
     match verdict {
         Verdict::Consistent => "Within its uncertainty nothing is missing.".to_owned(),
+        Verdict::Ambiguous if statements.is_empty() => {
+            "Whether something is missing these drives do not tell: the model describes them poorly, and with nothing missing hardly worse than \
+             with what is likeliest."
+                .to_owned()
+        }
         Verdict::Explained | Verdict::Ambiguous => capital(&format!("{}.", statements.join("; "))),
         Verdict::Unexplained if findings.iter().any(|finding| finding.mechanism == UNKNOWN) => {
             let all: Vec<String> = findings.iter().map(|finding| finding.statement.clone()).collect();

@@ -63,11 +63,14 @@ pub(crate) fn verdict(explanations: &[Explanation], circumstances: Circumstances
     if of_first >= SURE { Verdict::Explained } else { Verdict::Ambiguous }
 }
 
-/// Whether names are given: not where nothing is missing, nor where that is as plausible as in consistent drives and no answer is sure.
+/// Whether names are given: not where nothing is missing, nor where that is itself among the credible explanations, nor where it is as
+/// plausible as in consistent drives and no answer is sure.
 pub(crate) fn is_named(verdict: Verdict, explanations: &[Explanation]) -> bool {
+    let is_nothing = |one: &Explanation| one.names.is_empty() && !one.unlisted;
     match verdict {
         Verdict::Consistent => false,
-        Verdict::Explained | Verdict::Ambiguous => true,
+        Verdict::Explained => true,
+        Verdict::Ambiguous => !credible(explanations).iter().any(is_nothing),
         Verdict::Unexplained => probability(explanations).nothing < LEAST_OF_NOTHING,
     }
 }
@@ -85,7 +88,7 @@ mod tests {
 
     const FITS: Circumstances = Circumstances { held_out_ratio: 1.05, file_is_off: false };
 
-    fn of(parts: &[(&[&'static str], bool, f64)], circumstances: Circumstances) -> Verdict {
+    fn explanations(parts: &[(&[&'static str], bool, f64)]) -> Vec<Explanation> {
         let explanation = |(names, unlisted, probability): &(&[&'static str], bool, f64)| Explanation {
             names: names.to_vec(),
             unlisted: *unlisted,
@@ -94,7 +97,24 @@ mod tests {
             block: None,
             probability: *probability,
         };
-        verdict(&parts.iter().map(explanation).collect::<Vec<_>>(), circumstances)
+        parts.iter().map(explanation).collect()
+    }
+
+    fn of(parts: &[(&[&'static str], bool, f64)], circumstances: Circumstances) -> Verdict {
+        verdict(&explanations(parts), circumstances)
+    }
+
+    #[test]
+    fn a_robot_is_not_accused_where_nothing_missing_is_among_the_credible_explanations() {
+        let (payload, drag): (&[&str], &[&str]) = (&["payload"], &["drivetrain_drag"]);
+        let poor = Circumstances { held_out_ratio: 1.3, ..FITS };
+        let doubtful: &[(&[&'static str], bool, f64)] = &[(payload, false, 0.6), (&[], false, 0.4)];
+        let named: &[(&[&'static str], bool, f64)] =
+            &[(payload, false, 0.57), (drag, false, 0.4), (&[], false, 0.03)];
+        for (parts, expected) in [(doubtful, false), (named, true)] {
+            assert_eq!(of(parts, poor), Verdict::Ambiguous);
+            assert_eq!(is_named(Verdict::Ambiguous, &explanations(parts)), expected);
+        }
     }
 
     #[test]

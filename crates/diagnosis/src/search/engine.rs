@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use crate::{
     Error,
-    evidence::noise::Whitening,
+    evidence::{linear_model::Amplitudes, noise::Whitening},
     fit::{
         amplitude::Healthy,
         baseline::Baseline,
@@ -22,7 +22,10 @@ use crate::{
         unlisted::{self, Block},
         window::{Grid, Windows},
     },
-    observe::observations::Observations,
+    observe::{
+        observations::Observations,
+        reach::{Beyond, beyond},
+    },
     search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
@@ -32,12 +35,17 @@ const LARGE: f64 = 3.5;
 /// unlisted class wins everything, since what is missing counts as stray there.
 const FLEXIBLE: f64 = 5.0;
 
+/// Factors of the discrepancy's amplitude that are summed over, each twice and half as likely as the one before.
+pub(crate) const AMPLITUDES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+
 /// What the engine found.
 pub(crate) struct Found {
     /// Explanations, likeliest first.
     pub(crate) explanations: Vec<Explanation>,
     /// Amplitude of the discrepancy.
     pub(crate) model_error: f64,
+    /// What the test drives do that those did not by which that is known.
+    pub(crate) beyond: Vec<Beyond>,
     /// Standard deviation of ground from run to run, as a share of resistance.
     pub(crate) run_variation: f64,
     /// Divisor of log likelihoods.
@@ -91,7 +99,13 @@ pub(crate) fn find(
     } else {
         file.model_error_fraction()
     };
+    let beyond = beyond_known(observed, file);
+    // What is known of other drives says nothing of these where they do what those did not.
+    let model_error =
+        if beyond.is_empty() { model_error } else { model_error.max(file.model_error_by_source()) };
     let mut others = baseline.discrepancy(observed, model_error);
+    let first = baseline.sensitivities.len();
+    let discrepancy = first..first + others.len();
     others.extend(shared);
     let weighted = weighted(observed, (&baseline, file), &others, &plain);
     let temperature = if observed.series.has_healthy() {
@@ -104,7 +118,10 @@ pub(crate) fn find(
         temperature::UNTOLD
     };
     let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
-    let joint = Joint::new(observed, (&baseline, file), &others, whitening, temperature);
+    let total: f64 = AMPLITUDES.iter().map(|by| AMPLITUDES[0] / by).sum();
+    let each = AMPLITUDES.map(|by| (by, (AMPLITUDES[0] / by / total).ln()));
+    let amplitudes = Amplitudes { columns: discrepancy, each: &each };
+    let joint = Joint::new(observed, (&baseline, file), &others, whitening, temperature, &amplitudes);
     drop(others);
     step("screening mechanisms", 0.4)?;
     let grid = Grid::new(observed, windows);
@@ -121,6 +138,7 @@ pub(crate) fn find(
     Ok(Found {
         explanations,
         model_error,
+        beyond,
         run_variation,
         temperature,
         parameter_covariance,
@@ -130,6 +148,15 @@ pub(crate) fn find(
         blocks,
         baseline,
     })
+}
+
+/// What the test drives do that healthy drives, or those of a calibration, did not.
+fn beyond_known(observed: &Observations<'_>, file: &Robot) -> Vec<Beyond> {
+    let here = observed.covered(0..observed.test_rows);
+    if observed.series.has_healthy() {
+        return beyond(&observed.covered(observed.test_rows..observed.rows()), &here);
+    }
+    file.model_error.as_ref().map_or_else(Vec::new, |known| beyond(&known.regimes, &here))
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
@@ -235,7 +262,7 @@ fn weighted(
 ) -> Whitening {
     let wide: Vec<Vec<f64>> =
         others.iter().map(|column| column.iter().map(|x| FLEXIBLE * x).collect()).collect();
-    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0);
+    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0, &Amplitudes::AS_THEY_ARE);
     let left = unlisted::left_by_all(&joint);
     let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
     plain.scaled(weight)

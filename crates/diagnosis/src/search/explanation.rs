@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    evidence::linear_model::log_sum,
+    evidence::reduced::log_sum,
     fit::joint::Fitted,
     observe::observations::{GROUND_SPEED, Observations, REST, YAW_RATE},
 };

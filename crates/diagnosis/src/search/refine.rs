@@ -186,7 +186,7 @@ impl Search<'_> {
             unlisted::Beside { columns: &fitted.columns, halves: &fitted.halves, left: &fitted.left };
         let (mean, each) = unlisted::log_evidence(&self.joint.model, self.blocks, &beside);
         let best = each.iter().max_by(|a, b| a.2.total_cmp(&b.2));
-        let gain = mean - fitted.evidence.log;
+        let gain = mean - fitted.log_beside;
         Explanation {
             names: names.clone(),
             unlisted: true,

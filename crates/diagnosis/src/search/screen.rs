@@ -4,7 +4,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    evidence::linear_model::{Half, Reduced, log_sum, matrix},
+    evidence::{
+        linear_model::matrix,
+        reduced::{Half, Reduced, log_sum},
+    },
     fit::{joint::Joint, member::Member},
     hypothesis::{
         atoms::Atoms,
@@ -249,6 +252,7 @@ mod tests {
     use super::*;
     use crate::{
         Series,
+        evidence::linear_model::Amplitudes,
         fit::baseline::Baseline,
         hypothesis::{
             effect::{Beside, effects},
@@ -265,7 +269,7 @@ mod tests {
         let baseline = Baseline::fit(&observed, &robot).unwrap();
         let white = baseline.noise.whitening(&baseline.predicted, &observed.places);
         let others = baseline.discrepancy(&observed, 0.03);
-        let joint = Joint::new(&observed, (&baseline, &robot), &others, white, 4.0);
+        let joint = Joint::new(&observed, (&baseline, &robot), &others, white, 4.0, &Amplitudes::AS_THEY_ARE);
         let library = ["payload", "surface_change"].map(|name| mechanism::by_name(name).unwrap());
         let scale = Scale { robot: &robot, meter_zero_w: 7.0, mean_power_w: 90.0, mean_loss_w: 9.0 };
         let (series, robot) = (&series, &baseline.robot);

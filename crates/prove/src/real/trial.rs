@@ -7,6 +7,7 @@ use model::{Robot, Sides, robot::Motors};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use recording::Recording;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::{
     Commitments, Diagnosis, Error, Outcome, PeerAnswer, Progress, Stage, Way, files,
@@ -75,7 +76,7 @@ struct Drawn {
 struct Halves<'g> {
     ground: &'g Ground,
     split: Split,
-    /// The raw file: what the diagnosis gets.
+    /// The raw file, off by what it states: what the diagnosis gets.
     raw: Robot,
     /// The robot fitted to the healthy half: what forces and strengths are worked out with.
     fitted: Robot,
@@ -200,7 +201,7 @@ impl<'g> Halves<'g> {
         let split = split(ground, random);
         let fitted = calibrate(raw, &ground.part(&split.healthy), &Options::default())?.robot;
         let fitted = with_force_of(raw, fitted);
-        Ok(Halves { ground, split, raw: raw.clone(), fitted })
+        Ok(Halves { ground, split, raw: off_by_stated(raw, &fitted, random), fitted })
     }
 
     fn untouched(self, case: &RealCase) -> Drawn {
@@ -263,6 +264,38 @@ impl<'g> Halves<'g> {
             },
         }
     }
+}
+
+/// Share of its stated uncertainty that a raw file is off by, one sigma, as robots of the concealed trial are.
+const SCATTER: f64 = 0.5;
+
+/// The raw file of a robot that a healthy half was fitted with: what it states is off by [`SCATTER`] of its stated uncertainty, and nothing
+/// of what the fit learnt about its own error is left.
+///
+/// A file of another ground's constants would itself be a finding in every drive, and no drive by it in order.
+fn off_by_stated(raw: &Robot, fitted: &Robot, random: &mut Pcg64Mcg) -> Robot {
+    let mut factor = |sigma: f64| {
+        let z = Normal::standard().inverse_cdf(random.random_range(f64::EPSILON..1.0));
+        (SCATTER * sigma * z).exp()
+    };
+    let stated = raw.uncertainty;
+    let mut off = Robot {
+        uncertainty: stated,
+        provenance: raw.provenance.clone(),
+        posterior: None,
+        model_error: raw.model_error.clone(),
+        noise: None,
+        ..fitted.clone()
+    };
+    for surface in off.surfaces.values_mut() {
+        *surface = surface.scaled(factor(stated.mu_roll), factor(stated.mu_skid));
+    }
+    for motor in [&mut off.motors.left, &mut off.motors.right] {
+        motor.k1_w_per_n2 *= factor(stated.k1);
+        motor.k2 *= factor(stated.k2);
+    }
+    off.mass_kg *= factor(stated.mass_kg);
+    off
 }
 
 /// A robot that shows the same currents as a fitted one, with the force per ampere of its raw file: level ground does not tell it, and a fit
