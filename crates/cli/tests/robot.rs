@@ -226,6 +226,7 @@ fn robots_are_listed_and_compared() {
     }
     let plain = String::from_utf8(succeed(&["robot", "list"]).stdout).unwrap();
     assert_eq!(plain.lines().count(), names.len() + 1);
+    assert!(plain.lines().all(|line| line.chars().count() <= 100), "{plain}");
     let compared = document(&["robot", "compare", "husky-a200", "husky-a200-field", "--json"]);
     let level = &compared["moments"][0];
     assert_eq!(level["moment"], "level");
