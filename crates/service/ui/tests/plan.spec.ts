@@ -50,6 +50,8 @@ test("a slider that is dragged plans anew, more payload takes more energy, and t
   await openSample(page, service);
   const before = await energyOf(page, "Energy-minimal");
   const slider = page.getByRole("slider", { name: "Payload" });
+  await expect(slider).toHaveAccessibleDescription(/^0\skg to 72\skg$/);
+  await expect(page.getByRole("slider", { name: "Speed" })).toHaveAccessibleDescription(/^0\.10\sm\/s to 1\.00\sm\/s$/);
   await slider.scrollIntoViewIfNeeded();
   const box = (await slider.boundingBox())!;
   const y = box.y + box.height / 2;
