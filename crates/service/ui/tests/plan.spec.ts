@@ -17,6 +17,9 @@ test("the sample map is drawn and its three paths are compared at once", PHONE_T
   const saved = Number.parseInt(await page.locator(".answer-saving").innerText());
   expect(Math.abs(saved - 100 * (1 - least / shortest))).toBeLessThan(1);
   await picture(page, `plan-${info.project.name}`);
+  const beyond = await page.evaluate(() => document.documentElement.scrollHeight - innerHeight);
+  if (info.project.name === "desktop") expect(beyond, "the side scrolls, not the page").toBeLessThanOrEqual(0);
+  await expect(page.getByRole("link", { name: /guide$/i }).filter({ visible: true })).toHaveAttribute("href", "/docs/guide/");
   expect(outside, "nothing is asked of anyone else").toEqual([]);
   expect(complaints).toEqual([]);
 });
