@@ -67,6 +67,36 @@ fn geojson_and_gpx_are_degrees_where_the_map_says_where_it_lies_and_say_so_where
 }
 
 #[test]
+fn a_mission_comes_in_the_form_that_accept_asks_for() {
+    let server = Server::start();
+    let asked = |crs: Option<&str>, form: &str| {
+        let place = |x_m: f64, y_m: f64| json!({ "x_m": 512_000.0 + x_m, "y_m": 5_422_970.0 + y_m });
+        let request = json!({
+            "map": field(crs), "robot": "husky-a200", "start": place(8.5, 6.5),
+            "waypoints": [place(30.5, 24.5), place(20.5, 12.5)], "samples": 10
+        });
+        let headers = [("content-type", "application/json"), ("accept", form)];
+        server.ask("POST", "/v1/mission", &headers, request.to_string().as_bytes())
+    };
+    let crs = Some("EPSG:32632");
+    assert!(asked(crs, "*/*").json()["feasible"].is_boolean());
+    let kinds = |document: Value| -> Vec<String> {
+        let features = document["features"].as_array().unwrap().clone();
+        features.iter().map(|one| one["geometry"]["type"].as_str().unwrap().to_owned()).collect()
+    };
+    let placed = asked(crs, "application/geo+json");
+    assert_eq!(placed.content_type, "application/geo+json");
+    assert_eq!(kinds(placed.json()), ["LineString", "LineString", "Point", "Point", "Point"]);
+    let track = asked(crs, "application/gpx+xml").text;
+    assert!(track.contains("<trkpt lat=\"48.95") && track.contains("<name>to waypoint 0</name>"), "{track}");
+    assert!(asked(crs, "application/vnd.google-earth.kml+xml").text.contains("<coordinates>9.164"));
+    assert!(asked(None, "text/csv").text.starts_with("path,x_m,y_m"));
+    let refused = asked(None, "application/vnd.google-earth.kml+xml");
+    assert_eq!(refused.status, 400, "{}", refused.text);
+    assert!(refused.json()["detail"].as_str().unwrap().contains("EPSG:32632"), "{}", refused.text);
+}
+
+#[test]
 fn a_place_that_is_not_given_or_cannot_be_placed_is_refused_by_its_field() {
     let server = Server::start();
     let crs = Some("EPSG:32632");

@@ -1,6 +1,7 @@
 //! An answer as one self-contained picture: ground with paths and stops, a key with figures, elevation and power along the paths.
 
 mod frame;
+mod letters;
 mod profile;
 
 use std::{borrow::Cow, sync::Once};
@@ -17,6 +18,7 @@ use terrain::Terrain;
 
 use crate::raster::{Raster, Window, encode, plain};
 use frame::{Frame, WIDTH};
+use letters::Lettered;
 
 /// What is drawn.
 pub(crate) struct Scene<'a> {
@@ -103,7 +105,8 @@ pub(crate) fn png(scene: &Scene<'_>) -> anyhow::Result<Vec<u8>> {
     let frame = Frame::of(scene, ground.window);
     let mut rgb = vec![255; 3 * (WIDTH * frame.height) as usize];
     {
-        let root = BitMapBackend::with_buffer(&mut rgb, (WIDTH, frame.height)).into_drawing_area();
+        let pixels = BitMapBackend::with_buffer(&mut rgb, (WIDTH, frame.height));
+        let root = Lettered(pixels).into_drawing_area();
         scene.draw(&root, &frame, Some(&ground)).map_err(failed)?;
         root.present().map_err(failed)?;
     }

@@ -226,6 +226,7 @@ fn robots_are_listed_and_compared() {
     }
     let plain = String::from_utf8(succeed(&["robot", "list"]).stdout).unwrap();
     assert_eq!(plain.lines().count(), names.len() + 1);
+    assert!(plain.lines().all(|line| line.chars().count() <= 100), "{plain}");
     let compared = document(&["robot", "compare", "husky-a200", "husky-a200-field", "--json"]);
     let level = &compared["moments"][0];
     assert_eq!(level["moment"], "level");
@@ -247,6 +248,19 @@ fn answers_that_lean_on_borrowed_constants_name_them_and_the_cure() {
             assert!(warnings[0].contains(words), "{command}: {jackal}");
         }
         assert!(!said("husky-a200").contains("borrowed"), "{command}");
+    }
+    // What is borrowed for ground that the map does not have is in no answer over it.
+    let folder = tempfile::tempdir().unwrap();
+    let map = hills(folder.path());
+    let mut measured = document(&["robot", "show", "husky-a200"]);
+    measured["provenance"] = serde_json::json!({ "surfaces.sandy_loam.mu_roll": "borrowed" });
+    let file = folder.path().join("measured.json").display().to_string();
+    std::fs::write(&file, measured.to_string()).unwrap();
+    for (surface, is_named) in [("marble", false), ("sandy_loam", true)] {
+        let ends = ["--start", "@0.3,0.3", "--goal", "@0.6,0.6", "--surface", surface];
+        let output = joulepath(&[&["plan", "--map", &map, "--robot", &file][..], &ends].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success() && said.contains("mu_roll") == is_named, "{surface}: {said}");
     }
     // The documents are those of the HTTP API.
     let kinds = |command: &str, robot: &str, at: &str| -> Vec<Value> {

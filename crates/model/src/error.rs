@@ -43,7 +43,7 @@ pub enum Error {
     },
     /// A ground is named whose friction is not known of any robot.
     #[error(
-        "no robot was measured on `{name}`; known are {}: name one of them, or give its friction", known.join(", ")
+        "no robot was measured on `{name}`; known are {}: name one of them, or give its friction, as in {name}=0.09,0.4 for mu_roll and mu_skid", known.join(", ")
     )]
     UnknownGround {
         /// The name asked for.

@@ -113,14 +113,31 @@ impl fmt::Display for Blocked {
     }
 }
 
+/// A length to the centimetre [m].
+fn centimetres(length_m: f64) -> f64 {
+    (100.0 * length_m).round() / 100.0
+}
+
+/// A hint for places that could be degrees, on a map whose coordinates could not.
+fn of_degrees(place: [f64; 2], west_south_m: [f64; 2]) -> &'static str {
+    let could_be = |[x, y]: [f64; 2]| x.abs() <= 180.0 && y.abs() <= 180.0;
+    match could_be(place) && !could_be(west_south_m) {
+        true => {
+            "; if these are degrees, write them as 46.5046N,93.9217W, or as `lat_deg` and `lon_deg` in a request"
+        }
+        false => "",
+    }
+}
+
 /// An error of the planner crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A place off the map.
     #[error(
-        "the {place} ({x_m:.2}, {y_m:.2}) lies outside the map, which spans x {} to {} m and y {} to {} m",
-        west_south_m[0], east_north_m[0], west_south_m[1], east_north_m[1]
+        "the {place} ({x_m:.2}, {y_m:.2}) lies outside the map, which spans x {} to {} m and y {} to {} m{}",
+        centimetres(west_south_m[0]), centimetres(east_north_m[0]), centimetres(west_south_m[1]), centimetres(east_north_m[1]),
+        of_degrees([*x_m, *y_m], *west_south_m)
     )]
     OutsideMap {
         /// Which place.

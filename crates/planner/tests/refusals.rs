@@ -44,6 +44,17 @@ fn ends_off_the_map_are_told_apart_and_the_extent_is_named() {
 }
 
 #[test]
+fn what_could_be_degrees_on_a_map_far_from_them_is_told_how_degrees_are_written() {
+    let grid = Grid { origin_m: [512_340.004_999_9, 5_402_110.0], ..GRID };
+    let far = Terrain::new(grid, &vec![1.0; grid.cells()]).unwrap();
+    let said = |terrain: &Terrain, start| refused(terrain, &query(start, (10.0, 10.0))).to_string();
+    let degrees = said(&far, (48.77, 9.17));
+    assert!(degrees.contains("46.5046N,93.9217W") && degrees.contains("x 512340 to "), "{degrees}");
+    assert!(!said(&far, (512_000.0, 9.17)).contains("degrees"), "no longitude");
+    assert!(!said(&flat(), (48.77, 9.17)).contains("degrees"), "metres about the origin");
+}
+
+#[test]
 fn an_end_amid_obstacles_names_the_obstacle_and_one_beside_free_ground_is_snapped() {
     let block = |reach: usize| {
         let obstacle = (0..GRID.cells())

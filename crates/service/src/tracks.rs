@@ -2,10 +2,12 @@
 
 use std::io::{self, Write};
 
+use axum::http::HeaderMap;
 use serde_json::{Map, Value, json};
 use terrain::{Terrain, Warning};
 
 use crate::{
+    accept::preferred,
     geojson,
     problem::{Problem, ProblemType},
     route_file,
@@ -42,6 +44,13 @@ impl TrackForm {
             TrackForm::Gpx => "application/gpx+xml",
             TrackForm::Kml => "application/vnd.google-earth.kml+xml",
         }
+    }
+
+    /// The media type that `Accept` prefers, and its format; none where that is the JSON document.
+    pub(crate) fn asked_for(headers: &HeaderMap) -> (&'static str, Option<TrackForm>) {
+        let [geojson, csv, gpx, kml] = TrackForm::ALL.map(TrackForm::media_type);
+        let media_type = preferred(headers, &["application/json", geojson, csv, gpx, kml]);
+        (media_type, TrackForm::ALL.into_iter().find(|form| form.media_type() == media_type))
     }
 
     /// Refuses a format that a map has no coordinates for.

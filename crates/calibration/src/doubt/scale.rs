@@ -169,7 +169,11 @@ pub(super) fn power(followed: &Followed) -> Option<Doubt> {
         .filter(|(_, unit)| (ratio / unit).ln().abs() < 2.5_f64.ln())
         .map(|(name, _)| *name)
         .collect();
-    let told = if !(0.01..=100.0).contains(&ratio) { format!("{ratio:.1e}") } else { format!("{ratio:.2}") };
+    let told = match ratio {
+        100.0..1e6 => format!("{ratio:.0}"),
+        0.01..100.0 => format!("{ratio:.2}"),
+        _ => format!("{ratio:.1e}"),
+    };
     Some(Doubt {
         name: "power_scale",
         statement: format!("recorded power is {told} times what the robot's file predicts"),

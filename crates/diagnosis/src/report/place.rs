@@ -40,7 +40,7 @@ pub(crate) fn places(
     // Healthy drives are no place.
     let mut all: Vec<f64> = (0..observed.test_rows).map(excess).collect();
     all.resize(observed.rows(), 0.0);
-    let mut places = most_of(observed.series, file, &all);
+    let mut places = most_of(observed.series, file, &corrected.spans, &all);
     if places.is_empty() {
         let range = Range::of("t_s", [None, None]);
         let statement = "all through the drives, nowhere in particular".into();
@@ -90,10 +90,10 @@ struct Judged {
 /// Places with significantly more excess than the rest of the drives, the clearest of each kind first.
 ///
 /// `excess` is, by average, the squared error beyond what belongs there, in variances of the noise.
-fn most_of(series: &Series, robot: &Robot, excess: &[f64]) -> Vec<Place> {
+fn most_of(series: &Series, robot: &Robot, spans: &[Span], excess: &[f64]) -> Vec<Place> {
     let excess: Vec<f64> = excess.iter().map(|e| e.clamp(-MOST_VARIANCES, MOST_VARIANCES)).collect();
     let block = blocks(series);
-    let groups = [times(series), grounds(series), regimes(robot.max_wheel_speed_mps), sides(series)];
+    let groups = [times(series, spans), grounds(series), regimes(robot.max_wheel_speed_mps), sides(series)];
     let tried: usize = groups.iter().map(Vec::len).sum();
     let mut places = Vec::new();
     for cells in groups {
@@ -158,19 +158,20 @@ impl Mean {
     }
 }
 
-/// Windows of each drive's time, and drives that follow each other.
-fn times(series: &Series) -> Vec<Cell> {
+/// Windows of each drive's time, and drives that follow each other; windows begin and end where the findings do.
+fn times(series: &Series, spans: &[Span]) -> Vec<Cell> {
     let mut cells = sequences(series);
     let suspects = series.averages.iter().filter(|a| a.suspect);
     let count = suspects.clone().map(|a| a.run).max().map_or(0, |run| run + 1);
     for run in 0..count {
         let last_s = suspects.clone().filter(|a| a.run == run).map(|a| a.t_s).fold(0.0, f64::max) + 1.0;
+        let edges_s = edges_s(last_s, run, spans);
         for from in 0..PARTS {
             for to in from + 1..=PARTS {
                 if to - from == PARTS && count == 1 {
                     continue;
                 }
-                let [from_s, to_s] = [from, to].map(|part| (last_s * part as f64 / PARTS as f64).round());
+                let [from_s, to_s] = [from, to].map(|part| edges_s[part]);
                 let name = series.names.get(run).cloned().unwrap_or_default();
                 let whose = if count > 1 { format!(" of drive {name}") } else { String::new() };
                 let range =
@@ -183,6 +184,25 @@ fn times(series: &Series) -> Vec<Cell> {
         }
     }
     cells
+}
+
+/// Edges of the parts of a drive that lasts so long, in time since it began. Where a finding begins or ends, the nearest inner edge
+/// is moved there, so that findings and places name one time [s].
+fn edges_s(last_s: f64, run: usize, spans: &[Span]) -> [f64; PARTS + 1] {
+    let part_s = last_s / PARTS as f64;
+    let mut edges_s: [f64; PARTS + 1] = std::array::from_fn(|part| (part_s * part as f64).round());
+    for span in spans {
+        let at_s = match *span {
+            Span::EachDrive(t_s) => t_s,
+            Span::From { run: of, t_s } | Span::Until { run: of, t_s } if of == run => t_s,
+            _ => continue,
+        };
+        let nearest = (at_s / part_s).round();
+        if nearest >= 1.0 && nearest < PARTS as f64 {
+            edges_s[nearest as usize] = at_s;
+        }
+    }
+    edges_s
 }
 
 /// Some of several drives that follow each other.
@@ -284,4 +304,26 @@ fn sides(series: &Series) -> Vec<Cell> {
 
 fn place(kind: &'static str, statement: String, range: Range) -> Place {
     Place { kind, statement, range, share_of_excess: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_meet_where_a_finding_of_that_drive_begins() {
+        let onset = [Span::From { run: 1, t_s: 479.7 }];
+        let [own, other] = [1, 0].map(|run| edges_s(900.0, run, &onset));
+        assert_eq!(other[10..13], [450.0, 495.0, 540.0]);
+        assert_eq!(own[10..13], [450.0, 479.7, 540.0], "not 495 s beside 480 s");
+        assert!(own.is_sorted() && (own[0], own[PARTS]) == (0.0, 900.0));
+    }
+
+    #[test]
+    fn a_finding_at_an_end_of_a_drive_moves_no_end() {
+        for t_s in [0.0, 10.0, 890.0, 900.0, 2000.0] {
+            let edges_s = edges_s(900.0, 0, &[Span::EachDrive(t_s)]);
+            assert_eq!((edges_s[0], edges_s[1], edges_s[PARTS]), (0.0, 45.0, 900.0), "{t_s}");
+        }
+    }
 }

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::{
     fit::baseline::Baseline,
-    observe::observations::{Observations, REST},
+    observe::{
+        observations::{Observations, REST},
+        span::Span,
+    },
     report::diagnosis::FileError,
     search::{engine::Found, explanation::Explanation},
 };
@@ -36,6 +39,8 @@ pub(crate) struct Corrected {
     pub(crate) predicted: Vec<f64>,
     /// Part of it that is the effect of listed mechanisms; none where there are none.
     pub(crate) effect: Option<Vec<f64>>,
+    /// When the listed mechanisms act.
+    pub(crate) spans: Vec<Span>,
 }
 
 impl Corrected {
@@ -54,6 +59,7 @@ impl Corrected {
         Corrected {
             predicted: (0..observed.test_rows).map(predicted).collect(),
             effect: named.map(|fitted| fitted.effect.clone()),
+            spans: named.iter().flat_map(|fitted| &fitted.members).map(|member| member.span).collect(),
         }
     }
 }

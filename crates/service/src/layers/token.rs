@@ -23,7 +23,9 @@ pub(crate) async fn needs_token(State(tokens): State<Tokens>, request: Request, 
         return run_as(tenant.clone(), request, next).await;
     }
     let detail = match token {
-        Some(_) => "the token is not one of the service's: ask who runs it for one",
+        Some(_) => {
+            "the token is not one of the service's: give what stands behind the colon of NAME:TOKEN, or ask who runs the service for one"
+        }
         None => "this service wants a token: send it as `Authorization: Bearer TOKEN`",
     };
     Problem::new(ProblemType::Unauthorized, detail).into_response()

@@ -1,6 +1,6 @@
 //! `POST /v1/mission`: many stops in the best order.
 
-use axum::extract::State;
+use axum::{extract::State, http::HeaderMap};
 use mission::{Call, Doubt, Mission, MissionQuestion, Role, Site, Stop, mission};
 use planner::{Patience, Planner};
 use routing::Waypoint;
@@ -18,10 +18,11 @@ use super::{
 };
 use crate::{
     Engine, Tenant,
-    answer::Json,
+    answer::Written,
     body::JsonBody,
     place::{Place, absent, place_deg, settle_all},
     problem::Problem,
+    tracks::{TrackForm, Tracks},
 };
 
 /// Waypoints to visit on a charge.
@@ -262,7 +263,13 @@ pub struct MissionSearch {
     post, path = "/v1/mission", tag = "battery",
     request_body = MissionRequest,
     responses(
-        (status = 200, description = "The mission", body = MissionAnswer),
+        (status = 200, description = "The mission, in the form that `Accept` asks for: a way to each stop, and the stops; coordinates as `/v1/plan` has them", content(
+            (MissionAnswer = "application/json"),
+            (Object = "application/geo+json"),
+            (String = "text/csv"),
+            (String = "application/gpx+xml"),
+            (String = "application/vnd.google-earth.kml+xml")
+        )),
         (status = 400, body = Problem, content_type = "application/problem+json"),
         (status = 404, description = "No such map or robot", body = Problem, content_type = "application/problem+json"),
         (status = 413, body = Problem, content_type = "application/problem+json"),
@@ -275,14 +282,21 @@ pub struct MissionSearch {
 pub(crate) async fn handler(
     State(engine): State<Engine>,
     tenant: Tenant,
+    headers: HeaderMap,
     JsonBody(mut request): JsonBody<MissionRequest>,
-) -> Result<Json<MissionAnswer>, Problem> {
+) -> Result<Written, Problem> {
+    let (media_type, form) = TrackForm::asked_for(&headers);
     let mut plan = request.plan();
-    with_planner(&engine, &tenant, &mut plan, move |planner, plan, patience| {
-        answer(planner, &request, plan, patience)
-    })
-    .await
-    .map(Json)
+    let planned = with_planner(&engine, &tenant, &mut plan, move |planner, plan, patience| {
+        let terrain = &planner.lattice().terrain;
+        form.map_or(Ok(()), |form| form.check(terrain))?;
+        Ok((answer(planner, &request, plan, patience)?, terrain.crs.clone()))
+    });
+    let (found, crs) = planned.await?;
+    Ok(Written::new(media_type, move |out| match form {
+        Some(form) => Tracks::of_mission(&found, crs.as_deref()).write(form, out),
+        None => Ok(serde_json::to_writer(out, &found)?),
+    }))
 }
 
 impl MissionRequest {

@@ -22,7 +22,6 @@ use utoipa::ToSchema;
 use super::robots::RobotChoice;
 use crate::{
     Engine, Tenant,
-    accept::preferred,
     answer::Written,
     body::JsonBody,
     metrics::CacheLabels,
@@ -227,9 +226,7 @@ pub(crate) async fn handler(
     headers: HeaderMap,
     JsonBody(mut request): JsonBody<PlanRequest>,
 ) -> Result<Written, Problem> {
-    let [geojson, csv, gpx, kml] = TrackForm::ALL.map(TrackForm::media_type);
-    let media_type = preferred(&headers, &["application/json", geojson, csv, gpx, kml]);
-    let form = TrackForm::ALL.into_iter().find(|form| form.media_type() == media_type);
+    let (media_type, form) = TrackForm::asked_for(&headers);
     let planned = with_planner(&engine, &tenant, &mut request, move |planner, request, patience| {
         form.map_or(Ok(()), |form| form.check(&planner.lattice().terrain))?;
         answer(planner, request, patience)

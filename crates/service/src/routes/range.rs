@@ -316,7 +316,7 @@ pub fn answer(
         seed: request.seed,
     };
     let found = range(planner, &question).map_err(|e| Problem::no_range(&e))?;
-    let warnings = map_warnings(planner).into_iter().chain(borrowed_constants(robot)).collect();
+    let warnings = map_warnings(planner).into_iter().chain(borrowed_constants(planner.lattice())).collect();
     Ok(RangeAnswer { warnings, ..RangeAnswer::from(&found) }.placed(&planner.lattice().terrain))
 }
 

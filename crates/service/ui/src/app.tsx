@@ -7,6 +7,7 @@ import { PlanTab } from "./plan/plan_tab";
 import { RobotsTab } from "./robots/robots_tab";
 import { tab, TAB_NAMES, TABS } from "./tab";
 import { theme, toggleTheme } from "./theme";
+import { GuideLink } from "./widgets/guide_link";
 import { TokenForm } from "./widgets/token_form";
 
 export function App() {
@@ -28,6 +29,7 @@ export function App() {
             </button>
           ))}
         </nav>
+        <GuideLink class="guide" />
         <button type="button" class="theme keys" aria-label="Keys" title="Keys (?)" onClick={() => (isHelpOpen.value = true)}>
           ?
         </button>
@@ -49,6 +51,9 @@ export function App() {
         {tab.value === "calibrate" && <CalibrateTab />}
         {tab.value === "diagnose" && <DiagnoseTab />}
       </main>
+      <p class="guide-below">
+        <GuideLink>The guide</GuideLink>
+      </p>
       <p class="unseen" role="status" aria-live="polite">
         {announcement.value}
       </p>

@@ -54,5 +54,10 @@ export function bytes(count: number): string {
 /** `motor_heating` as words. */
 export const words = (name: string) => name.replaceAll("_", " ");
 
-/** `left_n` with its unit N as words, without the unit that stands beside it. */
-export const quantity = (name: string, unit: string) => words(unit === "1" ? name : name.replace(/_[a-z0-9]+$/, ""));
+/** `left_n` with its unit N as words, without the unit that stands beside it; `k1_w_per_n2` is k1. */
+export const quantity = (name: string, unit: string) =>
+  words(unit === "1" ? name : name.replace(/(_[a-z]{1,2})?_per_[a-z0-9]+$|_[a-z0-9]+$/, ""));
+
+/** The service writes details without a capital and a stop; names of fields keep their letters. */
+export const sentence = (text: string) =>
+  (/^[a-z]+[\s.,;:]/.test(text) ? text.charAt(0).toUpperCase() + text.slice(1) : text) + (/[.!?]$/.test(text) ? "" : ".");

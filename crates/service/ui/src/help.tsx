@@ -1,6 +1,7 @@
 /** The sheet of keys. */
 import { signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { GuideLink } from "./widgets/guide_link";
 
 export const isHelpOpen = signal(false);
 
@@ -83,7 +84,7 @@ export function Help() {
         fingers to zoom.
       </p>
       <p>
-        <a href="/docs">Reference of the API</a>
+        <GuideLink>The guide</GuideLink> · <a href="/docs">Reference of the API</a>
       </p>
     </dialog>
   );

@@ -57,12 +57,22 @@ test(
     await expect(picker.getByRole("status")).toContainText("Say which column is the power");
     await expect(picker.getByRole("button", { name: "Read with these columns" })).toBeDisabled();
     await picker.getByLabel(`${HEADER[3]} is`).selectOption("Battery power");
-    await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("kW");
+    await expect(picker.getByLabel(`Unit of ${HEADER[3]}`), "its name says it").toHaveValue("kW");
+    await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("W");
+    await expect(picker).toContainText("The other recording with these columns is read alike.");
     await picture(page, `columns-${info.project.name}`);
     await checkAccessible(page, "columns");
     await picker.getByRole("button", { name: "Read with these columns" }).click();
-    // The other file has the same columns, and is read with them too.
+    // The other file has the same columns, and is read with them too; so it is when one of them was wrong.
     await expect(page.getByText("3,000")).toHaveCount(2);
+    await page.getByRole("button", { name: "Say what its columns are…" }).last().click();
+    await expect(picker.getByLabel(`${HEADER[2]} is`)).toHaveValue("v_left_mps");
+    await expect(picker.getByLabel(`Unit of ${HEADER[3]}`), "what was said stays").toHaveValue("W");
+    await picker.getByLabel(`Unit of ${HEADER[3]}`).selectOption("kW");
+    await picker.getByRole("button", { name: "Read with these columns" }).click();
+    await expect(page.getByText("3,000")).toHaveCount(2);
+    await expect(page.getByRole("cell", { name: `${HEADER[3]} [kW]`, includeHidden: true })).toHaveCount(2);
+    await expect(page.getByLabel("Ground that was driven")).toHaveValue("marble");
     await page.locator(".diagnose-start").getByRole("button", { name: "Calibrate" }).click();
     await expect(page.locator(".calibration .verdict")).toBeVisible({ timeout: 120_000 });
     await expect(page.getByRole("region", { name: "Skill" })).toContainText("R², one-second averages");
@@ -87,7 +97,30 @@ test("a refusal for doubtful recordings names the doubts, and they may be overru
   await page.goto(`${service.url}/#calibrate?calibration=${id}`);
   await expect(page.getByRole("alert")).toContainText("power is negative");
   await expect(page.getByText("overrule the doubts: power_sign")).toBeVisible();
+  await expect(page.getByRole("button", { name: "Back to the recordings" })).toBeVisible();
   const asked = page.waitForRequest("**/v1/calibrate");
   await page.getByRole("button", { name: "Calibrate despite them" }).click();
   expect((await asked).postDataJSON()).toMatchObject({ despite: ["power_sign"] });
+});
+
+test("drives that do not name their ground are fitted on the one that is chosen, and plans are over it", async ({ page, service }) => {
+  const path = service.simulate("drive", { terrain: "level", robot_seed: 11, seed: 1 }, { kind: "rich", duration_s: 60, seed: 7 });
+  await openSample(page, service);
+  await page.getByRole("button", { name: "Calibrate" }).click();
+  await page.locator(".recordings input[type=file]").setInputFiles(path);
+  await expect(page.getByLabel("Use drive.csv")).toBeVisible();
+  await page.getByLabel("Ground that was driven").selectOption("sandy loam");
+  const robot = (await (await page.request.get(`${service.url}/v1/robots/husky-a200`)).json()) as object;
+  const result = { parameters: [], held_out: null, notes: [], robot: { ...robot, default_surface: "sandy_loam" } };
+  const done = { id: "c".repeat(32), kind: "calibrate", state: "done", progress: { step: "done", fraction: 1 }, result };
+  await page.route(`**/v1/jobs/${done.id}`, (route) => route.fulfill({ json: done }));
+  await page.route("**/v1/calibrate", (route) => route.fulfill({ status: 202, json: done }));
+  const asked = page.waitForRequest("**/v1/calibrate");
+  await page.locator(".diagnose-start").getByRole("button", { name: "Calibrate" }).click();
+  expect((await asked).postDataJSON()).toMatchObject({ robot: { name: "husky-a200", default_surface: "sandy_loam" } });
+  await page.getByRole("button", { name: "Save the fitted robot and plan with it" }).click();
+  await answered(page);
+  await expect(page.getByRole("region", { name: "Question", exact: true }).getByRole("combobox", { name: /^Ground/ })).toHaveValue(
+    "sandy_loam",
+  );
 });

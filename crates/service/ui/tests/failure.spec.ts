@@ -53,7 +53,13 @@ test("a guarded service is asked again with the token that it wants", async ({ p
         }),
   );
   await page.goto(service.url);
-  await page.getByLabel("This service wants a token:").fill("secret");
+  const field = page.getByLabel("This service wants a token:");
+  await expect(field).toHaveAccessibleDescription(/^Of a line NAME:TOKEN it is what stands behind the colon/);
+  await expect(page.getByRole("alert"), "the form says what is wanted").toHaveCount(0);
+  await field.fill("alice:secret");
+  await page.getByRole("button", { name: "Go on" }).click();
+  await expect(page.getByRole("alert")).toContainText("This is none of the service's tokens.");
+  await field.fill("secret");
   await page.getByRole("button", { name: "Go on" }).click();
   await expect(page.getByRole("button", { name: "Open the sample map" })).toBeVisible();
   await page.getByRole("button", { name: "Open the sample map" }).click();

@@ -1,5 +1,7 @@
 import { answered, checkAccessible, expect, openSample, paths, picture, press, test, PHONE_TOO } from "./service";
 
+const { readFileSync } = process.getBuiltinModule("node:fs");
+
 interface MissionQuestion {
   waypoints: { x_m: number; y_m: number }[];
   return: boolean;
@@ -33,9 +35,18 @@ test("several stops are visited in the order of least energy, and one is removed
   await expect(mission.getByRole("row")).toHaveCount(5);
   await page.reload();
   await expect(mission.getByRole("row")).toHaveCount(5);
-  const saving = page.waitForEvent("download");
-  await page.getByRole("button", { name: "Mission as JSON" }).click();
-  expect((await saving).suggestedFilename()).toBe("mission.json");
+  const files = page.getByRole("group", { name: "Download the mission" });
+  // Other forms than these two go the way of the second.
+  for (const [form, name, holds] of [
+    ["JSON", "mission.json", '"feasible"'],
+    ["GPX", "mission.gpx", "<name>to waypoint"],
+  ] as const) {
+    const saving = page.waitForEvent("download");
+    await files.getByRole("button", { name: form, exact: true }).click();
+    const saved = await saving;
+    expect(saved.suggestedFilename()).toBe(name);
+    expect(readFileSync(await saved.path(), "utf8"), name).toContain(holds);
+  }
   await page.getByRole("button", { name: "One goal" }).click();
   await answered(page);
 });

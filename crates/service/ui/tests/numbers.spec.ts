@@ -1,5 +1,8 @@
 import { doubtsOf } from "../src/calibrate/doubts";
-import { guessAll } from "../src/columns/guess";
+import { channelOf } from "../src/columns/channels";
+import { guessAll, unitFor } from "../src/columns/guess";
+import { mapOf, picksOf } from "../src/columns/recording_map";
+import { quantity, sentence } from "../src/format";
 import { columnsOf } from "../src/columns/table";
 import { readNumber } from "../src/number";
 import { joined } from "../src/plan/shown_paths";
@@ -154,6 +157,39 @@ test("columns are guessed by their names and sizes", () => {
     ["power_w", "kW"],
   ]);
   expect(columnsOf("nothing", false)).toBeNull();
+});
+
+test("a column's unit is what its name says, and time is a first column that rises where no name says time", () => {
+  const rows = Array.from({ length: 12 }, (_, i) => `${i}${i ? ",5" : ""};1,5;12003;-0,1;${12 - i}`);
+  const columns = columnsOf(`Zeit;Rad links km/h;Leistung (mW);Neigung (Grad);Rest\n${rows.join("\n")}\n`, false)!;
+  expect(guessAll(columns).map(({ channel }) => channel)).toEqual(["t_s", null, null, null, null]);
+  const unit = (at: number, channel: string) => unitFor(columns[at]!, channelOf(channel)!);
+  expect([unit(1, "v_left_mps"), unit(2, "power_w"), unit(3, "pitch_rad"), unit(4, "power_w")]).toEqual(["km/h", "mW", "deg", "W"]);
+  expect(
+    guessAll([columns[4]!, columns[0]!]).map(({ channel }) => channel),
+    "no first column that falls",
+  ).toEqual([null, null]);
+});
+
+test("what was said of columns comes back from the map that it became", () => {
+  const columns = columnsOf("a;b;c\n1;2;3\n", false)!;
+  const picks = [
+    { channel: "t_s", unit: "ms", isTurned: false },
+    { channel: null, unit: "", isTurned: false },
+    { channel: "power_w", unit: "W", isTurned: true },
+  ];
+  expect(picksOf(columns, mapOf(columns, picks, null, false))).toEqual(picks);
+});
+
+test("names lose their units, and sentences begin with a capital unless a name begins them", () => {
+  expect(quantity("k1_w_per_n2", "W/N²")).toBe("k1");
+  expect(quantity("motor_constant_per_k", "1/K")).toBe("motor constant");
+  expect(quantity("resistance_per_k", "1/K")).toBe("resistance");
+  expect(quantity("left_n", "N")).toBe("left");
+  expect(quantity("mu_roll", "1")).toBe("mu roll");
+  expect(sentence("no way leads there")).toBe("No way leads there.");
+  expect(sentence("k1, k2 of `jackal` are borrowed")).toBe("k1, k2 of `jackal` are borrowed.");
+  expect(sentence("mu_roll is borrowed.")).toBe("mu_roll is borrowed.");
 });
 
 test("a refusal names the doubts that may be overruled", () => {

@@ -102,9 +102,9 @@ export function colors(canvas: Locator): Promise<number> {
 export const ground = (page: Page) => page.locator(".map-ground");
 export const paths = (page: Page) => page.locator(".map-over");
 
-/** Opens the page with the sample map and waits for the answer. */
-export async function openSample(page: Page, service: Service): Promise<void> {
-  await page.goto(`${service.url}/#plan?robot=husky-a200`);
+/** Opens the page with the sample map and waits for the answer. Pictures of the guide show the robot of the field. */
+export async function openSample(page: Page, service: Service, robot = "husky-a200"): Promise<void> {
+  await page.goto(`${service.url}/#plan?robot=${robot}`);
   await page.getByRole("button", { name: "Open the sample map" }).click();
   await answered(page);
 }

@@ -19,17 +19,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let list: Vec<_> = robots.iter().map(entry).collect();
         return output::json(&json!({ "robots": list }));
     }
-    let mut rows = vec![["name", "mass", "top speed", "ground", "borrowed"].map(str::to_owned)];
+    let mut rows =
+        vec![["name", "mass", "top speed", "ground", "borrowed", "of these matters most"].map(str::to_owned)];
     rows.extend(robots.iter().map(|robot| {
         [
             robot.name.clone(),
             format!("{} kg", robot.mass_kg),
             format!("{} m/s", robot.max_wheel_speed_mps),
             robot.default_surface.clone(),
-            match robot.borrowed()[..] {
-                [] => "nothing".to_owned(),
-                ref names => names.join(", "),
+            // `robot check` names them.
+            match robot.borrowed().len() {
+                0 => "nothing".to_owned(),
+                1 => "1 constant".to_owned(),
+                count => format!("{count} constants"),
             },
+            robot.worst_borrowed().unwrap_or_default().to_owned(),
         ]
     }));
     output::text(aligned(&rows))

@@ -1,7 +1,7 @@
 //! What is doubtful about a path because of the map it lies on and of the robot that takes it.
 
 use model::{Robot, worth::remedy};
-use planner::{Lattice, Planner, is_coarse};
+use planner::{Lattice, Planner, is_coarse, surface_names};
 use terrain::{Terrain, Warning, WarningKind};
 
 use super::{PlanAnswer, PlanRequest, PoseAnswer};
@@ -24,7 +24,7 @@ impl PlanAnswer {
             one_coarse_cell(&answer, lattice),
             filled_ground(&lattice.terrain, &answer.poses),
             stops(&answer, request),
-            borrowed_constants(&lattice.robot),
+            borrowed_constants(lattice),
         ];
         answer.warnings.extend(own.into_iter().flatten());
         answer
@@ -97,7 +97,8 @@ fn stops(answer: &PlanAnswer, request: &PlanRequest) -> Option<Warning> {
 }
 
 /// A warning where the robot has constants of other robots, with the drive that would tell the one that matters most.
-pub(crate) fn borrowed_constants(robot: &Robot) -> Option<Warning> {
+pub(crate) fn borrowed_constants(lattice: &Lattice) -> Option<Warning> {
+    let robot = on_its_ground(lattice);
     let (worst, borrowed) = (robot.worst_borrowed()?, robot.borrowed());
     let detail = format!(
         "{} of `{}` {} borrowed from other robots or assumed; most would be gained by {worst}: `joulepath calibrate` with {}",
@@ -107,6 +108,17 @@ pub(crate) fn borrowed_constants(robot: &Robot) -> Option<Warning> {
         remedy(worst)
     );
     Some(Warning::new(WarningKind::BorrowedConstants, detail))
+}
+
+/// The robot without what its file says of grounds that the map does not have.
+fn on_its_ground(lattice: &Lattice) -> Robot {
+    let grounds = surface_names(lattice);
+    let mut robot = lattice.robot.clone();
+    robot.provenance.retain(|field, _| {
+        let of_ground = field.strip_prefix("surfaces.").and_then(|rest| rest.rsplit_once('.'));
+        of_ground.is_none_or(|(ground, _)| grounds.iter().any(|name| name == ground))
+    });
+    robot
 }
 
 /// A warning where the path leads over ground that was filled in, with how much of it.

@@ -3,6 +3,7 @@ import { effect, type Signal } from "@preact/signals";
 import { ask, send } from "./ask";
 import { eventsOf } from "./events";
 import { Problem, problemOf, type ProblemDocument } from "./problem";
+import type { Robot } from "./robots";
 
 export interface Job<Result> {
   id: string;
@@ -16,10 +17,10 @@ export interface Job<Result> {
 /** A job of which only the id may be known yet. */
 export type KnownJob<Result> = Partial<Job<Result>> & Pick<Job<Result>, "id" | "state">;
 
-export const startCalibration = <Result>(question: { robot: string; recordings: string[]; despite?: string[] }) =>
+export const startCalibration = <Result>(question: { robot: string | Robot; recordings: string[]; despite?: string[] }) =>
   ask<Job<Result>>("/v1/calibrate", { json: question });
 
-export const startDiagnosis = <Result>(question: { robot: string; recordings: string[]; reference: string[] }) =>
+export const startDiagnosis = <Result>(question: { robot: string | Robot; recordings: string[]; reference: string[] }) =>
   ask<Job<Result>>("/v1/diagnose", { json: question });
 
 export const readJob = <Result>(id: string) => ask<Job<Result>>(`/v1/jobs/${id}`);

@@ -6,6 +6,9 @@ const STORED = "joulepath-token";
 /** Whether the service has asked for a token since the last one was given. */
 export const isWanted = signal(false);
 
+/** Whether it was refused although one had been given. */
+export const isRefused = signal(false);
+
 export function give(token: string): void {
   sessionStorage.setItem(STORED, token.trim());
   isWanted.value = false;
@@ -19,5 +22,7 @@ export function authorization(): Record<string, string> {
 
 /** Looks at an answer's status: 401 asks for a token. */
 export function noticed(status: number): void {
-  if (status === 401) isWanted.value = true;
+  if (status !== 401) return;
+  isRefused.value = sessionStorage.getItem(STORED) !== null;
+  isWanted.value = true;
 }

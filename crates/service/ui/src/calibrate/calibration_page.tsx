@@ -1,11 +1,10 @@
 /** A fitted robot: how well it predicts, what the drives determine, and what was left out of them. */
-import { duration, percent, plain, power, quantity } from "../format";
+import { duration, percent, plain, power, quantity, sentence } from "../format";
 import { Fact } from "../diagnose/recordings";
 import { saveFile } from "../plan/downloads";
 import { Marked } from "../widgets/marked";
-import * as plan from "../plan/state";
 import { read } from "../robots/pointer";
-import { robotId } from "../diagnose/state";
+import { drove } from "../diagnose/state";
 import type { Calibration, Parameter } from "./report";
 import { accept, again } from "./state";
 
@@ -13,12 +12,13 @@ export function CalibrationPage({ found }: { found: Calibration }) {
   const { parameters, notes, coverage, held_out: heldOut } = found;
   const known = parameters.filter(({ determined }) => determined);
   const held = parameters.filter(({ determined }) => !determined);
-  const before = plan.robots.value?.find(({ id }) => id === (robotId.value ?? plan.robotId.value))?.robot;
+  const before = drove.value.robot;
+  const others = notes.flatMap((note) => (isComparison(note) ? note.split("; ").slice(1) : [note]));
   return (
     <article class="report calibration">
       <header class="verdict" data-verdict="explained">
         <p class="verdict-name">Calibrated</p>
-        <h2>{sentence(found)}</h2>
+        <h2>{headline(found)}</h2>
         <div class="verdict-acts">
           <button type="button" class="primary" onClick={() => void accept(found)}>
             Save the fitted robot and plan with it
@@ -34,13 +34,13 @@ export function CalibrationPage({ found }: { found: Calibration }) {
           </button>
         </div>
       </header>
-      {notes.length > 0 && (
+      {others.length > 0 && (
         <section class="card" aria-label="Notes">
           <h3>Read this first</h3>
           <ul>
-            {notes.map((note) => (
+            {others.map((note) => (
               <li key={note}>
-                <Marked text={note} />
+                <Marked text={sentence(note)} />
               </li>
             ))}
           </ul>
@@ -93,12 +93,12 @@ export function CalibrationPage({ found }: { found: Calibration }) {
   );
 }
 
-/** The last note compares the file before with the file as it is now. */
-function sentence({ notes, held_out: heldOut }: Calibration): string {
-  const compared = notes.find((note) => note.startsWith("the robot file as it was"));
-  // What follows is about noise, and stands among the notes.
-  const [before = ""] = compared?.split(";") ?? [];
-  if (before) return before.charAt(0).toUpperCase() + before.slice(1) + ".";
+/** Whether a note compares the file before with the file as it is now; what follows in it is about noise. */
+const isComparison = (note: string) => note.startsWith("the robot file as it was");
+
+function headline({ notes, held_out: heldOut }: Calibration): string {
+  const [compared = ""] = notes.find(isComparison)?.split(";") ?? [];
+  if (compared) return sentence(compared);
   return heldOut?.second_r2 === undefined
     ? "The robot is fitted to the drives."
     : `The fitted robot explains ${percent(heldOut.second_r2, 1)} of the variance of power in drives that it was not fitted to.`;

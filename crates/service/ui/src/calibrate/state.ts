@@ -3,9 +3,8 @@ import { signal } from "@preact/signals";
 import { cancelJob, follow, startCalibration, type KnownJob } from "../api/jobs";
 import { problemOf, type Problem } from "../api/problem";
 import { accept as acceptRobot } from "../diagnose/accept";
-import { idsOf, robotId } from "../diagnose/state";
+import { drove, idsOf } from "../diagnose/state";
 import { announce } from "../announce";
-import * as plan from "../plan/state";
 import type { Calibration } from "./report";
 
 /** The job; of one that a link names only the id is known at first. */
@@ -15,8 +14,11 @@ export const problem = signal<Problem | null>(null);
 export async function begin(despite: string[] = []): Promise<void> {
   problem.value = null;
   try {
-    const robot = robotId.value ?? plan.robotId.value;
-    job.value = await startCalibration<Calibration>({ robot, recordings: idsOf("suspect"), ...(despite.length > 0 && { despite }) });
+    job.value = await startCalibration<Calibration>({
+      robot: drove.value.asked,
+      recordings: idsOf("suspect"),
+      ...(despite.length > 0 && { despite }),
+    });
   } catch (thrown) {
     problem.value = problemOf(thrown);
   }
@@ -35,7 +37,7 @@ export function again(): void {
 export async function accept({ robot }: Calibration): Promise<void> {
   problem.value = null;
   try {
-    await acceptRobot(robot, "calibrated", robotId.value ?? plan.robotId.value);
+    await acceptRobot(robot, "calibrated", drove.value);
   } catch (thrown) {
     problem.value = problemOf(thrown);
   }

@@ -4,23 +4,27 @@ import { readNumber } from "../number";
 import * as plan from "../plan/state";
 import { Chart } from "../widgets/chart";
 import { CHANNELS, channelOf } from "./channels";
-import { guessAll, type Pick } from "./guess";
-import { mapOf, missing, needsRadius, type RecordingMap } from "./recording_map";
+import { guessAll, unitFor, type Pick } from "./guess";
+import { mapOf, missing, needsRadius, picksOf, type RecordingMap } from "./recording_map";
 import { isDate, numberOf, type Column } from "./table";
 
 interface Props {
   columns: Column[];
   /** Whether the service did not know them by their names. */
   isUnknown: boolean;
+  /** What was said of them before. */
+  before: RecordingMap | undefined;
+  /** Number of other recordings with the same columns, which are read alike. */
+  others: number;
   /** The robot whose wheels turned. */
   robotId: string;
   take: (map: RecordingMap) => void;
 }
 
-export function ColumnPicker({ columns, isUnknown, robotId, take }: Props) {
+export function ColumnPicker({ columns, isUnknown, before, others, robotId, take }: Props) {
   const robot = plan.robots.value?.find(({ id }) => id === robotId)?.robot;
-  const [picks, setPicks] = useState(() => guessAll(columns));
-  const [radius, setRadius] = useState(String(robot?.wheel_radius_m ?? ""));
+  const [picks, setPicks] = useState(() => (before ? picksOf(columns, before) : guessAll(columns)));
+  const [radius, setRadius] = useState(String(before?.wheel_radius_m ?? robot?.wheel_radius_m ?? ""));
   const [looked, look] = useState(() =>
     Math.max(
       0,
@@ -39,7 +43,10 @@ export function ColumnPicker({ columns, isUnknown, robotId, take }: Props) {
   return (
     <section class="columns" aria-label="Columns of the log">
       {isUnknown && <p role="alert">The names of these columns do not say what they are.</p>}
-      <p>Say what each column is. What is filled in already is a guess by its name and numbers.</p>
+      <p>
+        Say what each column is, and in which unit.
+        {!before && picks.some(({ channel }) => channel !== null) && " What is filled in already is a guess by its name and numbers."}
+      </p>
       <div class="table-scroll" tabIndex={0} role="region" aria-label="Columns">
         <table>
           <thead>
@@ -63,9 +70,16 @@ export function ColumnPicker({ columns, isUnknown, robotId, take }: Props) {
         <label class="field columns-radius">
           <span>Wheel radius</span>
           <span class="number-box">
-            <input type="text" inputMode="decimal" value={radius} onInput={(event) => setRadius(event.currentTarget.value)} />
+            <input
+              type="text"
+              inputMode="decimal"
+              value={radius}
+              aria-describedby="columns-radius-about"
+              onInput={(event) => setRadius(event.currentTarget.value)}
+            />
             <span>m</span>
           </span>
+          <small id="columns-radius-about">above 0, up to 2 m</small>
         </label>
       )}
       <p class="columns-acts">
@@ -73,6 +87,13 @@ export function ColumnPicker({ columns, isUnknown, robotId, take }: Props) {
           Read with these columns
         </button>
         {fault && <small role="status">{fault}</small>}
+        {!fault && others > 0 && (
+          <small>
+            {others === 1
+              ? "The other recording with these columns is read alike."
+              : `The ${others} other recordings with these columns are read alike.`}
+          </small>
+        )}
       </p>
     </section>
   );
@@ -86,9 +107,13 @@ interface RowProps {
   set: (change: Partial<Pick>) => void;
 }
 
-function Row({ column: { name, cells }, pick, isLooked, look, set }: RowProps) {
+function Row({ column, pick, isLooked, look, set }: RowProps) {
+  const { name, cells } = column;
   const units = (pick.channel && channelOf(pick.channel)?.units) || [];
-  const choose = (channel: string) => set({ channel: channel || null, unit: channelOf(channel)?.units[0] ?? "" });
+  const choose = (named: string) => {
+    const channel = channelOf(named);
+    set({ channel: channel?.name ?? null, unit: channel ? unitFor(column, channel) : "" });
+  };
   return (
     <tr data-chosen={isLooked} onClick={look}>
       <th scope="row">{name}</th>

@@ -1,5 +1,5 @@
 /** What each column may hold, guessed from its name and the size of its numbers, as `joulepath inspect` does. */
-import { channelOf } from "./channels";
+import { channelOf, type Channel } from "./channels";
 import { isDate, numberOf, type Column } from "./table";
 
 /** What is said of a column; none where it is left out. */
@@ -83,7 +83,7 @@ const SPELLINGS: Record<string, string[]> = {
   "mm/s": ["mmps", "mm_s"],
   "cm/s": ["cmps", "cm_s"],
   "m/s": ["mps", "m_s"],
-  deg: ["°", "degrees"],
+  deg: ["°", "degrees", "grad"],
   degF: ["fahrenheit"],
   K: ["kelvin"],
 };
@@ -139,20 +139,34 @@ function channelFor(name: string): string | null {
 export function guess(column: Column): Pick {
   const name = channelFor(column.name);
   const channel = name && channelOf(name);
-  if (!channel) return { channel: null, unit: "", isTurned: false };
-  const greatest = greatestOf(column);
-  const isText = Number.isNaN(greatest) && !column.cells.some(isDate);
-  if (isText && channel.units.length > 0) return { channel: null, unit: "", isTurned: false };
-  const [own = ""] = channel.units;
-  const byRange = BEYOND[channel.name]?.find(([most]) => greatest > most)?.[1];
-  const isOwnName = column.name === channel.name;
-  return { channel: channel.name, unit: (isOwnName ? own : spelled(column.name, channel.units)) ?? byRange ?? own, isTurned: false };
+  if (!channel) return LEFT_OUT;
+  const isText = Number.isNaN(greatestOf(column)) && !column.cells.some(isDate);
+  if (isText && channel.units.length > 0) return LEFT_OUT;
+  return { channel: channel.name, unit: unitFor(column, channel), isTurned: false };
 }
 
-/** A guess for every column; of several that guess the same the first is taken. */
+const LEFT_OUT: Pick = { channel: null, unit: "", isTurned: false };
+
+/** The unit of a column that holds a channel: what its name says, else what the size of its numbers says, else the channel's own. */
+export function unitFor(column: Column, { name, units }: Channel): string {
+  const [own = ""] = units;
+  const byRange = BEYOND[name]?.find(([most]) => greatestOf(column) > most)?.[1];
+  return (column.name === name ? own : spelled(column.name, units)) ?? byRange ?? own;
+}
+
+/** Rows without which numbers that rise may do so by chance. */
+const LEAST_RISING = 10;
+
+/** Whether the numbers of a column rise from row to row. */
+function rises({ cells }: Column): boolean {
+  const numbers = cells.map(numberOf);
+  return numbers.length >= LEAST_RISING && numbers.every((number, i) => i === 0 || number > numbers[i - 1]!);
+}
+
+/** A guess for every column; of several that guess the same the first is taken. Where no name says time, a first column that rises is. */
 export function guessAll(columns: Column[]): Pick[] {
   const seen = new Set<string>();
-  return columns.map((column) => {
+  const picks = columns.map((column) => {
     const pick = guess(column);
     if (pick.channel === null || !seen.has(pick.channel)) {
       if (pick.channel) seen.add(pick.channel);
@@ -160,4 +174,9 @@ export function guessAll(columns: Column[]): Pick[] {
     }
     return { ...pick, channel: null };
   });
+  const [first] = columns;
+  const time = channelOf("t_s");
+  if (first && time && !seen.has("t_s") && picks[0]?.channel === null && rises(first))
+    picks[0] = { channel: "t_s", unit: unitFor(first, time), isTurned: false };
+  return picks;
 }

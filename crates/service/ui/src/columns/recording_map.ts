@@ -31,6 +31,15 @@ export function missing(picks: Pick[], wheelRadius_m: number | null): string | n
   return null;
 }
 
+/** What a map says of each column. */
+export function picksOf(columns: Column[], { sources }: RecordingMap): Pick[] {
+  return columns.map(({ name }) => {
+    const source = sources.find(({ column }) => column === name);
+    const own = source && channelOf(source.channel)?.units[0];
+    return { channel: source?.channel ?? null, unit: source?.unit ?? own ?? "", isTurned: source?.scale === -1 };
+  });
+}
+
 /** The map for the picks. Dates need no unit. */
 export function mapOf(columns: Column[], picks: Pick[], wheelRadius_m: number | null, isDated: boolean): RecordingMap {
   const sources = picks.flatMap(({ channel, unit, isTurned }, i) => {

@@ -6,9 +6,10 @@ import { bytes, duration, plain, words } from "../format";
 import { DropZone } from "../widgets/drop_zone";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
+import { channelOf } from "../columns/channels";
 import { ColumnPicker } from "../columns/column_picker";
 import * as plan from "../plan/state";
-import { job, leave, problem, readAs, robotId, take, taken, takeStored, use, type Role, type Taken } from "./state";
+import { alike, job, leave, problem, readAs, robotId, take, taken, takeStored, use, type Role, type Taken } from "./state";
 
 const ENDINGS = ".csv,.tsv,.txt,.gz,.zst,.parquet,.mcap,.db3,.bag,.ulg";
 
@@ -125,6 +126,8 @@ function Card({ one }: { one: Taken }) {
         <ColumnPicker
           columns={columns}
           isUnknown={isUnknown}
+          before={one.map}
+          others={alike(one.key).length - 1}
           robotId={robotId.value ?? plan.robotId.value}
           take={(map) => {
             setPicking(false);
@@ -181,12 +184,12 @@ function Reading({ report }: { report: ReadingReport }) {
             <tbody>
               {report.channels.map(({ channel, from, unit, least, greatest, gaps }) => (
                 <tr key={channel}>
-                  <th scope="row">{words(channel)}</th>
+                  <th scope="row">{channelOf(channel)?.label ?? words(channel)}</th>
                   <td>
                     {from} [{unit}]
                   </td>
-                  <td>{plain(least)}</td>
-                  <td>{plain(greatest)}</td>
+                  <td>{`${plain(least)} ${unitOf(channel)}`}</td>
+                  <td>{`${plain(greatest)} ${unitOf(channel)}`}</td>
                   <td>{gaps}</td>
                 </tr>
               ))}
@@ -197,6 +200,9 @@ function Reading({ report }: { report: ReadingReport }) {
     </>
   );
 }
+
+/** The unit that a channel is kept in. */
+const unitOf = (name: string) => channelOf(name)?.units[0] ?? "";
 
 export function Fact({ name, value }: { name: string; value: string }) {
   return (

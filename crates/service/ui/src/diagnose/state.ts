@@ -1,5 +1,5 @@
 /** Recordings at hand, the job under way, and its report. */
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { announce } from "../announce";
 import { cancelJob, follow, startDiagnosis, type KnownJob } from "../api/jobs";
 import { problemOf, type Problem } from "../api/problem";
@@ -25,6 +25,8 @@ export interface Taken {
   file?: File;
   /** Its beginning, where it is text in columns. */
   columns?: Column[];
+  /** What was said of its columns on the page, where anything was. */
+  map?: RecordingMap;
   recording?: StoredRecording;
   problem?: Problem;
 }
@@ -34,6 +36,16 @@ export const taken = signal<Taken[]>([]);
 export const job = signal<KnownJob<Report> | null>(null);
 export const problem = signal<Problem | null>(null);
 export const robotId = signal<string | null>(null);
+/** The ground that was driven, where recordings do not name it; null: the robot's default. */
+export const ground = signal<string | null>(null);
+
+/** The robot that drove, on the ground that was chosen. */
+export const drove = computed(() => {
+  const id = robotId.value ?? plan.robotId.value;
+  const robot = plan.robots.value?.find((known) => known.id === id)?.robot;
+  const chosen = robot && ground.value !== null && ground.value in robot.surfaces ? ground.value : null;
+  return { id, robot, ground: chosen, asked: robot && chosen !== null ? { ...robot, default_surface: chosen } : id };
+});
 
 let count = 0;
 
@@ -53,8 +65,9 @@ export function take(files: File[], role: Role): void {
     void beginningOf(file)
       .catch(() => null)
       .then((columns) => {
-        if (columns) change(key, { columns });
-        send(key, file, columns ? picked.get(headerOf(columns)) : undefined);
+        const map = columns ? picked.get(headerOf(columns)) : undefined;
+        change(key, { ...(columns && { columns }), ...(map && { map }) });
+        send(key, file, map);
       });
   }
 }
@@ -70,20 +83,25 @@ function send(key: number, file: File, map: RecordingMap | undefined): void {
   );
 }
 
-/** Reads a file by the columns that were picked, and with it all others of the same header that could not be read. */
-export function readAs(key: number, map: RecordingMap): void {
+/** Recordings of the same columns as one, itself among them, that could not be read or were read as was said on the page. */
+export function alike(key: number): Taken[] {
   const header = headerOf(taken.value.find((one) => one.key === key)?.columns ?? []);
-  picked.set(header, map);
-  const alike = taken.value.filter((one) => one.key === key || (one.problem && one.columns && headerOf(one.columns) === header));
-  for (const { key: each, file } of alike) {
-    if (!file) continue;
-    taken.value = taken.value.map(({ problem: _problem, recording: _recording, ...one }) =>
-      one.key === each
-        ? { ...one, share: 0 }
-        : { ...one, ...(_problem && { problem: _problem }), ...(_recording && { recording: _recording }) },
-    );
-    send(each, file, map);
-  }
+  return taken.value.filter(
+    (one) => one.file && (one.key === key || ((one.problem || one.map) && one.columns && headerOf(one.columns) === header)),
+  );
+}
+
+/** Reads a file by the columns that were picked, and with it all that are alike. */
+export function readAs(key: number, map: RecordingMap): void {
+  picked.set(headerOf(taken.value.find((one) => one.key === key)?.columns ?? []), map);
+  const again = alike(key);
+  const keys = again.map((one) => one.key);
+  taken.value = taken.value.map((one) => {
+    if (!keys.includes(one.key)) return one;
+    const { problem: _problem, recording: _recording, ...rest } = one;
+    return { ...rest, map, share: 0 };
+  });
+  for (const { key: each, file } of again) if (file) send(each, file, map);
 }
 
 export function takeStored(recording: StoredRecording, role: Role): void {
@@ -104,8 +122,7 @@ export const idsOf = (role: Role) =>
 export async function begin(): Promise<void> {
   problem.value = null;
   try {
-    const robot = robotId.value ?? plan.robotId.value;
-    job.value = await startDiagnosis<Report>({ robot, recordings: idsOf("suspect"), reference: idsOf("healthy") });
+    job.value = await startDiagnosis<Report>({ robot: drove.value.asked, recordings: idsOf("suspect"), reference: idsOf("healthy") });
   } catch (thrown) {
     problem.value = problemOf(thrown);
   }
@@ -127,7 +144,7 @@ export function again(): void {
 export async function accept(report: Report): Promise<void> {
   problem.value = null;
   try {
-    await acceptRobot(report.robot, "corrected", robotId.value ?? plan.robotId.value);
+    await acceptRobot(report.robot, "corrected", drove.value);
   } catch (thrown) {
     problem.value = problemOf(thrown);
   }

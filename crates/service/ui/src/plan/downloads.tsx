@@ -1,13 +1,14 @@
-/** The focused path as a file, and a link to all of this. */
+/** The focused path or the mission as a file, and a link to all of this. */
 import { signal } from "@preact/signals";
 import { announce } from "../announce";
 import { send } from "../api/ask";
 import { problemOf } from "../api/problem";
+import { missionQuestion } from "./mission";
 import { question } from "./replan";
 import * as state from "./state";
 
 const FORMS = [
-  { name: "JSON", type: "application/json", ending: "json", about: "Everything that is known of the path" },
+  { name: "JSON", type: "application/json", ending: "json", about: "All of the answer" },
   {
     name: "GeoJSON",
     type: "application/geo+json",
@@ -18,13 +19,13 @@ const FORMS = [
     name: "GPX",
     type: "application/gpx+xml",
     ending: "gpx",
-    about: "A track; its start is put at 0° N 0° E where the map does not say where on earth it lies",
+    about: "Tracks; the start is put at 0° N 0° E where the map does not say where on earth it lies",
   },
   {
     name: "KML",
     type: "application/vnd.google-earth.kml+xml",
     ending: "kml",
-    about: "A line on the globe, of a map that says where on earth it lies",
+    about: "Lines on the globe, of a map that says where on earth it lies",
   },
   { name: "CSV", type: "text/csv", ending: "csv", about: "Pose by pose" },
 ] as const;
@@ -38,14 +39,27 @@ export function saveFile(text: Blob, name: string): void {
   URL.revokeObjectURL(address);
 }
 
-async function download({ type, ending }: (typeof FORMS)[number]): Promise<void> {
-  const asked = question();
-  if (!asked) return;
+/** What a file is asked of, and called; null while something is missing. */
+function asked(): { path: string; json: object; name: string } | null {
+  if (state.journey.value === "stops") {
+    const mission = missionQuestion();
+    return mission && { path: "/v1/mission", json: mission, name: "mission" };
+  }
   const objective = state.focus.value;
+  const path = question();
+  return path && { path: "/v1/plan", json: { ...path, objective }, name: `path-${objective}` };
+}
+
+async function download({ type, ending }: (typeof FORMS)[number]): Promise<void> {
+  const now = asked();
+  if (!now) return;
+  const name = `${now.name}.${ending}`;
+  // The document of a mission is at hand, and takes longest to be found anew.
+  const atHand =
+    state.journey.value === "stops" && ending === "json" ? new Blob([JSON.stringify(state.mission.value, null, 2)], { type }) : null;
   try {
-    const response = await send("/v1/plan", { json: { ...asked, objective }, accept: type });
-    saveFile(await response.blob(), `path-${objective}.${ending}`);
-    announce(`path-${objective}.${ending} is downloaded.`);
+    saveFile(atHand ?? (await (await send(now.path, { json: now.json, accept: type })).blob()), name);
+    announce(`${name} is downloaded.`);
   } catch (thrown) {
     state.problem.value = problemOf(thrown);
   }
@@ -62,28 +76,12 @@ async function copyLink(): Promise<void> {
   }
 }
 
-/** The whole answer of the service; the ways of its stops among it. */
-function saveMission(): void {
-  const text = JSON.stringify(state.mission.value, null, 2);
-  saveFile(new Blob([text], { type: "application/json" }), "mission.json");
-  announce("mission.json is downloaded.");
-}
-
 export function Downloads() {
-  if (state.journey.value === "stops") {
-    return (
-      <section class="downloads" aria-label="Take it with you">
-        <button type="button" disabled={state.mission.value === null} title="Stops, ways and charges" onClick={saveMission}>
-          Mission as JSON
-        </button>
-        <LinkButton />
-      </section>
-    );
-  }
-  const isReady = state.comparison.value !== null;
+  const isMission = state.journey.value === "stops";
+  const isReady = (isMission ? state.mission : state.comparison).value !== null;
   return (
     <section class="downloads" aria-label="Take it with you">
-      <div class="choice" role="group" aria-label="Download the path">
+      <div class="choice" role="group" aria-label={isMission ? "Download the mission" : "Download the path"}>
         {FORMS.map((form) => (
           <button key={form.name} type="button" title={form.about} disabled={!isReady} onClick={() => void download(form)}>
             {form.name}

@@ -1,4 +1,5 @@
 /** What is there before any map is. */
+import { GuideLink } from "../widgets/guide_link";
 import { DropZone } from "../widgets/drop_zone";
 import { addMap, addSample, sending } from "./load";
 import { ReadingOptions } from "./reading_options";
@@ -16,6 +17,9 @@ export function FirstMap() {
       <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
         <span>GeoTIFF, ESRI ASCII grid (.asc), or a JSON grid</span>
       </DropZone>
+      <p class="first-map-guide">
+        <GuideLink chapter="maps">What maps may be like</GuideLink>
+      </p>
       <ReadingOptions />
       <p class="first-map-or">
         <button type="button" class="primary" disabled={sending.value !== null} onClick={() => void addSample()}>

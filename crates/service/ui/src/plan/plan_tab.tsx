@@ -1,5 +1,6 @@
 /** The Plan tab: the map, the answer, the question, the charts. */
 import { isEditing, problem as areasProblem } from "../areas/state";
+import { isWanted } from "../api/token";
 import { AreaTools } from "../areas/tools";
 import { MapView } from "../map/map_view";
 import { ProblemCard } from "../widgets/problem_card";
@@ -44,8 +45,9 @@ export function PlanTab() {
   );
 }
 
-/** Without maps and robots there is nothing to show. */
+/** Without maps and robots there is nothing to show. Where a token is wanted, the form above asks for it. */
 export function Unreachable() {
+  if (isWanted.value) return null;
   return <div class="unreachable">{loadProblem.value && <ProblemCard problem={loadProblem.value} retry={loadAll} />}</div>;
 }
 

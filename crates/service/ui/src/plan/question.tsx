@@ -13,7 +13,13 @@ import { StopFields } from "./stop_fields";
 /** No robot is loaded with more than this share of its own mass here. */
 const MOST_PAYLOAD = 0.8;
 
-const digits = (value: number, places: number) => value.toFixed(places);
+/** The slowest that is asked for, as a share of the wheels' top speed. */
+const LEAST_SPEED = 0.1;
+/** The least charge that is asked for, 0 to 1. */
+const LEAST_CHARGE = 0.05;
+
+const speed = (value_mps: number) => `${value_mps.toFixed(2)}\u202fm/s`;
+const kilograms = (value_kg: number) => `${value_kg.toFixed(0)}\u202fkg`;
 
 export function Question() {
   const known = state.robot.value;
@@ -21,6 +27,7 @@ export function Question() {
   const { robot } = known;
   const speed_mps = Math.min(state.speed_mps.value ?? state.usualSpeed(robot), robot.max_wheel_speed_mps);
   const { battery } = robot;
+  const most_kg = Math.round(MOST_PAYLOAD * robot.mass_kg);
   return (
     <section class="question" aria-label="Question">
       <Choice
@@ -38,29 +45,32 @@ export function Question() {
       <Slider
         label="Speed"
         value={speed_mps}
-        least={0.1 * robot.max_wheel_speed_mps}
+        least={LEAST_SPEED * robot.max_wheel_speed_mps}
         greatest={robot.max_wheel_speed_mps}
         step={0.01 * robot.max_wheel_speed_mps}
-        written={`${digits(speed_mps, 2)}\u202fm/s`}
+        written={speed(speed_mps)}
+        ends={[speed(LEAST_SPEED * robot.max_wheel_speed_mps), speed(robot.max_wheel_speed_mps)]}
         change={(value) => (state.speed_mps.value = value)}
       />
       <Slider
         label="Payload"
         value={state.payload_kg.value}
         least={0}
-        greatest={Math.round(MOST_PAYLOAD * robot.mass_kg)}
+        greatest={most_kg}
         step={1}
-        written={`${digits(state.payload_kg.value, 0)}\u202fkg`}
+        written={kilograms(state.payload_kg.value)}
+        ends={[kilograms(0), kilograms(most_kg)]}
         change={(value) => (state.payload_kg.value = value)}
       />
       {battery && (
         <Slider
           label="Charge"
           value={state.charge.value}
-          least={0.05}
+          least={LEAST_CHARGE}
           greatest={1}
           step={0.01}
           written={`${percent(state.charge.value)} of ${battery.capacity_wh}\u202fWh`}
+          ends={[percent(LEAST_CHARGE), percent(1)]}
           change={(value) => (state.charge.value = value)}
         />
       )}
@@ -117,6 +127,7 @@ function Along() {
       greatest={plan.distance_m}
       step={plan.distance_m / 500}
       written={`${metres(at_m)} · ${duration(t_s)}`}
+      ends={[metres(0), metres(plan.distance_m)]}
       change={(value) => (state.along_m.value = value)}
     />
   );

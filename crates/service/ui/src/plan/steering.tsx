@@ -107,7 +107,7 @@ function Radius() {
         />
         <span>m</span>
       </div>
-      <small id="least-radius-about">{wrong ?? "Above 0 there are no turns on the spot"}</small>
+      <small id="least-radius-about">{wrong ?? "0 or more; above 0 there are no turns on the spot"}</small>
     </div>
   );
 }

@@ -6,6 +6,7 @@ import { saveFile } from "../plan/downloads";
 import * as plan from "../plan/state";
 import { words } from "../format";
 import { DropZone } from "../widgets/drop_zone";
+import { GuideLink } from "../widgets/guide_link";
 import { ProblemCard } from "../widgets/problem_card";
 import { Progress } from "../widgets/progress";
 import { complaint, GROUPS, mechanismGroups, surfaceFields, type FieldGroup } from "./fields";
@@ -34,8 +35,13 @@ export function RobotsTab() {
           ))}
         </ul>
         <DropZone label="Add a robot's file" accept=".json" take={(files) => files[0] && void open(files[0])}>
-          <span>JSON, as “Download” writes it</span>
+          <span>
+            JSON, as “Download” and <code>joulepath robot new</code> write it
+          </span>
         </DropZone>
+        <p>
+          <GuideLink chapter="robots">Describe your own robot</GuideLink>
+        </p>
       </aside>
       {shown.value && <Editor robot={shown.value} />}
     </div>

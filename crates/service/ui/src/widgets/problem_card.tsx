@@ -1,18 +1,30 @@
 /** A failure: what, why, and what to do. */
 import type { Problem } from "../api/problem";
+import { sentence } from "../format";
+import { Marked } from "./marked";
 
-export function ProblemCard({ problem, retry, close }: { problem: Problem; retry?: () => void; close?: () => void }) {
+interface Props {
+  problem: Problem;
+  retry?: () => void;
+  /** What trying again does, where it is not the same question. */
+  retryName?: string;
+  close?: () => void;
+}
+
+export function ProblemCard({ problem, retry, retryName = "Try again", close }: Props) {
   const { title, detail, errors = [] } = problem.document;
   const others = errors.filter((error) => error.detail !== detail);
   return (
     <div class="problem" role="alert">
       <strong>{title}</strong>
-      <p>{sentence(detail)}</p>
+      <p>
+        <Marked text={sentence(detail)} />
+      </p>
       {others.length > 0 && (
         <ul>
           {others.map((error) => (
             <li key={error.pointer}>
-              <code>{error.pointer}</code> {error.detail}
+              <code>{error.pointer}</code> <Marked text={error.detail} />
             </li>
           ))}
         </ul>
@@ -21,7 +33,7 @@ export function ProblemCard({ problem, retry, close }: { problem: Problem; retry
         <p class="problem-acts">
           {retry && (
             <button type="button" onClick={retry}>
-              Try again
+              {retryName}
             </button>
           )}
           {close && (
@@ -34,6 +46,3 @@ export function ProblemCard({ problem, retry, close }: { problem: Problem; retry
     </div>
   );
 }
-
-/** The service writes details without a capital and a stop. */
-const sentence = (text: string) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");

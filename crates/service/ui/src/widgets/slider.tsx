@@ -9,8 +9,8 @@ interface Props {
   step: number;
   written: string;
   change: (value: number) => void;
-  /** More to say about the value. */
-  note?: string;
+  /** Its ends as they are written. */
+  ends: [string, string];
 }
 
 const release = () => (isDragging.value = false);
@@ -21,7 +21,7 @@ function hold(): void {
   for (const end of ["pointerup", "pointercancel", "blur"]) addEventListener(end, release, { once: true });
 }
 
-export function Slider({ label, value, least, greatest, step, written, change, note }: Props) {
+export function Slider({ label, value, least, greatest, step, written, change, ends }: Props) {
   const id = `slider-${label.toLowerCase().replaceAll(" ", "-")}`;
   const share = (value - least) / (greatest - least || 1);
   return (
@@ -36,13 +36,16 @@ export function Slider({ label, value, least, greatest, step, written, change, n
         step={step}
         value={value}
         aria-valuetext={written}
+        aria-describedby={`${id}-ends`}
         style={{ "--share": `${100 * share}%` }}
         onInput={(event) => change(event.currentTarget.valueAsNumber)}
         onPointerDown={hold}
         onKeyDown={(event) => event.repeat && hold()}
         onKeyUp={release}
       />
-      {note && <small>{note}</small>}
+      <small id={`${id}-ends`} class="slider-ends">
+        <span>{ends[0]}</span> <span class="unseen">to</span> <span>{ends[1]}</span>
+      </small>
     </div>
   );
 }
