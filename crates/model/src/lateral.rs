@@ -119,6 +119,11 @@ impl SidewaysPull<f64> {
         twice_atanh(drifting.clamp(-HELD, HELD)) / twice_atanh(mobilized.min(HELD))
     }
 
+    /// The least and the most that a pull leaves of the skid resistance [-].
+    pub(crate) fn range_left(&self) -> [f64; 2] {
+        [self.left_beside(1.0), self.left_beside(0.0)]
+    }
+
     /// The same in single precision.
     pub(crate) fn single(&self) -> SidewaysPull<f32> {
         SidewaysPull {

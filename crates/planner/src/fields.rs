@@ -81,7 +81,13 @@ impl FieldCache {
             }
         }
         // The lock is not held meanwhile: others may want other goals.
-        let field = Arc::new(GoalField::new(table, FieldEnds { goals, start: towards }, patience)?);
+        let ends = FieldEnds { goals, start: towards };
+        // One that serves many searches is worth the costs of all motions.
+        let field = match towards {
+            Some(_) => GoalField::of_bounds(table, ends, patience)?,
+            _ => GoalField::new(table, ends, patience)?,
+        };
+        let field = Arc::new(field);
         self.keep(key, |entry| (entry.field, entry.towards) = (Some(Arc::clone(&field)), towards));
         Some(field)
     }

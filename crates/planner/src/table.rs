@@ -10,20 +10,22 @@ use std::{
 };
 
 use rayon::prelude::*;
-use terrain::CellRange;
+use terrain::{Cell, CellRange};
 
 use crate::{
     cost::{FORBIDDEN, LARGEST_ROUNDING, SINGLE_PRECISION, UNITS_OF_REFERENCE, decode},
     displacement::Displacement,
+    heading::Heading,
     lattice::{Lattice, State},
-    layout::{Layout, TILE},
+    layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
     least::least_cost_per_m,
     objective::{Objective, Surcharge, Weights},
     patience::Patience,
     prices::Prices,
-    proof::Proof,
+    proof::{Proof, cancellation},
     tile::TileKernel,
-    tile_builder::{Codes, Lanes, Least, QUAD, code_place},
+    tile_bound::{BoundKernel, Bounds},
+    tile_builder::{Codes, LANES, Lanes, Least, QUAD, code_place},
 };
 
 /// Costs of all motions, with gravity taken out of energy so that none is negative.
@@ -34,6 +36,8 @@ pub struct CostTable {
     lattice: Arc<Lattice>,
     weights: Weights,
     kernel: TileKernel,
+    /// `None` where there are no bounds; prepared when first asked for.
+    bound_kernel: OnceLock<Option<BoundKernel>>,
     units: f64,
     /// Codes of all motions of each tile's states, by quad of cells, heading, motion and cell.
     codes: Vec<OnceLock<Codes>>,
@@ -75,6 +79,7 @@ impl CostTable {
             lattice: Arc::clone(lattice),
             weights,
             kernel: TileKernel::new(lattice, weights, units),
+            bound_kernel: OnceLock::new(),
             units,
             codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             least: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
@@ -186,6 +191,15 @@ impl CostTable {
         }
     }
 
+    /// The same for a search that looks at few tiles: those around are not evaluated with it.
+    #[inline(always)]
+    pub(crate) fn codes_alone(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
+        if self.codes[tile].get().is_none() {
+            self.evaluate(tile, true, patience)?;
+        }
+        self.codes[tile].get().map(|codes| &codes[..])
+    }
+
     /// The least codes of a tile, evaluated when first asked for; `None` when patience ends first.
     #[inline(always)]
     pub(crate) fn least(&self, tile: usize, patience: &Patience) -> Option<&[Lanes]> {
@@ -197,6 +211,31 @@ impl CostTable {
                 self.least[tile].get().map(|least| &least[..])
             }
         }
+    }
+
+    /// Lower bounds of the least codes of a tile, in the same order, which are not held, or those codes themselves where there are
+    /// no bounds; `None` when patience ends first.
+    pub(crate) fn bounds(&self, tile: usize, patience: &Patience) -> Option<Least> {
+        let (lattice, known) = (&self.lattice, &self.least[tile]);
+        if let (Some(kernel), None, true) = (self.bound_kernel(), known.get(), lattice.layout.holds(tile)) {
+            let place = lattice.layout.tile_place(tile);
+            let bounds = kernel.evaluate((&self.kernel, &self.displacements), lattice, place, patience)?;
+            if let Bounds::Known(bounds) = bounds {
+                return Some(bounds);
+            }
+        }
+        self.least(tile, patience)?;
+        known.get().map(Arc::clone)
+    }
+
+    /// What bounds are worked out with.
+    pub(crate) fn bound_kernel(&self) -> Option<&BoundKernel> {
+        let prepare = || {
+            let cancellation = cancellation(&self.lattice, &self.weights) * self.units;
+            let precision = (self.units, cancellation);
+            BoundKernel::new(&self.lattice, &self.weights, &self.displacements, precision)
+        };
+        self.bound_kernel.get_or_init(prepare).as_ref()
     }
 
     /// A tile's codes if they are held.
@@ -277,11 +316,61 @@ impl CostTable {
         })
     }
 
+    /// Steps that motions make from the cells of the tile about a cell, with what each costs at least and the lower bound of it
+    /// that fields grow over, in the table's units; `None` where no motion makes the step, or none is known to.
+    pub fn steps_about(&self, cell: Cell) -> Vec<StepCost> {
+        let layout = &self.lattice.layout;
+        let tile = Layout::tile(layout.pack(State { cell, heading: Heading::new(0) }));
+        let patience = Patience::default();
+        // Once least costs are known they stand for bounds.
+        let (Some(bounds), Some(least)) = (self.bounds(tile, &patience), self.least(tile, &patience)) else {
+            return Vec::new();
+        };
+        let count = self.displacements.len().max(1);
+        let mut steps = Vec::with_capacity(least.len() * LANES);
+        for (place, (least, bounds)) in least.iter().zip(&bounds[..]).enumerate() {
+            let (group, step) = (place / count, &self.displacements[place % count]);
+            for (x, (least, bound)) in least.0.into_iter().zip(bounds.0).enumerate() {
+                let within = ((group * LANES + x) << HEADING_BITS) as u32;
+                let (row, column) = layout.place(((tile * TILE_CELLS) << HEADING_BITS) as u32 | within);
+                let units = |code| (code != FORBIDDEN).then(|| decode(code));
+                steps.push(StepCost {
+                    from: Cell { row, column },
+                    columns: step.columns,
+                    rows: step.rows,
+                    least_units: units(least),
+                    bound_units: units(bound),
+                });
+            }
+        }
+        steps
+    }
+
+    /// Whether steps have bounds below their costs, which are known sooner, on ground of one kind.
+    pub fn has_bounds(&self) -> bool {
+        self.bound_kernel().is_some()
+    }
+
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.
     pub fn cost(&self, state: State, motion: usize) -> f64 {
         let code = self.code(self.lattice.layout.pack(state), motion);
         if code == FORBIDDEN { f64::INFINITY } else { f64::from(decode(code)) / self.units }
     }
+}
+
+/// What a step from one cell to another costs, whatever the heading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepCost {
+    /// The cell that it leads from.
+    pub from: Cell,
+    /// Columns to the east.
+    pub columns: i32,
+    /// Rows to the north.
+    pub rows: i32,
+    /// Cost of the cheapest motion.
+    pub least_units: Option<u32>,
+    /// A lower bound of it.
+    pub bound_units: Option<u32>,
 }
 
 /// Tiles whose codes a field, which needs only the least of them, keeps for the search that follows: a gigabyte. On larger
