@@ -1,11 +1,12 @@
-//! A lower bound of the power of a steady motion from the grade along it and the roll, whatever side slopes do to skid.
+//! A lower bound of the power of a steady motion from the grade along it and the largest roll.
 
 use crate::{PowerKernel, Sides};
 
 /// A lower bound of P √(1 + g²), in closed form:
 ///
 /// ```text
-/// P √(1 + g²) ≥ max over flows (a + b ν + c g) − d |g| + (1 − g²/2)(R ν² + C ν g + D g²) + P₀ (1 + (√2 − 1) g²)
+/// P √(1 + g²) ≥ max over flows (a + b ν + c g + S) − d |g| + (1 − g²/2)(R ν² + C ν g + D g²) + P₀ (1 + (√2 − 1) g²)
+/// S = f (s − t |g| + k f) where s > t |g|, and 0 elsewhere,   f = ν max(l + m ν, 0)
 /// ```
 ///
 /// P power drawn from the battery [W], g grade along the way [-], ν any number up to the cosine of roll [-], P₀ standing power [W].
@@ -18,13 +19,19 @@ use crate::{PowerKernel, Sides};
 /// ```
 ///
 /// for each flow t of the side, without skid. 1/√(1 + g²) is at least 1 − g²/2, and √(1 + g²) at least 1 + (√2 − 1) g² up to 45°. What the skid
-/// adds to both sides is a parabola in it, whose least value on the range of skids is convex in g and ν: a chord from level ground to the
-/// steepest lies above what it may take off (`a`, `d`). Where a steep descent brakes with the windings, less roll may take less power;
+/// adds to both sides is a parabola in it (s, t, k). Where it rises, so much of the skid counts as the largest roll leaves (l, m). Where it
+/// need not, what it may take off is convex in g and ν, and a chord from level ground to the steepest lies above (`a`, `d`). Where a steep descent brakes with the windings, less roll may take less power;
 /// a tangent bounds by how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerBound {
     /// By flow: a, b, c [W].
     pub flows_w: [[f64; 3]; 2],
+    /// l, m: share of the skid that is left on the largest roll [-].
+    pub skid_left: [f64; 2],
+    /// By flow: s, t, what all of the skid takes beside its square [W].
+    pub skid_w: [[f64; 2]; 2],
+    /// k, what the square of all of it takes [W].
+    pub skid_dissipated_w: f64,
     /// d [W].
     pub per_steepness_w: f64,
     /// R, C, D: what the windings take [W].
@@ -39,7 +46,15 @@ pub const LENGTH_PER_SQUARED_GRADE: f64 = std::f64::consts::SQRT_2 - 1.0;
 impl PowerBound {
     /// The bound at a grade along the way and a lower bound of the cosine of roll [W].
     pub fn at_w(&self, grade: f64, cos_roll: f64) -> f64 {
-        let flow_w = self.flows_w.map(|[a, b, c]| a + b * cos_roll + c * grade);
+        let left = cos_roll * (self.skid_left[0] + self.skid_left[1] * cos_roll).max(0.0);
+        let flow_w = [0, 1].map(|flow| {
+            let ([level_w, per_cos_roll_w, per_grade_w], [skid_w, less_w]) =
+                (self.flows_w[flow], self.skid_w[flow]);
+            let per_left_w = skid_w - less_w * grade.abs();
+            let skid_w =
+                if per_left_w > 0.0 { left * (per_left_w + left * self.skid_dissipated_w) } else { 0.0 };
+            level_w + per_cos_roll_w * cos_roll + per_grade_w * grade + skid_w
+        });
         let [square, both, grades] = self.dissipated_w;
         let squared = grade * grade;
         let dissipated_w = square * cos_roll * cos_roll + both * cos_roll * grade + grades * squared;
@@ -106,9 +121,19 @@ impl PowerKernel<f64> {
             let of = |n: &Sides<f64>| flow_mps.zip(*n).map(|(flow_mps, n)| flow_mps * n).sum();
             [-level_w - falling_w, of(rolling_n) + falling_w, of(lifting_n)]
         });
+        let skid_w = flows_mps.map(|flow_mps| {
+            let skid_n = self.skid_n.abs();
+            let level_mps = ahead.least_per_skid_mps(flow_mps, [0.0, 0.0], least_cos_roll);
+            let steep_mps = ahead.least_per_skid_mps(flow_mps, [-steepest, steepest], least_cos_roll);
+            let less_mps = if steepest > 0.0 { (level_mps - steep_mps).max(0.0) / steepest } else { 0.0 };
+            [skid_n * level_mps, skid_n * less_mps]
+        });
         let square = |a: &Sides<f64>, b: &Sides<f64>| k1.zip(a.zip(*b)).map(|(k1, (a, b))| k1 * a * b).sum();
         Some(PowerBound {
             flows_w,
+            skid_left: self.skid_left(least_cos_roll),
+            skid_w,
+            skid_dissipated_w: k1.sum() * self.skid_n * self.skid_n / longest,
             per_steepness_w,
             dissipated_w: [
                 square(rolling_n, rolling_n),
@@ -117,6 +142,18 @@ impl PowerKernel<f64> {
             ],
             standing_w: self.standing_w,
         })
+    }
+
+    /// l and m: with the tangent below what is left of the skid in tan² φ = 1/cos² ρ − 1, and a chord of that over the cosines allowed.
+    fn skid_left(&self, least_cos_roll: f64) -> [f64; 2] {
+        let Some([level, per_squared]) = self.pull.tangent_below() else { return [0.0, 0.0] };
+        if least_cos_roll == 1.0 {
+            return [level, 0.0];
+        }
+        // (1/c² − 1)/(1 − c) = (1 + c)/c²
+        let chord = (1.0 + least_cos_roll) / (least_cos_roll * least_cos_roll);
+        let per_cos_roll = -per_squared * chord;
+        if per_cos_roll.is_finite() { [level - per_cos_roll, per_cos_roll] } else { [0.0, 0.0] }
     }
 }
 
@@ -156,29 +193,43 @@ impl Ahead {
     ///
     /// It is the greatest of linear functions of the force, hence convex: nowhere between is it more than a chord.
     fn taken_off_w(&self, flow_mps: Sides<f64>, grades: [f64; 2], least_cos_roll: f64) -> f64 {
-        let k1 = self.k1_w_per_n2;
+        let k1 = self.k1_w_per_n2.sum();
+        let of = |per_n: f64| {
+            let best_n = if k1 > 0.0 { -per_n / (2.0 * k1) } else { f64::INFINITY };
+            let skid_n = best_n.min(self.most_skid_n);
+            if per_n < 0.0 { -skid_n * (k1 * skid_n + per_n) } else { 0.0 }
+        };
+        self.per_skid_mps(flow_mps, grades, least_cos_roll).map(of).fold(0.0, f64::max)
+    }
+
+    /// The least power of both sides per force of a small skid at the same ends [W/N]. It is linear in the force.
+    fn least_per_skid_mps(&self, flow_mps: Sides<f64>, grades: [f64; 2], least_cos_roll: f64) -> f64 {
+        self.per_skid_mps(flow_mps, grades, least_cos_roll).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Power of both sides per force of a small skid at the ends of the ranges of grade, roll and pitch [W/N].
+    fn per_skid_mps(
+        &self,
+        flow_mps: Sides<f64>,
+        grades: [f64; 2],
+        least_cos_roll: f64,
+    ) -> impl Iterator<Item = f64> + '_ {
         let steepest = grades[1].abs();
         let shortest = 1.0 / (1.0 + steepest * steepest).sqrt();
-        let mut most_w = 0.0f64;
-        for grade in grades {
-            for cos_roll in [least_cos_roll, 1.0] {
-                for cos_pitch in [shortest, 1.0] {
-                    let force_n = self
-                        .rolling_n
-                        .zip(self.lifting_n)
-                        .map(|(rolling, lifting)| cos_pitch * (cos_roll * rolling + lifting * grade));
-                    let marginal_mps =
-                        flow_mps.zip(k1.zip(force_n)).map(|(flow, (k1, force))| flow + 2.0 * k1 * force);
-                    let per_n = self.skid_sign * (marginal_mps.right - marginal_mps.left);
-                    let best_n = if k1.sum() > 0.0 { -per_n / (2.0 * k1.sum()) } else { f64::INFINITY };
-                    let skid_n = best_n.min(self.most_skid_n);
-                    if per_n < 0.0 {
-                        most_w = most_w.max(-skid_n * (k1.sum() * skid_n + per_n));
-                    }
-                }
-            }
-        }
-        most_w
+        let ends = grades.into_iter().flat_map(move |grade| {
+            [least_cos_roll, 1.0]
+                .into_iter()
+                .flat_map(move |cos_roll| [shortest, 1.0].map(move |cos_pitch| (grade, cos_roll, cos_pitch)))
+        });
+        ends.map(move |(grade, cos_roll, cos_pitch)| {
+            let normal_n = self.rolling_n.zip(self.lifting_n);
+            let force_n =
+                normal_n.map(|(rolling, lifting)| cos_pitch * (cos_roll * rolling + lifting * grade));
+            let marginal_mps = flow_mps
+                .zip(self.k1_w_per_n2.zip(force_n))
+                .map(|(flow, (k1, force))| flow + 2.0 * k1 * force);
+            self.skid_sign * (marginal_mps.right - marginal_mps.left)
+        })
     }
 }
 
@@ -216,7 +267,7 @@ mod tests {
             let [steepest, most_roll] = limits;
             let least_cos_roll = 1.0 / (1.0 + most_roll * most_roll).sqrt();
             let bound = kernel.lower_bound(backwards, steepest, least_cos_roll);
-            prop_assert!(bound.is_some() || mu_roll > 0.15);
+            prop_assert!(bound.is_some() || mu_roll > 0.1);
             let Some(bound) = bound else { return Ok(()) };
             let (grade, side_grade) = (grade * steepest, side_grade * most_roll);
             let [cos_pitch, cos_roll] = [grade, side_grade].map(|grade| 1.0 / (1.0 + grade * grade).sqrt());
@@ -230,6 +281,22 @@ mod tests {
             let bound_w = bound.at_w(grade, known_cos_roll);
             prop_assert!(bound_w <= taken_w + 1e-9 * (taken_w.abs() + 1000.0), "{bound_w} W above {taken_w} W");
         }
+    }
+
+    #[test]
+    fn a_wide_turn_on_a_gentle_slope_keeps_nearly_all_of_its_skid() {
+        let robot = builtin::husky_a200();
+        let motion = Motion::of_body(&robot, 0.5, 0.2);
+        let marble = &robot.surfaces["marble"];
+        let manoeuvre = Manoeuvre::new(PowerModel::ForceBalance, &robot, marble, motion, Sides::both(20.0));
+        let kernel = manoeuvre.kernel();
+        let cos_roll = 1.0 / (1.0 + 0.05f64 * 0.05).sqrt();
+        let ground = Grade { normal: cos_roll, along: 0.0, tilt: 0.05 };
+        let taken_w = kernel.bus_w(kernel.side_w(kernel.forces_n(ground)), 0.0);
+        let bound_w = kernel.lower_bound(false, 0.5, 0.9).unwrap().at_w(0.0, cos_roll);
+        let free = PowerKernel { skid_n: 0.0, ..*kernel };
+        let without_w = free.bus_w(free.side_w(free.forces_n(ground)), 0.0);
+        assert!(bound_w > without_w + 0.5 * (taken_w - without_w), "{without_w}, {bound_w}, {taken_w} W");
     }
 
     #[test]

@@ -29,6 +29,7 @@ pub struct GoalField {
     near: BTreeMap<u32, [u32; HEADINGS]>,
     beyond: Beyond,
     units: f64,
+    costs: StepCosts,
     pub(crate) layout: Layout,
 }
 
@@ -64,19 +65,21 @@ impl GoalField {
         Self::over(table, StepCosts::Least, ends, patience)
     }
 
-    /// The same over lower bounds of the steps' costs, which need little more than heights: a lower bound too, a little less
-    /// near to the true cost, in a small part of the time where the costs of motions are not at hand.
-    pub fn of_bounds(table: &CostTable, ends: FieldEnds<'_>, patience: &Patience) -> Option<Self> {
-        Self::over(table, StepCosts::Bounds, ends, patience)
-    }
-
-    fn over(table: &CostTable, costs: StepCosts, ends: FieldEnds<'_>, patience: &Patience) -> Option<Self> {
+    /// The same over what steps are taken to cost. Over bounds of their costs it is a lower bound too, a little less near to the true
+    /// cost, in a small part of the time where the costs of motions are not at hand.
+    pub(crate) fn over(
+        table: &CostTable,
+        costs: StepCosts,
+        ends: FieldEnds<'_>,
+        patience: &Patience,
+    ) -> Option<Self> {
         let layout = table.lattice().layout;
         let mut field = GoalField {
             complement: vec![0u32; layout.cells()],
             near: BTreeMap::new(),
             beyond: Beyond::Unreachable,
             units: table.units(),
+            costs,
             layout,
         };
         let home = ends.start.map_or(Home::ANYWHERE, |start| Home {
@@ -140,6 +143,11 @@ impl GoalField {
         }
         self.beyond = beyond;
         Some(())
+    }
+
+    /// What steps cost in it.
+    pub(crate) fn costs(&self) -> StepCosts {
+        self.costs
     }
 
     /// Bytes held, memory that was never touched included.

@@ -6,15 +6,13 @@ use crate::{
     cost::SINGLE_PRECISION,
     ground_class::GroundClass,
     lattice::Lattice,
+    layout::TILE,
     objective::Weights,
     roll_bound::{NO_STAND, RollBounds, least_cos_roll},
     stance::{Offset, orientation},
     step::PreparedStep,
     window::Window,
 };
-
-/// Cells that are bounded side by side: as many as leave a bound in registers.
-pub(crate) const ABREAST: usize = 32;
 
 /// Steps of a motion that follow each other on the same kind of motion, as one stretch.
 ///
@@ -41,6 +39,10 @@ pub(crate) struct PieceBound {
 #[derive(Clone, Copy, Default)]
 struct Coefficients {
     flows: [[f32; 3]; 2],
+    skid_left: [f32; 2],
+    /// `None` where no skid counts.
+    skid: Option<[[f32; 2]; 2]>,
+    skid_dissipated: f32,
     per_steepness: f32,
     dissipated: [f32; 3],
     /// Of what energy does not count for: for all of it, and per square of the grade.
@@ -68,37 +70,40 @@ impl PieceBound {
         })
     }
 
-    /// Adds its bound for cells of a row from `first` on, and moves on to the height at its end.
+    /// Adds its bound for a row of start cells, and moves on to the height at its end.
     #[inline(always)]
     pub(crate) fn add(
         &self,
         (window, rolls): (&Window, &RollBounds),
-        (row, first): (usize, usize),
+        row: usize,
         (class, steepest): (usize, f32),
-        height_m: &mut [f32; ABREAST],
-        units: &mut [f32; ABREAST],
+        height_m: &mut [f32; TILE],
+        units: &mut [f32; TILE],
     ) {
-        let mut end_m = [0.0f32; ABREAST];
+        let mut end_m = [0.0f32; TILE];
         for (offset, weight) in &self.taps {
-            let z = &window.lanes(&window.height_m, row, *offset)[first..first + ABREAST];
-            for x in 0..ABREAST {
+            let z = window.lanes(&window.height_m, row, *offset);
+            for x in 0..TILE {
                 end_m[x] = weight.mul_add(z[x], end_m[x]);
             }
         }
-        let mut cos_roll = [1.0f32; ABREAST];
+        let mut cos_roll = [1.0f32; TILE];
         for (orientation, cell) in &self.stands {
-            let own = &window.lanes(&rolls.0[*orientation], row, *cell)[first..first + ABREAST];
-            for x in 0..ABREAST {
+            let own = window.lanes(&rolls.0[*orientation], row, *cell);
+            for x in 0..TILE {
                 cos_roll[x] = if own[x] < cos_roll[x] { own[x] } else { cos_roll[x] };
             }
         }
+        let mut grade = [0.0f32; TILE];
+        for x in 0..TILE {
+            grade[x] = (end_m[x] - height_m[x]) * self.per_horizontal_m;
+        }
         let on = self.grounds[class];
-        for x in 0..ABREAST {
-            let grade = (end_m[x] - height_m[x]) * self.per_horizontal_m;
-            let bound = on.at(grade, cos_roll[x]);
-            // False of unknown ground.
-            let allowed = (grade.abs() <= steepest) & (cos_roll[x] > NO_STAND);
-            units[x] += if allowed { bound } else { f32::INFINITY };
+        match on.skid {
+            None => on.add(steepest, &grade, &cos_roll, units, |_, _| [0.0; 2]),
+            Some(skid) => {
+                on.add(steepest, &grade, &cos_roll, units, |grade, cos_roll| on.skid(skid, grade, cos_roll))
+            }
         }
         *height_m = end_m;
     }
@@ -135,6 +140,10 @@ impl Coefficients {
         };
         Some(Coefficients {
             flows: bound.flows_w.map(flow),
+            skid_left: bound.skid_left.map(|share| share as f32),
+            skid: (bound.skid_w.iter().any(|[most_w, _]| *most_w > 0.0))
+                .then(|| bound.skid_w.map(|flow| flow.map(|w| (per_w * w) as f32))),
+            skid_dissipated: (per_w * bound.skid_dissipated_w) as f32,
             per_steepness: (per_w * bound.per_steepness_w) as f32,
             dissipated: bound.dissipated_w.map(|w| (per_w * w) as f32),
             length: (length + fixed) as f32,
@@ -143,20 +152,55 @@ impl Coefficients {
         })
     }
 
+    /// Adds the bound on grades and rolls side by side, with what the skid takes by flow.
     #[inline(always)]
-    fn at(&self, grade: f32, cos_roll: f32) -> f32 {
+    fn add(
+        &self,
+        steepest: f32,
+        grade: &[f32; TILE],
+        cos_roll: &[f32; TILE],
+        units: &mut [f32; TILE],
+        skid: impl Fn(f32, f32) -> [f32; 2],
+    ) {
+        for x in 0..TILE {
+            let bound = self.at(grade[x], cos_roll[x], skid(grade[x], cos_roll[x]));
+            // False of unknown ground.
+            let allowed = (grade[x].abs() <= steepest) & (cos_roll[x] > NO_STAND);
+            units[x] += if allowed { bound } else { f32::INFINITY };
+        }
+    }
+
+    /// What the skid takes at least, by flow.
+    #[inline(always)]
+    fn skid(&self, skid: [[f32; 2]; 2], grade: f32, cos_roll: f32) -> [f32; 2] {
+        let [level, per_cos_roll] = self.skid_left;
+        let left = cos_roll * not_negative(per_cos_roll.mul_add(cos_roll, level));
+        skid.map(|[most, less]| {
+            let per_left = less.mul_add(-grade.abs(), most);
+            let taken = left * self.skid_dissipated.mul_add(left, per_left);
+            if per_left > 0.0 { taken } else { 0.0 }
+        })
+    }
+
+    #[inline(always)]
+    fn at(&self, grade: f32, cos_roll: f32, skid: [f32; 2]) -> f32 {
         let squared = grade * grade;
-        let flow = |[level, per_cos_roll, per_grade]: [f32; 3]| {
-            per_grade.mul_add(grade, per_cos_roll.mul_add(cos_roll, level))
+        let flow = |flow: usize| {
+            let [level, per_cos_roll, per_grade] = self.flows[flow];
+            per_grade.mul_add(grade, per_cos_roll.mul_add(cos_roll, level)) + skid[flow]
         };
-        let [forwards, backwards] = self.flows.map(flow);
+        let [forwards, backwards] = [flow(0), flow(1)];
         let flow = if forwards > backwards { forwards } else { backwards };
         let flow = self.per_steepness.mul_add(-grade.abs(), flow);
         let [square, both, grades] = self.dissipated;
         let dissipated = grades.mul_add(squared, cos_roll * both.mul_add(grade, square * cos_roll));
         let friction = squared.mul_add(-0.5, 1.0).mul_add(dissipated, flow);
-        let friction = self.standing_per_squared.mul_add(squared, friction);
-        let friction = if friction > 0.0 { friction } else { 0.0 };
+        let friction = not_negative(self.standing_per_squared.mul_add(squared, friction));
         friction + self.length_per_squared.mul_add(squared, self.length)
     }
+}
+
+#[inline(always)]
+fn not_negative(x: f32) -> f32 {
+    if x > 0.0 { x } else { 0.0 }
 }

@@ -19,6 +19,17 @@ pub(crate) enum StepCosts {
     Bounds,
 }
 
+/// Bounds from which on a field over bounds of costs serves as well: with a smaller one a search expands so many more states that,
+/// asked again, it takes several times as long.
+const LOOSE_BOUND: f64 = 1.05;
+
+impl StepCosts {
+    /// What the field is to grow over for a search that is to prove a bound.
+    pub(crate) fn that_prove(bound: f64) -> Self {
+        if bound >= LOOSE_BOUND { StepCosts::Bounds } else { StepCosts::Least }
+    }
+}
+
 /// The costs that a field needs while it grows.
 pub(crate) struct GrowingCosts<'t> {
     table: &'t CostTable,

@@ -14,7 +14,7 @@ use crate::{
     layout::TILE,
     objective::Weights,
     patience::{Patience, work},
-    piece_bound::{ABREAST, PieceBound},
+    piece_bound::PieceBound,
     primitive::Kind,
     roll_bound::{Directions, RollBounds},
     row_step,
@@ -175,18 +175,13 @@ fn bound_row(
         let mut least = row_step::Lanes([f32::INFINITY; TILE]);
         for chain in &arcs.chains {
             let touched = if is_near { blocked.touched(row, &chain.sweep) } else { 0 };
-            for first in (0..TILE).step_by(ABREAST) {
-                let (mut height_m, mut units) = ([0.0f32; ABREAST], [0.0f32; ABREAST]);
-                height_m.copy_from_slice(&from_m[first..first + ABREAST]);
-                for piece in &chain.pieces {
-                    let on = (class, kernel.steepest);
-                    piece.add((window, rolls), (row, first), on, &mut height_m, &mut units);
-                }
-                let least = &mut least[first..first + ABREAST];
-                for x in 0..ABREAST {
-                    let is_free = touched >> (first + x) & 1 == 0;
-                    least[x] = if is_free & (units[x] < least[x]) { units[x] } else { least[x] };
-                }
+            let (mut height_m, mut units) = (*from_m, [0.0f32; TILE]);
+            for piece in &chain.pieces {
+                piece.add((window, rolls), row, (class, kernel.steepest), &mut height_m, &mut units);
+            }
+            for x in 0..TILE {
+                let is_free = touched >> x & 1 == 0;
+                least[x] = if is_free & (units[x] < least[x]) { units[x] } else { least[x] };
             }
         }
         let mut own = [FORBIDDEN; TILE];
