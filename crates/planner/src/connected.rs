@@ -6,7 +6,7 @@ use crate::{
     ends::{Ends, asked_goal, asked_start},
     error::{Error, Place},
     field::{FieldEnds, GoalField},
-    fields::FieldKey,
+    fields::{FieldKey, Towards},
     lattice::State,
     objective::Objective,
     planner::Planner,
@@ -58,7 +58,7 @@ impl Planner {
             return Ok(ends.starts.iter().any(|start| exact.cost(*start).is_some()));
         }
         let goals = ends.goals_with_potential(self.lattice(), objective);
-        let towards = (ends.start.cell, costs);
+        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
         let field = self.fields().field(key, self.table(objective), &goals, towards, &query.patience);
         let field = field.ok_or(Error::Timeout { expanded: 0 })?;
         Ok(ends.starts.iter().any(|start| field.leads_from_pose(*start)))

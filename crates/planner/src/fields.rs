@@ -43,6 +43,17 @@ impl Entry {
     }
 }
 
+/// The search that a field is for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Towards {
+    /// Where it starts.
+    pub(crate) start: Cell,
+    /// What the field may take steps to cost.
+    pub(crate) costs: StepCosts,
+    /// The bound that it is to prove.
+    pub(crate) bound: f64,
+}
+
 /// The goals asked for last, the latest at the end.
 #[derive(Default)]
 pub(crate) struct FieldCache {
@@ -68,9 +79,10 @@ impl FieldCache {
         key: FieldKey,
         table: &CostTable,
         goals: &[(State, f64)],
-        (start, costs): (Cell, StepCosts),
+        towards: Towards,
         patience: &Patience,
     ) -> Option<Arc<GoalField>> {
+        let Towards { start, mut costs, bound } = towards;
         let mut towards = Some(start);
         if let Some(entry) = self.latest(&key) {
             let serves = |field: &&Arc<GoalField>| {
@@ -83,6 +95,7 @@ impl FieldCache {
             let asked_before = entry.field.is_some() && entry.towards != Some(start);
             if asked_before && table.lattice().terrain.grid.cells() <= MOST_CELLS_COVERED {
                 towards = None;
+                costs = costs.for_many(bound);
             }
         }
         // The lock is not held meanwhile: others may want other goals.

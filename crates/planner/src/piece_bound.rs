@@ -100,10 +100,8 @@ impl PieceBound {
         }
         let on = self.grounds[class];
         match on.skid {
-            None => on.add(steepest, &grade, &cos_roll, units, |_, _| [0.0; 2]),
-            Some(skid) => {
-                on.add(steepest, &grade, &cos_roll, units, |grade, cos_roll| on.skid(skid, grade, cos_roll))
-            }
+            None => on.add(steepest, (&grade, &cos_roll), units, |_, _| [0.0; 2]),
+            Some(skid) => on.add(steepest, (&grade, &cos_roll), units, |g, cos| on.skid(skid, g, cos)),
         }
         *height_m = end_m;
     }
@@ -157,8 +155,7 @@ impl Coefficients {
     fn add(
         &self,
         steepest: f32,
-        grade: &[f32; TILE],
-        cos_roll: &[f32; TILE],
+        (grade, cos_roll): (&[f32; TILE], &[f32; TILE]),
         units: &mut [f32; TILE],
         skid: impl Fn(f32, f32) -> [f32; 2],
     ) {

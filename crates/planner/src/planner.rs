@@ -18,7 +18,7 @@ use crate::{
     error::Error,
     exact::ExactField,
     field::GoalField,
-    fields::{FieldCache, FieldKey},
+    fields::{FieldCache, FieldKey, Towards},
     heading::Heading,
     hindrance::Hindrance,
     labels::Workspace,
@@ -295,7 +295,7 @@ impl Planner {
         let goals = ends.goals_with_potential(&self.lattice, objective);
         let key = FieldKey::new(objective, &ends.goals);
         let late = Error::Timeout { expanded: 0 };
-        let towards = (ends.start.cell, costs);
+        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
         let field = self.fields.field(key, table, &goals, towards, &query.patience).ok_or(late)?;
         let question = Search {
             starts: &ends.starts,

@@ -19,14 +19,21 @@ pub(crate) enum StepCosts {
     Bounds,
 }
 
-/// Bounds from which on a field over bounds of costs serves as well: with a smaller one a search expands so many more states that,
-/// asked again, it takes several times as long.
+/// Bound from which on a field over bounds of costs serves the first search as well: with a smaller one a search expands so many more
+/// states that, asked again, it takes several times as long.
 const LOOSE_BOUND: f64 = 1.05;
+/// Bound from which on it serves many searches, on steep ground too, where it is farthest from the true cost.
+const LOOSE_BOUND_OF_MANY: f64 = 1.2;
 
 impl StepCosts {
     /// What the field is to grow over for a search that is to prove a bound.
     pub(crate) fn that_prove(bound: f64) -> Self {
         if bound >= LOOSE_BOUND { StepCosts::Bounds } else { StepCosts::Least }
+    }
+
+    /// The same for a field that is to serve many searches.
+    pub(crate) fn for_many(self, bound: f64) -> Self {
+        if bound >= LOOSE_BOUND_OF_MANY { self } else { StepCosts::Least }
     }
 }
 

@@ -217,7 +217,10 @@ impl CostTable {
     /// no bounds; `None` when patience ends first.
     pub(crate) fn bounds(&self, tile: usize, patience: &Patience) -> Option<Least> {
         let (lattice, known) = (&self.lattice, &self.least[tile]);
-        if let (Some(kernel), None, true) = (self.bound_kernel(), known.get(), lattice.layout.holds(tile)) {
+        if known.get().is_none()
+            && lattice.layout.holds(tile)
+            && let Some(kernel) = self.bound_kernel(patience)?
+        {
             let place = lattice.layout.tile_place(tile);
             let bounds = kernel.evaluate((&self.kernel, &self.displacements), lattice, place, patience)?;
             if let Bounds::Known(bounds) = bounds {
@@ -228,14 +231,16 @@ impl CostTable {
         known.get().map(Arc::clone)
     }
 
-    /// What bounds are worked out with.
-    pub(crate) fn bound_kernel(&self) -> Option<&BoundKernel> {
-        let prepare = || {
-            let cancellation = cancellation(&self.lattice, &self.weights) * self.units;
-            let precision = (self.units, cancellation);
-            BoundKernel::new(&self.lattice, &self.weights, &self.displacements, precision)
-        };
-        self.bound_kernel.get_or_init(prepare).as_ref()
+    /// What bounds are worked out with, `Some(None)` where there are none; `None` when patience ends first.
+    fn bound_kernel(&self, patience: &Patience) -> Option<Option<&BoundKernel>> {
+        if let Some(prepared) = self.bound_kernel.get() {
+            return Some(prepared.as_ref());
+        }
+        let cancellation = cancellation(&self.lattice, &self.weights) * self.units;
+        let precision = (self.units, cancellation);
+        let prepared =
+            BoundKernel::prepare(&self.lattice, &self.weights, &self.displacements, precision, patience)?;
+        Some(self.bound_kernel.get_or_init(|| prepared).as_ref())
     }
 
     /// A tile's codes if they are held.
@@ -348,7 +353,7 @@ impl CostTable {
 
     /// Whether steps have bounds below their costs, which are known sooner, on ground of one kind.
     pub fn has_bounds(&self) -> bool {
-        self.bound_kernel().is_some()
+        self.bound_kernel(&Patience::default()).flatten().is_some()
     }
 
     /// Cost of a motion from a state, in the objective's own unit; infinite where it cannot be driven.

@@ -107,6 +107,11 @@ impl TileKernel {
         (window, Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span))
     }
 
+    /// The only kind of ground that a tile's motions depend on; `None` where there are several.
+    pub(crate) fn only_class(&self, lattice: &Lattice, origin: Cell) -> Option<u8> {
+        Window::only_class(lattice, origin, self.halo)
+    }
+
     /// Codes of one chain from a row of cells, those beyond the map included.
     pub(crate) fn chain_codes(
         &self,

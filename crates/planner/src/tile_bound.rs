@@ -35,7 +35,7 @@ pub(crate) struct BoundKernel {
     steepest: f32,
     /// Units by which bounds lie lower for the rounding of single precision.
     slack: f32,
-    /// Pieces of all arcs.
+    /// Pieces of all arcs, with straights for as many as they take.
     pieces: u64,
 }
 
@@ -65,20 +65,24 @@ const ROUNDING: f64 = 1.0001;
 const ROUNDED: f64 = 2.0;
 /// Work of a bound of a piece from a row of cells: 20 ns.
 const PIECE_OF_A_ROW: u64 = 4 * work::CELL;
+/// Pieces that take as long as the two steps of a straight.
+const PIECES_OF_A_STRAIGHT: u64 = 8;
 
 impl BoundKernel {
-    /// `None` where power has no such bound on some kind of ground; `cancellation` is the largest error of a cost, in units, that
-    /// comes from taking lifting work off energy in single precision.
-    pub(crate) fn new(
+    /// `Some(None)` where power has no such bound on some kind of ground, `None` when patience ends first; `cancellation` is the largest
+    /// error of a cost, in units, that comes from taking lifting work off energy in single precision.
+    pub(crate) fn prepare(
         lattice: &Lattice,
         weights: &Weights,
         displacements: &[Displacement],
         (units, cancellation): (f64, f64),
-    ) -> Option<Self> {
+        patience: &Patience,
+    ) -> Option<Option<Self>> {
         let stride = lattice.motions_per_state();
         let (mut straights, mut directions, mut chain) = (Vec::new(), Directions::default(), 0);
         let mut steps: Vec<Arcs> =
             (0..displacements.len()).map(|displacement| Arcs { displacement, chains: Vec::new() }).collect();
+        let mut pacer = patience.pacer();
         for (heading, motions) in lattice.chains.iter().enumerate() {
             for (motion, variants) in motions.iter().enumerate() {
                 let slot = heading * stride + motion;
@@ -88,8 +92,12 @@ impl BoundKernel {
                         (None, _) => {}
                         (Some(step), Kind::Straight) => straights.push((chain, step)),
                         (Some(step), _) => {
+                            pacer.after(lattice.classes.list.len() as u64 * work::MOTION)?;
                             variant.steps_with_manoeuvres().for_each(|(step, ..)| directions.add(step));
-                            steps[step].chains.push(ArcBound::new(lattice, weights, units, variant)?);
+                            let Some(bound) = ArcBound::new(lattice, weights, units, variant) else {
+                                return Some(None);
+                            };
+                            steps[step].chains.push(bound);
                         }
                     }
                     chain += 1;
@@ -98,14 +106,14 @@ impl BoundKernel {
         }
         steps.retain(|arcs| !arcs.chains.is_empty());
         let pieces = || steps.iter().flat_map(|arcs| &arcs.chains).flat_map(|chain| &chain.pieces);
-        Some(BoundKernel {
-            straights,
+        Some(Some(BoundKernel {
             directions,
             steepest: (lattice.limits.pitch_grade * ROUNDING) as f32,
             slack: (ROUNDED * cancellation) as f32,
-            pieces: pieces().count() as u64,
+            pieces: pieces().count() as u64 + PIECES_OF_A_STRAIGHT * straights.len() as u64,
+            straights,
             steps,
-        })
+        }))
     }
 
     /// Bounds of all steps from the cells of a tile; `None` when patience ends first.
@@ -118,8 +126,8 @@ impl BoundKernel {
     ) -> Option<Bounds> {
         let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
         let grid = &lattice.terrain.grid;
+        let Some(class) = kernel.only_class(lattice, origin) else { return Some(Bounds::Mixed) };
         let (window, blocked) = kernel.surroundings(lattice, origin);
-        let [class] = window.present[..] else { return Some(Bounds::Mixed) };
         let rolls = RollBounds::new(&window, &self.directions, lattice);
         let columns = TILE.min(grid.columns - origin.column);
         let count = displacements.len();

@@ -89,8 +89,12 @@ fn some_robot(random: &mut impl Rng) -> Robot {
     if random.random_bool(0.2) {
         robot.surfaces.values_mut().for_each(|surface| surface.mu_roll *= 0.1);
     }
-    let physics: Vec<&'static dyn Mechanism> =
-        mechanism::ALL.into_iter().filter(|m| KnownMechanism::fits_file(*m) && m.name() != "wind").collect();
+    // Others push or pull on level ground, where a table sets its scale.
+    let names = ["payload", "load_transfer", "grade_dependent_friction", "motor_heating"];
+    let physics: Vec<&'static dyn Mechanism> = mechanism::ALL
+        .into_iter()
+        .filter(|m| KnownMechanism::fits_file(*m) && names.contains(&m.name()))
+        .collect();
     for _ in 0..[0, 0, 1, 2][random.random_range(0..4)] {
         let mechanism = physics[random.random_range(0..physics.len())];
         let values = mechanism.parameters().iter().map(|parameter| {
