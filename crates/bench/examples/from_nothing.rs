@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release -p joulepath-bench --example from_nothing -- maps/minnesota.tif 1000 1.01
 //!
-//! The map is a GeoTIFF mirrored to a side in cells; the last argument is the bound. CPU time is that of all threads since the
+//! The map is a GeoTIFF mirrored to a side in cells, or `hills`, `steep`, `level`, `obstacles` or `areas`; the last argument is the bound. CPU time is that of all threads since the
 //! process began, from Linux; elsewhere it is null.
 
 use std::{error::Error, fs, time::Instant};
@@ -10,17 +10,18 @@ use std::{error::Error, fs, time::Instant};
 use model::builtin;
 use planner::{Goal, Objective, Patience, Planner, Query, Settings, Start};
 use serde_json::json;
-use terrain::{Terrain, io, synthetic};
+use terrain::{Grid, Terrain, areas::Areas, io, synthetic};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let began = Instant::now();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [map, side, bound] = &arguments[..] else {
-        return Err("three arguments are needed: a GeoTIFF, a side in cells, a bound such as 1.05".into());
+        return Err(
+            "three arguments are needed: a GeoTIFF or hills, a side in cells, a bound such as 1.05".into()
+        );
     };
     let (side, bound): (usize, f64) = (side.parse()?, bound.parse()?);
-    let tile = io::geotiff::read(&fs::read(map)?, Terrain::MAX_CELLS)?;
-    let terrain = synthetic::mirrored(&tile, side, side)?;
+    let terrain = ground(map, side)?;
     let robot = builtin::husky_a200();
     let query = across(&terrain, Settings::of(&robot), bound);
     let planner = Planner::new(&terrain, &robot, query.settings)?;
@@ -44,6 +45,39 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{report}");
     }
     Ok(())
+}
+
+/// The ground of a name, or of a file.
+fn ground(name: &str, side: usize) -> Result<Terrain, Box<dyn Error>> {
+    const SEED: u64 = 7;
+    let grid = Grid { rows: side, columns: side, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let hills = |longest_m, height_m| Terrain::new(grid, &synthetic::relief(grid, SEED, longest_m, height_m));
+    let level = || Terrain::new(grid, &vec![0.0; grid.cells()]);
+    Ok(match name {
+        "hills" => hills(120.0, 10.0)?,
+        "steep" => hills(60.0, 22.0)?,
+        "level" => level()?,
+        "obstacles" => synthetic::scatter_obstacles(level()?, SEED, 0.05),
+        "areas" => with_areas(level()?)?,
+        file => synthetic::mirrored(&io::geotiff::read(&fs::read(file)?, Terrain::MAX_CELLS)?, side, side)?,
+    })
+}
+
+/// Every other one of 25 squares costs twice as much.
+fn with_areas(terrain: Terrain) -> Result<Terrain, Box<dyn Error>> {
+    let square = |i: usize| {
+        let at =
+            |x: f64, y: f64| terrain.grid.at_fraction_m((i % 5) as f64 / 5.0 + x, (i / 5) as f64 / 5.0 + y);
+        let corners = [at(0.0, 0.0), at(0.18, 0.0), at(0.18, 0.18), at(0.0, 0.18), at(0.0, 0.0)];
+        json!({
+            "type": "Feature",
+            "geometry": { "type": "Polygon", "coordinates": [corners] },
+            "properties": { "cost_factor": 2.0 },
+        })
+    };
+    let features: Vec<_> = (0..25).step_by(2).map(square).collect();
+    let areas = Areas::of(&json!({ "type": "FeatureCollection", "features": features }), &terrain)?;
+    Ok(terrain.with_areas(areas))
 }
 
 /// Corner to corner, clear of the edges.

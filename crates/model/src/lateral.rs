@@ -119,6 +119,25 @@ impl SidewaysPull<f64> {
         twice_atanh(drifting.clamp(-HELD, HELD)) / twice_atanh(mobilized.min(HELD))
     }
 
+    /// The least and the most that a pull leaves of the skid resistance [-].
+    pub(crate) fn range_left(&self) -> [f64; 2] {
+        [self.left_beside(1.0), self.left_beside(0.0)]
+    }
+
+    /// A tangent below what is left of the skid resistance [-]: its value on level ground and its slope in tan² φ.
+    ///
+    /// With ρ² for the share that is taken, f = A − B √(4 m² ρ² + (1 − m²)²) is convex in ρ² up to 1 and not negative there. `None` where load
+    /// shifts between the axles.
+    pub(crate) fn tangent_below(&self) -> Option<[f64; 2]> {
+        /// Where it touches, ρ²: between level ground and slopes that leave half.
+        const TAKEN: f64 = 0.1;
+        let root = TAKEN.mul_add(self.called_up, self.slack_squared).sqrt();
+        let slope = -self.per_called_up * self.called_up / (2.0 * root);
+        let level = self.at_no_root - self.per_called_up * root - slope * TAKEN;
+        let is_unshifted = self.ahead == 0.0 && self.per_along == 0.0;
+        is_unshifted.then_some([level, slope * self.per_tilt * self.per_tilt])
+    }
+
     /// The same in single precision.
     pub(crate) fn single(&self) -> SidewaysPull<f32> {
         SidewaysPull {

@@ -285,7 +285,7 @@ impl Passes<'_> {
                 }
                 labels.prefetch(soon);
             }
-            let Some(codes) = table.codes(Layout::tile(state), patience) else {
+            let Some(codes) = table.codes_alone(Layout::tile(state), patience) else {
                 queue.push(key, state);
                 return (best, Ended::Late);
             };

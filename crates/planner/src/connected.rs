@@ -6,12 +6,13 @@ use crate::{
     ends::{Ends, asked_goal, asked_start},
     error::{Error, Place},
     field::{FieldEnds, GoalField},
-    fields::FieldKey,
+    fields::{FieldKey, Towards},
     lattice::State,
     objective::Objective,
     planner::Planner,
     query::Query,
     snap::{Candidates, Snapped},
+    step_costs::StepCosts,
 };
 
 impl Planner {
@@ -25,24 +26,40 @@ impl Planner {
     /// # Errors
     /// Ends off the map or where the robot cannot stand, numbers out of range, or patience that ended.
     pub fn ends(&self, query: &Query, objective: Objective) -> Result<Ends, Error> {
+        self.ends_over(query, objective, StepCosts::Least)
+    }
+
+    /// The same by a field over what steps are taken to cost: bounds may lead where nothing can be driven.
+    pub(crate) fn ends_over(
+        &self,
+        query: &Query,
+        objective: Objective,
+        costs: StepCosts,
+    ) -> Result<Ends, Error> {
         let ends = Ends::find(self.lattice(), query)?;
         let may_move = |end: &Snapped| query.snap_radius_m.is_some() || !end.is_home;
         let is_only = query.other_goals.is_empty();
         let movable = [is_only && may_move(&ends.start), is_only && may_move(&ends.goal)];
-        if movable == [false, false] || self.is_connected(&ends, query, objective)? {
+        if movable == [false, false] || self.is_connected(&ends, (query, objective), costs)? {
             return Ok(ends);
         }
         Ok(self.nearest_connected_ends(&ends, movable, query, objective)?.unwrap_or(ends))
     }
 
     /// Whether the field of the goal, which a search needs too, comes to the start.
-    fn is_connected(&self, ends: &Ends, query: &Query, objective: Objective) -> Result<bool, Error> {
+    fn is_connected(
+        &self,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        costs: StepCosts,
+    ) -> Result<bool, Error> {
         let key = FieldKey::new(objective, &ends.goals);
         if let Some(exact) = self.fields().exact(&key) {
             return Ok(ends.starts.iter().any(|start| exact.cost(*start).is_some()));
         }
         let goals = ends.goals_with_potential(self.lattice(), objective);
-        let field = self.fields().field(key, self.table(objective), &goals, ends.start.cell, &query.patience);
+        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
+        let field = self.fields().field(key, self.table(objective), &goals, towards, &query.patience);
         let field = field.ok_or(Error::Timeout { expanded: 0 })?;
         Ok(ends.starts.iter().any(|start| field.leads_from_pose(*start)))
     }

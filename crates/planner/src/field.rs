@@ -11,6 +11,7 @@ use crate::{
     layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
     near::Near,
     patience::{Patience, work},
+    step_costs::StepCosts,
     table::CostTable,
 };
 
@@ -28,6 +29,7 @@ pub struct GoalField {
     near: BTreeMap<u32, [u32; HEADINGS]>,
     beyond: Beyond,
     units: f64,
+    costs: StepCosts,
     pub(crate) layout: Layout,
 }
 
@@ -60,12 +62,24 @@ impl GoalField {
     /// less its distance from the start at least. The smaller of both bounds is a bound again, and no motion drops it by
     /// more than it costs.
     pub fn new(table: &CostTable, ends: FieldEnds<'_>, patience: &Patience) -> Option<Self> {
+        Self::over(table, StepCosts::Least, ends, patience)
+    }
+
+    /// The same over what steps are taken to cost. Over bounds of their costs it is a lower bound too, a little less near to the true
+    /// cost, in a small part of the time where the costs of motions are not at hand.
+    pub(crate) fn over(
+        table: &CostTable,
+        costs: StepCosts,
+        ends: FieldEnds<'_>,
+        patience: &Patience,
+    ) -> Option<Self> {
         let layout = table.lattice().layout;
         let mut field = GoalField {
             complement: vec![0u32; layout.cells()],
             near: BTreeMap::new(),
             beyond: Beyond::Unreachable,
             units: table.units(),
+            costs,
             layout,
         };
         let home = ends.start.map_or(Home::ANYWHERE, |start| Home {
@@ -91,7 +105,7 @@ impl GoalField {
         let mut touched = vec![false; layout.tiles()];
         let start =
             ends.start.map(|cell| Layout::cell(layout.pack(State { cell, heading: Heading::new(0) })));
-        if let Some(floor) = field.grow(table, (&seeds, start), &home, &mut touched, patience)? {
+        if let Some(floor) = field.grow((table, costs), (&seeds, start), &home, &mut touched, patience)? {
             let least = seeds.iter().map(|(_, cost)| *cost).min().unwrap_or(0);
             field.bound_rest(Beyond::Towards { floor, home, least }, &touched, patience)?;
         }
@@ -129,6 +143,11 @@ impl GoalField {
         }
         self.beyond = beyond;
         Some(())
+    }
+
+    /// What steps cost in it.
+    pub(crate) fn costs(&self) -> StepCosts {
+        self.costs
     }
 
     /// Bytes held, memory that was never touched included.

@@ -10,6 +10,7 @@ use crate::{
     lattice::State,
     objective::Objective,
     patience::Patience,
+    step_costs::StepCosts,
     table::CostTable,
 };
 
@@ -42,6 +43,17 @@ impl Entry {
     }
 }
 
+/// The search that a field is for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Towards {
+    /// Where it starts.
+    pub(crate) start: Cell,
+    /// What the field may take steps to cost.
+    pub(crate) costs: StepCosts,
+    /// The bound that it is to prove.
+    pub(crate) bound: f64,
+}
+
 /// The goals asked for last, the latest at the end.
 #[derive(Default)]
 pub(crate) struct FieldCache {
@@ -60,28 +72,35 @@ const MOST_CELLS_COVERED: usize = 1 << 22;
 
 impl FieldCache {
     /// The field of a goal for a search from a start: the one at hand if it serves, or a new one; `None` when patience ends.
+    ///
+    /// One over costs of steps serves where bounds of them would do, not the other way round.
     pub(crate) fn field(
         &self,
         key: FieldKey,
         table: &CostTable,
         goals: &[(State, f64)],
-        start: Cell,
+        towards: Towards,
         patience: &Patience,
     ) -> Option<Arc<GoalField>> {
+        let Towards { start, mut costs, bound } = towards;
         let mut towards = Some(start);
         if let Some(entry) = self.latest(&key) {
-            if let Some(field) =
-                entry.field.as_ref().filter(|_| entry.towards.is_none_or(|cell| cell == start))
-            {
+            let serves = |field: &&Arc<GoalField>| {
+                entry.towards.is_none_or(|cell| cell == start)
+                    && (field.costs() == costs || field.costs() == StepCosts::Least)
+            };
+            if let Some(field) = entry.field.as_ref().filter(serves) {
                 return Some(Arc::clone(field));
             }
-            let asked_before = entry.field.is_some();
+            let asked_before = entry.field.is_some() && entry.towards != Some(start);
             if asked_before && table.lattice().terrain.grid.cells() <= MOST_CELLS_COVERED {
                 towards = None;
+                costs = costs.for_many(bound);
             }
         }
         // The lock is not held meanwhile: others may want other goals.
-        let field = Arc::new(GoalField::new(table, FieldEnds { goals, start: towards }, patience)?);
+        let ends = FieldEnds { goals, start: towards };
+        let field = Arc::new(GoalField::over(table, costs, ends, patience)?);
         self.keep(key, |entry| (entry.field, entry.towards) = (Some(Arc::clone(&field)), towards));
         Some(field)
     }

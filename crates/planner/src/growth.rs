@@ -11,6 +11,7 @@ use crate::{
     layout::{HEADING_BITS, TILE, TILE_CELLS},
     patience::{Patience, work},
     stencil::Stencil,
+    step_costs::{GrowingCosts, StepCosts},
     sweep::Sweep,
     table::CostTable,
 };
@@ -47,12 +48,13 @@ impl GoalField {
     /// when it ended before.
     pub(crate) fn grow(
         &mut self,
-        table: &CostTable,
+        (table, costs): (&CostTable, StepCosts),
         (known, start): (&[(usize, u32)], Option<usize>),
         home: &Home,
         touched: &mut [bool],
         patience: &Patience,
     ) -> Option<Option<u32>> {
+        let mut costs = GrowingCosts::new(table, costs);
         let mut front = Front::new(self.layout.tiles());
         let mut goals = BTreeSet::new();
         let mut pacer = patience.pacer();
@@ -76,8 +78,8 @@ impl GoalField {
                 Ok(taken) => taken,
                 Err(key) => return Some(Some(key)),
             };
-            let least =
-                taken.iter().map(|(tile, _)| table.least(*tile, patience)).collect::<Option<Vec<_>>>()?;
+            let tiles: Vec<usize> = taken.iter().map(|(tile, _)| *tile).collect();
+            let least = costs.of(&tiles, patience)?;
             let field = &*self;
             taken.par_iter().zip(&mut sweeps).zip(least).try_for_each(
                 |(((tile, change), sweep), least)| {

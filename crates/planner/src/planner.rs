@@ -18,7 +18,7 @@ use crate::{
     error::Error,
     exact::ExactField,
     field::GoalField,
-    fields::{FieldCache, FieldKey},
+    fields::{FieldCache, FieldKey, Towards},
     heading::Heading,
     hindrance::Hindrance,
     labels::Workspace,
@@ -29,6 +29,7 @@ use crate::{
     refine::refine,
     rings::{farthest_ring, ring},
     route::{Pose, Route},
+    step_costs::StepCosts,
     table::CostTable,
     uncertainty::energy_interval_j,
 };
@@ -121,9 +122,11 @@ impl Planner {
     /// Ends off the map or where the robot cannot stand, no path, or patience that ended before there was one.
     pub fn plan(&self, query: &Query, objective: Objective) -> Result<Plan, Error> {
         let began = Instant::now();
-        let ends = self.ends(query, objective)?;
-        self.plan_between(&ends, query, objective, began)
-            .map_err(|error| self.explained(error, &ends, query, objective))
+        over_bounds_first(query.bound, |costs| {
+            let ends = self.ends_over(query, objective, costs)?;
+            let found = self.plan_between(&ends, (query, objective), costs, began);
+            self.explained_at_last(found, &ends, (query, objective), costs)
+        })
     }
 
     /// Finds the energy-minimal, shortest and fastest paths, side by side where there are cores.
@@ -132,14 +135,30 @@ impl Planner {
     /// As [`Planner::plan`].
     pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
         let began = Instant::now();
-        let ends = self.ends(query, Objective::Energy)?;
-        let one = |objective| self.plan_between(&ends, query, objective, began);
-        let (energy, (distance, time)) = rayon::join(
-            || one(Objective::Energy),
-            || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
-        );
-        let energy = energy.map_err(|error| self.explained(error, &ends, query, Objective::Energy))?;
-        Ok(Comparison { energy, distance: distance?, time: time? })
+        over_bounds_first(query.bound, |costs| {
+            let ends = self.ends_over(query, Objective::Energy, costs)?;
+            let one = |objective| self.plan_between(&ends, (query, objective), costs, began);
+            let (energy, (distance, time)) = rayon::join(
+                || one(Objective::Energy),
+                || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
+            );
+            let energy = self.explained_at_last(energy, &ends, (query, Objective::Energy), costs)?;
+            Ok(Comparison { energy, distance: distance?, time: time? })
+        })
+    }
+
+    /// Explains why there is no path where bounds of costs have not led astray.
+    fn explained_at_last(
+        &self,
+        found: Result<Plan, Error>,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        costs: StepCosts,
+    ) -> Result<Plan, Error> {
+        match costs {
+            StepCosts::Bounds => found,
+            StepCosts::Least => found.map_err(|error| self.explained(error, ends, query, objective)),
+        }
     }
 
     /// Answers many questions on all cores, in their order.
@@ -165,8 +184,8 @@ impl Planner {
     fn plan_between(
         &self,
         ends: &Ends,
-        query: &Query,
-        objective: Objective,
+        (query, objective): (&Query, Objective),
+        costs: StepCosts,
         began: Instant,
     ) -> Result<Plan, Error> {
         let changes = Changes::of(&self.lattice, objective);
@@ -174,7 +193,7 @@ impl Planner {
         let walked = if changes.is_none() { self.walk(ends, objective, &query.patience)? } else { None };
         let found = match walked {
             Some(found) => found,
-            None => self.search(ends, query, objective)?,
+            None => self.search(ends, (query, objective), costs)?,
         };
         if !joins(&self.lattice, &found, &ends.starts, |end| ends.goals.contains(end)) {
             return Err(Error::Untraceable);
@@ -200,7 +219,7 @@ impl Planner {
         query: &Query,
         objective: Objective,
     ) -> Result<Route, Error> {
-        let found = self.search(ends, query, objective)?;
+        let found = self.search(ends, (query, objective), StepCosts::Least)?;
         Route::drive(&self.lattice, objective, (found.start, &found.motions), &query.patience)
     }
 
@@ -266,12 +285,18 @@ impl Planner {
         Ok(Some(Found { least, ..Found::along(start, motions) }))
     }
 
-    fn search(&self, ends: &Ends, query: &Query, objective: Objective) -> Result<Found, Error> {
+    fn search(
+        &self,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        costs: StepCosts,
+    ) -> Result<Found, Error> {
         let table = self.table(objective);
         let goals = ends.goals_with_potential(&self.lattice, objective);
         let key = FieldKey::new(objective, &ends.goals);
         let late = Error::Timeout { expanded: 0 };
-        let field = self.fields.field(key, table, &goals, ends.start.cell, &query.patience).ok_or(late)?;
+        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
+        let field = self.fields.field(key, table, &goals, towards, &query.patience).ok_or(late)?;
         let question = Search {
             starts: &ends.starts,
             goals: &goals,
@@ -301,6 +326,14 @@ impl Planner {
         let outcome = search(&mut workspace);
         self.workspaces.lock().unwrap_or_else(PoisonError::into_inner).push(workspace);
         outcome
+    }
+}
+
+/// Plans over what proves a bound, and over the costs of what can be driven where there is no path: they alone know where ways end.
+fn over_bounds_first<T>(bound: f64, plan: impl Fn(StepCosts) -> Result<T, Error>) -> Result<T, Error> {
+    match (plan(StepCosts::that_prove(bound)), StepCosts::that_prove(bound)) {
+        (Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }), StepCosts::Bounds) => plan(StepCosts::Least),
+        (found, _) => found,
     }
 }
 

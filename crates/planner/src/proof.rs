@@ -81,7 +81,7 @@ fn allowed(lattice: &Lattice, weights: &Weights, units: f64) -> f64 {
 
 /// Largest error of a motion's cost that comes from taking lifting work off energy in single precision, in the objective's
 /// unit: eight roundings of the work of the longest motion up the steepest slope.
-fn cancellation(lattice: &Lattice, weights: &Weights) -> f64 {
+pub(crate) fn cancellation(lattice: &Lattice, weights: &Weights) -> f64 {
     const ROUNDINGS: f64 = 8.0;
     /// On steeper ground hardly any weight is left on the wheels [m/m].
     const STEEPEST: f64 = 100.0;

@@ -21,8 +21,9 @@ use crate::{
     objective::{Objective, Surcharge, Weights},
     patience::Patience,
     prices::Prices,
-    proof::Proof,
+    proof::{Proof, cancellation},
     tile::TileKernel,
+    tile_bound::{BoundKernel, Bounds},
     tile_builder::{Codes, Lanes, Least, QUAD, code_place},
 };
 
@@ -34,6 +35,8 @@ pub struct CostTable {
     lattice: Arc<Lattice>,
     weights: Weights,
     kernel: TileKernel,
+    /// `None` where there are no bounds; prepared when first asked for.
+    bound_kernel: OnceLock<Option<BoundKernel>>,
     units: f64,
     /// Codes of all motions of each tile's states, by quad of cells, heading, motion and cell.
     codes: Vec<OnceLock<Codes>>,
@@ -75,6 +78,7 @@ impl CostTable {
             lattice: Arc::clone(lattice),
             weights,
             kernel: TileKernel::new(lattice, weights, units),
+            bound_kernel: OnceLock::new(),
             units,
             codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             least: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
@@ -186,6 +190,15 @@ impl CostTable {
         }
     }
 
+    /// The same for a search that looks at few tiles: those around are not evaluated with it.
+    #[inline(always)]
+    pub(crate) fn codes_alone(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
+        if self.codes[tile].get().is_none() {
+            self.evaluate(tile, true, patience)?;
+        }
+        self.codes[tile].get().map(|codes| &codes[..])
+    }
+
     /// The least codes of a tile, evaluated when first asked for; `None` when patience ends first.
     #[inline(always)]
     pub(crate) fn least(&self, tile: usize, patience: &Patience) -> Option<&[Lanes]> {
@@ -197,6 +210,36 @@ impl CostTable {
                 self.least[tile].get().map(|least| &least[..])
             }
         }
+    }
+
+    /// Lower bounds of the least codes of a tile, in the same order, which are not held, or those codes themselves where there are
+    /// no bounds; `None` when patience ends first.
+    pub(crate) fn bounds(&self, tile: usize, patience: &Patience) -> Option<Least> {
+        let (lattice, known) = (&self.lattice, &self.least[tile]);
+        if known.get().is_none()
+            && lattice.layout.holds(tile)
+            && let Some(kernel) = self.bound_kernel(patience)?
+        {
+            let place = lattice.layout.tile_place(tile);
+            let bounds = kernel.evaluate((&self.kernel, &self.displacements), lattice, place, patience)?;
+            if let Bounds::Known(bounds) = bounds {
+                return Some(bounds);
+            }
+        }
+        self.least(tile, patience)?;
+        known.get().map(Arc::clone)
+    }
+
+    /// What bounds are worked out with, `Some(None)` where there are none; `None` when patience ends first.
+    pub(crate) fn bound_kernel(&self, patience: &Patience) -> Option<Option<&BoundKernel>> {
+        if let Some(prepared) = self.bound_kernel.get() {
+            return Some(prepared.as_ref());
+        }
+        let cancellation = cancellation(&self.lattice, &self.weights) * self.units;
+        let precision = (self.units, cancellation);
+        let prepared =
+            BoundKernel::prepare(&self.lattice, &self.weights, &self.displacements, precision, patience)?;
+        Some(self.bound_kernel.get_or_init(|| prepared).as_ref())
     }
 
     /// A tile's codes if they are held.

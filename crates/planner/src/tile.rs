@@ -3,6 +3,7 @@
 use std::{ops::Range, sync::Arc};
 
 use multiversion::multiversion;
+use rayon::prelude::*;
 use terrain::Cell;
 
 use crate::{
@@ -18,7 +19,7 @@ use crate::{
     row_step::{Lanes, Pricing, RowStep},
     spans::Span,
     stance::{Offset, orientation},
-    tile_builder::{Codes, Least, RowCodes, TileBuilder, lower},
+    tile_builder::{Codes, Least, RowCodes, TileBuilder, TileRow, lower},
     window::Window,
 };
 
@@ -100,6 +101,36 @@ impl TileKernel {
         self.swept.max(self.halo + self.beside)
     }
 
+    /// The ground that a tile's motions depend on, and what is blocked of it.
+    pub(crate) fn surroundings(&self, lattice: &Lattice, origin: Cell) -> (Window, Blocked) {
+        let window = Window::new(lattice, origin, self.halo);
+        (window, Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span))
+    }
+
+    /// The only kind of ground that a tile's motions depend on; `None` where there are several.
+    pub(crate) fn only_class(&self, lattice: &Lattice, origin: Cell) -> Option<u8> {
+        Window::only_class(lattice, origin, self.halo)
+    }
+
+    /// Codes of one chain from a row of cells, those beyond the map included.
+    pub(crate) fn chain_codes(
+        &self,
+        (window, blocked): (&Window, &Blocked),
+        row: usize,
+        chain: usize,
+    ) -> RowCodes {
+        let mut codes = [[FORBIDDEN; TILE]];
+        evaluate_row(self, window, row, (chain..chain + 1, &mut codes));
+        let [mut codes] = codes;
+        forbid(&mut codes, self.touched(blocked, row, chain));
+        codes
+    }
+
+    /// Cells of a row, bit by bit, from which a chain would touch blocked ground.
+    fn touched(&self, blocked: &Blocked, row: usize, chain: usize) -> u64 {
+        if blocked.is_near(row) { blocked.touched(row, &self.chains[chain].sweep) } else { 0 }
+    }
+
     /// Costs of all motions from all states of a tile; `None` when patience ends first.
     pub(crate) fn evaluate(
         &self,
@@ -112,37 +143,59 @@ impl TileKernel {
         let rows = TILE.min(lattice.terrain.grid.rows - origin.row);
         let columns = TILE.min(lattice.terrain.grid.columns - origin.column);
         let mut tile = TileBuilder::new(self.stride, displacements);
-        let window = Window::new(lattice, origin, self.halo);
-        let blocked = Blocked::new(&lattice.terrain, origin, self.swept, self.longest_span);
+        let (window, blocked) = self.surroundings(lattice, origin);
+        let mut parts = tile.rows();
+        parts.truncate(rows);
+        let part = |(i, part): (usize, &mut [TileRow<'_>])| {
+            self.evaluate_rows((&window, &blocked), (i * ROWS_TOGETHER, columns), part, patience)
+        };
+        parts.par_chunks_mut(ROWS_TOGETHER).enumerate().try_for_each(part)?;
+        drop(parts);
+        Some(tile.finish())
+    }
+
+    /// Costs of all motions from rows of cells that follow each other; `None` when patience ends first.
+    fn evaluate_rows(
+        &self,
+        (window, blocked): (&Window, &Blocked),
+        (first, columns): (usize, usize),
+        rows: &mut [TileRow<'_>],
+        patience: &Patience,
+    ) -> Option<()> {
         let mut offered = vec![[FORBIDDEN; TILE]; self.chains.len()];
         let mut slots = vec![[FORBIDDEN; TILE]; HEADINGS * self.stride];
         let mut pacer = patience.pacer();
-        for row in 0..rows {
+        for (row, codes) in (first..).zip(rows) {
             for group in &self.groups {
                 pacer.after((group.steps * window.present.len()) as u64 * STEP_OF_A_ROW)?;
-                evaluate_row(self, &window, row, (group.chains.clone(), &mut offered[group.chains.clone()]));
+                evaluate_row(self, window, row, (group.chains.clone(), &mut offered[group.chains.clone()]));
             }
-            self.forbid_blocked(&blocked, row, columns, &mut offered);
+            self.forbid_blocked(blocked, row, columns, &mut offered);
             take_cheapest(self, &offered, &mut slots);
-            tile.store_row(row, &slots);
+            codes.store(&slots);
         }
-        Some(tile.finish())
+        Some(())
     }
 
     /// Forbids motions that would touch blocked ground or start beyond the map.
     fn forbid_blocked(&self, blocked: &Blocked, row: usize, columns: usize, offered: &mut [RowCodes]) {
-        let is_near = blocked.is_near(row);
-        for (chain, codes) in self.chains.iter().zip(offered) {
+        for (chain, codes) in offered.iter_mut().enumerate() {
             codes[columns..].fill(FORBIDDEN);
-            let mut touched = if is_near { blocked.touched(row, &chain.sweep) } else { 0 };
-            while touched != 0 {
-                codes[touched.trailing_zeros() as usize] = FORBIDDEN;
-                touched &= touched - 1;
-            }
+            forbid(codes, self.touched(blocked, row, chain));
         }
     }
 }
 
+/// Forbids the cells of a row whose bits are set.
+fn forbid(codes: &mut RowCodes, mut cells: u64) {
+    while cells != 0 {
+        codes[cells.trailing_zeros() as usize] = FORBIDDEN;
+        cells &= cells - 1;
+    }
+}
+
+/// Rows of a tile that one thread evaluates.
+const ROWS_TOGETHER: usize = 16;
 /// Work of one step from a row of cells on one surface: 80 ns.
 const STEP_OF_A_ROW: u64 = 16 * work::CELL;
 /// Most steps of a group of chains, which are evaluated between two chances to look at the clock.

@@ -45,21 +45,33 @@ impl<'d> TileBuilder<'d> {
         }
     }
 
-    /// Stores the codes of a row of cells, given slot by slot.
-    pub(crate) fn store_row(&mut self, row: usize, slots: &[RowCodes]) {
+    /// Its rows, each to be stored on its own.
+    pub(crate) fn rows(&mut self) -> Vec<TileRow<'_>> {
         let (Some(codes), Some(least)) = (Arc::get_mut(&mut self.codes), Arc::get_mut(&mut self.least))
         else {
             unreachable!("a tile in the making is shared with nobody");
         };
-        let codes = &mut codes[row * TILE * slots.len()..][..TILE * slots.len()];
-        let steps = self.displacements.len();
-        let least = &mut least[row * GROUPS * steps..][..GROUPS * steps];
-        store_row(slots, codes, self.displacements, least);
+        let rows = codes.chunks_exact_mut(codes.len() / TILE).zip(least.chunks_exact_mut(least.len() / TILE));
+        rows.map(|(codes, least)| TileRow { displacements: self.displacements, codes, least }).collect()
     }
 
     /// Codes by quad of cells, heading, motion and cell, and the least by displacement and cell.
     pub(crate) fn finish(self) -> (Codes, Least) {
         (self.codes, self.least)
+    }
+}
+
+/// A row of a tile in the making.
+pub(crate) struct TileRow<'t> {
+    displacements: &'t [Displacement],
+    codes: &'t mut [u16],
+    least: &'t mut [Lanes],
+}
+
+impl TileRow<'_> {
+    /// Stores the codes of its cells, given slot by slot.
+    pub(crate) fn store(&mut self, slots: &[RowCodes]) {
+        store_row(slots, self.codes, self.displacements, self.least);
     }
 }
 

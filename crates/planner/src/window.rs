@@ -56,6 +56,19 @@ impl Window {
         window
     }
 
+    /// The only kind of ground of a map's cells in a window; `None` where there are several.
+    pub(crate) fn only_class(lattice: &Lattice, origin: Cell, halo: usize) -> Option<u8> {
+        let terrain = &lattice.terrain;
+        let near = |at: usize, count: usize| at.saturating_sub(halo)..(at + TILE + halo).min(count);
+        let mut cells = near(origin.row, terrain.grid.rows).flat_map(|row| {
+            near(origin.column, terrain.grid.columns).map(move |column| Cell { row, column })
+        });
+        let first = class_of(lattice, terrain, cells.next()?);
+        let is_only =
+            lattice.classes.list.len() == 1 || cells.all(|cell| class_of(lattice, terrain, cell) == first);
+        is_only.then_some(first)
+    }
+
     /// The values under a row of the tile's cells, moved by an offset (columns, rows).
     #[inline(always)]
     pub(crate) fn lanes<'w, T>(
