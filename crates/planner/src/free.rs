@@ -21,6 +21,9 @@ const STEP_CELLS: f64 = 1.0;
 /// Longest part of a piece that is looked at as one, in cells: short enough that parts far from obstacles are skipped.
 const PART_CELLS: f64 = 1.0;
 
+/// The cell from whose centre waypoints count.
+const ORIGIN: Cell = Cell { row: 0, column: 0 };
+
 /// The ground of a lattice, its robot and an objective.
 pub(crate) struct FreeGround<'l> {
     pub(crate) lattice: &'l Lattice,
@@ -54,11 +57,11 @@ impl<'l> FreeGround<'l> {
                 if !self.holds(&step) {
                     return None;
                 }
-                let (done, end_m) = step.drive_on(lattice, 0, height_m, reverse, |class| {
+                let (done, end_m) = step.drive_on(lattice, ORIGIN, height_m, reverse, |class| {
                     let same = prepared.take().filter(|(of, _)| *of == class && !anew);
-                    let heading_rad = step.heading_rad();
-                    let ready = same
-                        .unwrap_or_else(|| (class, lattice.manoeuvre(piece, reverse, heading_rad, class)));
+                    let ready = same.unwrap_or_else(|| {
+                        (class, lattice.manoeuvre(piece, reverse, step.heading_rad, class))
+                    });
                     &prepared.insert(ready).1
                 })?;
                 visit(&done);
@@ -102,7 +105,8 @@ impl<'l> FreeGround<'l> {
         let mut part = 0;
         while part < swept.parts() {
             let [column, row] = swept.middle_m(part).map(|along_m| (along_m / cell_size_m).round() as i32);
-            let Some(index) = self.index((column, row)) else { return false };
+            let Some(cell) = self.cell((column, row)) else { return false };
+            let index = self.lattice.terrain.grid.index(cell);
             let room_cells = f64::from(clearance.at(index)) - reach_cells;
             if room_cells > 0.0 {
                 // The next parts lie within the room; all of them where the robot turns on the spot.
@@ -110,7 +114,7 @@ impl<'l> FreeGround<'l> {
                 continue;
             }
             let mut spans = swept.cover(part).spans(cell_size_m);
-            if spans.any(|span| span.first_blocked(clearance, Cell { row: 0, column: 0 }).is_some()) {
+            if spans.any(|span| span.first_blocked(clearance, ORIGIN).is_some()) {
                 return false;
             }
             part += 1;
@@ -118,16 +122,17 @@ impl<'l> FreeGround<'l> {
         true
     }
 
-    /// Row-major position of the cell at an offset (columns, rows) from cell (0, 0), if the map has it.
-    fn index(&self, (column, row): (i32, i32)) -> Option<usize> {
+    /// The cell at an offset (columns, rows) from cell (0, 0), if the map has it.
+    #[inline]
+    fn cell(&self, (column, row): (i32, i32)) -> Option<Cell> {
         let grid = &self.lattice.terrain.grid;
         let (column, row) = (usize::try_from(column).ok()?, usize::try_from(row).ok()?);
-        (row < grid.rows && column < grid.columns).then(|| row * grid.columns + column)
+        (row < grid.rows && column < grid.columns).then_some(Cell { row, column })
     }
 
     /// Whether all cells that a step reads lie on the map.
     fn holds(&self, step: &PreparedStep) -> bool {
-        [step.middle, step.end.corner, step.end.far_corner()].iter().all(|&cell| self.index(cell).is_some())
+        [step.middle, step.end.corner, step.end.far_corner()].iter().all(|&cell| self.cell(cell).is_some())
     }
 
     /// Height of the robot at a place, from the centre of cell (0, 0), above the map's lowest ground [m].
@@ -136,10 +141,9 @@ impl<'l> FreeGround<'l> {
     }
 
     fn height_m(&self, sample: &Sample) -> Option<f32> {
-        let corner = self.index(sample.corner)?;
-        self.index(sample.far_corner())?;
-        let terrain = &self.lattice.terrain;
-        let ground = &self.lattice.ground;
-        Some(sample.height_m(|index| ground.height_m(terrain, index), corner, terrain.grid.columns))
+        let corner = self.cell(sample.corner)?;
+        self.cell(sample.far_corner())?;
+        let (terrain, ground) = (&self.lattice.terrain, &self.lattice.ground);
+        Some(sample.height_m(|cell| ground.height_m(terrain, cell), corner))
     }
 }

@@ -226,7 +226,7 @@ impl Lattice {
     /// Height of the robot in a cell above the map's lowest ground: the mean over the disc that its wheels go round in a turn
     /// on the spot, NaN where the ground is unknown [m].
     pub fn height_m(&self, cell: Cell) -> f32 {
-        self.ground.height_m(&self.terrain, self.terrain.grid.index(cell))
+        self.ground.height_m(&self.terrain, cell)
     }
 
     /// κ m g: the potential per metre of height [J/m].
