@@ -53,16 +53,16 @@ impl<'l> FreeGround<'l> {
             // Without mechanisms no force follows the heading, and a manoeuvre holds for the whole piece.
             let anew = !lattice.robot.mechanisms.is_empty();
             let mut prepared: Option<(usize, Manoeuvre)> = None;
+            let prepare = |class, heading_rad| (class, lattice.manoeuvre(piece, reverse, heading_rad, class));
             for step in prepare_steps(piece, reverse, cell_size_m, STEP_CELLS) {
                 if !self.holds(&step) {
                     return None;
                 }
                 let (done, end_m) = step.drive_on(lattice, ORIGIN, height_m, reverse, |class| {
-                    let same = prepared.take().filter(|(of, _)| *of == class && !anew);
-                    let ready = same.unwrap_or_else(|| {
-                        (class, lattice.manoeuvre(piece, reverse, step.heading_rad, class))
-                    });
-                    &prepared.insert(ready).1
+                    if anew || prepared.as_ref().is_some_and(|(of, _)| *of != class) {
+                        prepared = None;
+                    }
+                    &prepared.get_or_insert_with(|| prepare(class, step.heading_rad)).1
                 })?;
                 visit(&done);
                 height_m = end_m;

@@ -22,8 +22,9 @@ pub struct Step {
     pub motion: BodyMotion,
     /// How the ground carries the weight.
     pub grade: Grade<f64>,
-    /// Pitch of the robot on its wheels half way; on ground smaller than the robot it is not the slope of the way [rad].
-    pub stance_pitch_rad: f64,
+    /// Rise per metre under the robot's wheels half way, its nose up; on ground smaller than the robot it is not the slope of the
+    /// way [-].
+    pub stance_grade: f64,
     /// Index of the surface among the map's, the robot's default last.
     pub surface: usize,
     /// Power drawn from the battery [W].
@@ -36,6 +37,11 @@ impl Step {
     /// Energy drawn from the battery [J].
     pub fn energy_j(&self) -> f64 {
         self.bus_w * self.duration_s
+    }
+
+    /// Pitch of the robot on its wheels half way [rad].
+    pub fn stance_pitch_rad(&self) -> f64 {
+        self.stance_grade.atan()
     }
 }
 
@@ -114,7 +120,7 @@ impl PreparedStep {
     }
 
     /// The same within other limits than the robot's.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drive_within<'m>(
         &self,
         lattice: &Lattice,
@@ -139,13 +145,15 @@ impl PreparedStep {
         }
         let rise_m = f64::from(end_m - height_m);
         let mut step = self.drive(manoeuvre_on(place), rise_m, slope, reverse, limits, class.name)?;
-        let takes = [lattice.unlifted_j(&step), step.length_m, step.duration_s];
+        // Nearly all ground is weighed as it is.
+        let unlifted_j = if class.rule.cost_factor == 1.0 { 0.0 } else { lattice.unlifted_j(&step) };
+        let takes = [unlifted_j, step.length_m, step.duration_s];
         step.surcharge = class.surcharge(&lattice.settings, self, reverse, takes);
         Some((step, end_m))
     }
 
     /// The step on ground that rises by `rise_m` and slopes by `slope` (east, north) under the wheels half way.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drive(
         &self,
         manoeuvre: &Manoeuvre,
@@ -191,7 +199,7 @@ impl PreparedStep {
             duration_s,
             motion,
             grade,
-            stance_pitch_rad: facing * stance_grade.atan(),
+            stance_grade: facing * stance_grade,
             surface,
             bus_w: power.bus_w,
             surcharge: Surcharge::default(),
@@ -203,14 +211,15 @@ impl Sample {
     /// Interpolates at a place; whole cells to nine decimals, so that lattice points read exactly one cell.
     pub(crate) fn at(place_m: [f64; 2], cell_size_m: f64) -> Self {
         let whole = |v: f64| {
-            let near = (v * 1e9).round() / 1e9;
-            (near.floor(), near - near.floor())
+            let near = rounded(v * 1e9) as f64 / 1e9;
+            let below = floored(near);
+            (below as i32, near - below as f64)
         };
         let (column, east) = whole(place_m[0] / cell_size_m);
         let (row, north) = whole(place_m[1] / cell_size_m);
         let weights =
             [(1.0 - east) * (1.0 - north), east * (1.0 - north), (1.0 - east) * north, east * north];
-        Sample { corner: (column as i32, row as i32), weights: weights.map(|w| w as f32) }
+        Sample { corner: (column, row), weights: weights.map(|w| w as f32) }
     }
 
     /// Offsets and weights of the cells that count.
@@ -268,12 +277,25 @@ pub(crate) fn prepare_steps(
             heading_rad: half_way_rad,
             heading: Heading::nearest(half_way_rad + TIE * piece.turn_rad / count as f64),
             middle: {
-                let [x, y] = middle.place_m.map(|m| (m / cell_size_m).round() as i32);
-                (x, y)
+                let [column, row] = middle.place_m.map(|m| rounded(m / cell_size_m) as i32);
+                (column, row)
             },
             end: Sample::at(end.place_m, cell_size_m),
         }
     })
+}
+
+/// The next whole number below, without the call that the library's is on processors of before 2008.
+#[inline(always)]
+fn floored(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    towards_zero - i64::from(towards_zero as f64 > value)
+}
+
+/// The nearest whole number, of two the one further from 0.
+#[inline(always)]
+fn rounded(value: f64) -> i64 {
+    (value + 0.5f64.copysign(value)) as i64
 }
 
 /// A place along a piece, and the unit vector of travel there.
