@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
+use model::{
+    Manoeuvre, Motion as BodyMotion, PowerModel, PreparedSurface, Robot, STANDARD_GRAVITY_MPS2, Sides,
+};
 use terrain::{Cell, Terrain};
 
 use crate::{
@@ -291,17 +293,6 @@ impl Lattice {
         &self.chains[heading.index()][motion][variant]
     }
 
-    /// A piece as driven on one kind of ground at a heading [rad].
-    pub(crate) fn manoeuvre(
-        &self,
-        piece: &Piece,
-        reverse: bool,
-        heading_rad: f64,
-        class: usize,
-    ) -> Manoeuvre {
-        manoeuvre(&self.robot, &self.settings, (piece, reverse, heading_rad), &self.classes.list[class])
-    }
-
     /// Totals of a step east on level ground.
     pub(crate) fn level_step(&self) -> Edge {
         self.chain(Heading::new(0), 0, 0).on_level_ground()
@@ -370,10 +361,20 @@ pub(crate) fn manoeuvre(
     (piece, reverse, heading_rad): (&Piece, bool, f64),
     class: &GroundClass,
 ) -> Manoeuvre {
+    let prepared = PreparedSurface::new(settings.power_model, robot, &class.surface);
+    prepared_manoeuvre(&prepared, (robot, settings), (piece, reverse, heading_rad), class)
+}
+
+/// The same with the surface of that kind of ground prepared.
+pub(crate) fn prepared_manoeuvre(
+    prepared: &PreparedSurface<'_>,
+    (robot, settings): (&Robot, &Settings),
+    (piece, reverse, heading_rad): (&Piece, bool, f64),
+    class: &GroundClass,
+) -> Manoeuvre {
     let settings = class.settings(settings);
     let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
-    let temperature_c = Sides::both(settings.motor_temperature_c);
-    Manoeuvre::new(settings.power_model, robot, &class.surface, motion, temperature_c)
+    prepared.manoeuvre(motion, Sides::both(settings.motor_temperature_c))
 }
 
 /// Body speeds on a piece at the speed asked for.

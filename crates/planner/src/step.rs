@@ -39,6 +39,11 @@ impl Step {
         self.bus_w * self.duration_s
     }
 
+    /// Length on the map [m].
+    pub(crate) fn horizontal_m(&self) -> f64 {
+        (self.length_m * self.length_m - self.rise_m * self.rise_m).max(0.0).sqrt()
+    }
+
     /// Pitch of the robot on its wheels half way [rad].
     pub fn stance_pitch_rad(&self) -> f64 {
         self.stance_grade.atan()
