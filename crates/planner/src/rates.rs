@@ -24,8 +24,8 @@ const MOST_MOVES: usize = 1000;
 /// The cost has valleys along which two arcs just touch; so many of the first radii, each with its best last one, are
 /// settled.
 const SETTLED_SEEDS: usize = 8;
-/// Ways to change two radii, as signs of the powers of two.
-const BENDS: [[f64; 2]; 8] =
+/// Ways to change two radii, as signs of the powers of two: both together first.
+pub(crate) const BENDS: [[f64; 2]; 8] =
     [[1.0, 1.0], [-1.0, -1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
 
 /// Costs on level ground of the robot's default surface, in the objective's own unit.
