@@ -21,7 +21,7 @@ const EVERY_BEND_LINKS: usize = 16;
 /// Moves are halved so often: the last is by a thirty-second of a cell.
 const HALVINGS: usize = 5;
 /// Rounds over the whole course at each size of move.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 4;
 /// Smallest share of a cost worth a change; less is rounding.
 const LEAST_GAIN: f64 = 1e-7;
 
