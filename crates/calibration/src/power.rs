@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use model::{
-    Friction, FrictionShape, Grade, Manoeuvre, Motion, Power, Robot,
+    Friction, FrictionShape, Grade, Manoeuvre, Motion, Power, Robot, ShapeLaw,
     mechanism::{Adjustment, Moment},
     robot::Surface,
 };
@@ -95,13 +95,15 @@ impl<'a> PowerModel<'a> {
             },
         };
         let (rows, surface, known) = (&self.drives.rows, &self.surface, &shapes.scales_rad);
+        let laws: Vec<ShapeLaw> =
+            scales_rad.iter().map(|scale_rad| ShapeLaw::new(robot, *scale_rad)).collect();
         let watch = &self.drives.watch;
         shapes.by_row.par_chunks_mut(ROWS_A_LOOK).enumerate().try_for_each(|(piece, shapes)| {
             watch.go_on()?;
             for (i, shape) in (piece * ROWS_A_LOOK..).zip(shapes) {
                 let at = surface[i] as usize;
                 if known[at] != scales_rad[at] {
-                    *shape = FrictionShape::new(robot, scales_rad[at], &rows[i].motion(robot));
+                    *shape = laws[at].shape(&rows[i].motion(robot));
                 }
             }
             Ok::<_, Error>(())
@@ -153,20 +155,25 @@ fn surface_of_rows(drives: &Drives) -> Vec<u32> {
 pub(crate) struct Ground<'r> {
     surface: &'r Surface,
     friction: Friction,
+    shapes: ShapeLaw,
     /// The height of its load, or mechanisms of the robot or of this ground, act.
     adjusted: bool,
 }
 
 impl<'r> Ground<'r> {
     pub(crate) fn new(robot: &Robot, surface: &'r Surface) -> Self {
-        Ground { surface, friction: Friction::new(robot, surface), adjusted: robot.is_adjusted(surface) }
+        Ground {
+            surface,
+            friction: Friction::new(robot, surface),
+            shapes: ShapeLaw::new(robot, surface.slip_angle_scale_rad),
+            adjusted: robot.is_adjusted(surface),
+        }
     }
 
     /// Power of one row.
     pub(crate) fn power(&self, robot: &Robot, row: &Row) -> Power {
         let motion = row.motion(robot);
-        let shape = FrictionShape::new(robot, self.surface.slip_angle_scale_rad, &motion);
-        power(robot, self, row, motion, &shape, row.attitude().grade())
+        power(robot, self, row, motion, &self.shapes.shape(&motion), row.attitude().grade())
     }
 }
 

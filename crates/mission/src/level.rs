@@ -65,7 +65,7 @@ impl LevelDrive {
             duration_s: 0.0,
             motion,
             grade: Grade::LEVEL,
-            stance_pitch_rad: 0.0,
+            stance_grade: 0.0,
             surface: 0,
             bus_w: 0.0,
             surcharge: Surcharge::default(),

@@ -7,7 +7,7 @@ use crate::{
     motion::Motion,
     robot::Surface,
     rolling,
-    skid::{self, Skid},
+    skid::{self, Skid, SkidLaw},
 };
 
 /// Side forces of one motion on one surface, per newton of weight; the slope enters later.
@@ -38,6 +38,31 @@ pub struct FrictionShape {
     skid: Skid,
     /// ε: load share of the front axle beyond one half [-].
     load_forward: f64,
+}
+
+/// What the shapes of all motions of a robot on ground of one slip-angle scale share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeLaw {
+    skid: SkidLaw,
+    /// ε: load share of the front axle beyond one half [-].
+    load_forward: f64,
+}
+
+impl ShapeLaw {
+    /// Prepares shapes on ground of a slip-angle scale α_s [rad].
+    pub fn new(robot: &Robot, slip_angle_scale_rad: f64) -> Self {
+        ShapeLaw { skid: SkidLaw::new(robot, slip_angle_scale_rad), load_forward: skid::load_forward(robot) }
+    }
+
+    /// The shape of a motion.
+    #[inline(always)]
+    pub fn shape(&self, motion: &Motion) -> FrictionShape {
+        FrictionShape {
+            rolling: motion.rim_speeds_mps.map(rolling::direction),
+            skid: self.skid.skid(motion.speed_mps, motion.yaw_rate_radps),
+            load_forward: self.load_forward,
+        }
+    }
 }
 
 /// What a robot and a surface make of every shape.
@@ -74,7 +99,7 @@ impl Friction {
     }
 
     /// The same with what a mechanism changes of it.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn adjusted(&self, adjustment: &Adjustment) -> Friction {
         let shifted = Sides { left: adjustment.load_left, right: -adjustment.load_left };
         let rolling = self.rolling_per_load.zip(shifted).zip(self.mu_roll.zip(adjustment.mu_roll));
@@ -93,11 +118,7 @@ impl Friction {
 impl FrictionShape {
     /// The shape of a motion on ground of a slip-angle scale α_s [rad].
     pub fn new(robot: &Robot, slip_angle_scale_rad: f64, motion: &Motion) -> Self {
-        FrictionShape {
-            rolling: motion.rim_speeds_mps.map(rolling::direction),
-            skid: Skid::new(robot, slip_angle_scale_rad, motion.speed_mps, motion.yaw_rate_radps),
-            load_forward: skid::load_forward(robot),
-        }
+        ShapeLaw::new(robot, slip_angle_scale_rad).shape(motion)
     }
 
     /// Balances rolling and skid resistance and gravity.
@@ -110,7 +131,7 @@ impl FrictionShape {
     /// n load share of a side (eq. 14), s direction of its rolling, N normal load, f what sideways pull leaves of the skid
     /// ([`SidewaysPull`]). The correction of μ_R in eq. 16 for a centre of mass off the middle, found there by experiment, is left out: the
     /// wheels together carry the same load wherever it lies, and what such a robot skids less is in M_skid.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn side_forces(&self, friction: &Friction) -> SideForces {
         let shifted = Sides { left: friction.load_left_per_tilt, right: -friction.load_left_per_tilt };
         let shifting = friction.mu_roll.zip(shifted).zip(self.rolling).map(|((mu, n), s)| mu * n * s);
@@ -118,7 +139,7 @@ impl FrictionShape {
             rolling: friction.rolling_per_load.zip(self.rolling).map(|(r, s)| r * s),
             steepening: friction.steepening,
             shifting,
-            skid: self.skid.arm_m * friction.mu_skid / friction.track_m,
+            skid: self.skid.arm_m * (friction.mu_skid / friction.track_m),
             pull: SidewaysPull::new(friction.mu_skid, &self.skid)
                 .shifted([self.load_forward, friction.load_forward_per_along], &self.skid),
             gravity_share: Sides::both(0.5),

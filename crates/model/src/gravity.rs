@@ -1,5 +1,7 @@
 //! Weight on a slope.
 
+use crate::elementary::sin_cos;
+
 /// Standard acceleration of free fall [m/s²] (CGPM 1901).
 pub const STANDARD_GRAVITY_MPS2: f64 = 9.806_65;
 
@@ -43,8 +45,9 @@ impl Attitude {
     }
 
     /// How the ground carries the weight.
+    #[inline(always)]
     pub fn grade(self) -> Grade<f64> {
-        let ((along, cos_pitch), (sin_roll, cos_roll)) = (self.pitch_rad.sin_cos(), self.roll_rad.sin_cos());
+        let ((along, cos_pitch), (sin_roll, cos_roll)) = (sin_cos(self.pitch_rad), sin_cos(self.roll_rad));
         Grade { normal: cos_pitch * cos_roll, along, tilt: sin_roll / cos_roll }
     }
 

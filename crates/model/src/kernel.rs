@@ -187,6 +187,7 @@ impl<T: Real> PowerKernel<T> {
 }
 
 /// What a force forwards and one backwards draw per newton, `driving` and `driven` of each mechanical watt [W/N].
+#[inline(always)]
 pub(crate) fn ahead_and_astern(rim_speed_mps: f64, driving: f64, driven: f64) -> [f64; 2] {
     let (with, against) = (rim_speed_mps * driving, rim_speed_mps * driven);
     if rim_speed_mps >= 0.0 { [with, against] } else { [against, with] }
@@ -194,6 +195,7 @@ pub(crate) fn ahead_and_astern(rim_speed_mps: f64, driving: f64, driven: f64) ->
 
 impl PowerKernel<f64> {
     /// Sides with no force on them yet and nothing else that draws power.
+    #[inline(always)]
     pub(crate) fn of_sides(k1_w_per_n2: Sides<f64>, per_force_mps: Sides<[f64; 2]>) -> Self {
         let [forwards_mps, backwards_mps] = [0, 1].map(|way| per_force_mps.map(|ways| ways[way]));
         let nothing = Sides::both(0.0);

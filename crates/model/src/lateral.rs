@@ -55,6 +55,7 @@ pub struct SidewaysPull<T> {
 ///
 /// It solves the law of [`SidewaysPull`] at ρ = 2 ε m f0: 1 − 4 ε² m² and less for a wide arc, 1/(1 + 2|ε|) for Coulomb's spin. Against a
 /// search for the centre of turning, arms come out the same to 1 % for α_s ≤ 0.3 rad and |ε| ≤ 0.2, whatever the arc.
+#[inline(always)]
 pub(crate) fn level_share(load_forward: f64, mobilized: f64) -> f64 {
     let (shift, called_up) = (4.0 * load_forward * load_forward, mobilized * mobilized);
     let (a, b, c) = (called_up * (1.0 - shift), 1.0 - called_up + 2.0 * called_up * shift, called_up * shift);
@@ -79,6 +80,7 @@ impl SidewaysPull<f64> {
     };
 
     /// The pull on a motion that skids so.
+    #[inline(always)]
     pub(crate) fn new(mu_skid: f64, skid: &Skid) -> Self {
         let per_tilt = if mu_skid > 0.0 { 1.0 / mu_skid } else { 0.0 };
         let squared = (skid.mobilized * skid.mobilized).max(LEAST_CALLED_UP);
@@ -94,6 +96,7 @@ impl SidewaysPull<f64> {
     }
 
     /// The same where the front axle carries so much more than half of the load, on level ground and per sin γ sin β.
+    #[inline(always)]
     pub(crate) fn shifted(self, [load_forward, load_forward_per_along]: [f64; 2], skid: &Skid) -> Self {
         let per_load = 2.0 * skid.mobilized * skid.level_share * skid.arm_m.signum();
         SidewaysPull { ahead: per_load * load_forward, per_along: per_load * load_forward_per_along, ..self }

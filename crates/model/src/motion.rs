@@ -15,6 +15,34 @@ pub struct Motion {
     pub heading_rad: Option<f64>,
 }
 
+/// How fast a robot's wheels turn for a motion of its body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RimSpeeds {
+    /// Rim speed per body speed: more than 1 where wheels slip [-].
+    per_speed: f64,
+    /// Half the slip track, wider where turns slip besides [m].
+    half_m: f64,
+}
+
+impl RimSpeeds {
+    pub(crate) fn of(robot: &Robot) -> Self {
+        RimSpeeds {
+            per_speed: 1.0 / (1.0 - robot.wheel_slip()),
+            half_m: robot.half_slip_track_m() / (1.0 - robot.turning_slip()),
+        }
+    }
+
+    /// Rim speeds at a body speed and yaw rate [m/s].
+    #[inline(always)]
+    pub(crate) fn at_mps(&self, speed_mps: f64, yaw_rate_radps: f64) -> Sides<f64> {
+        let half_mps = yaw_rate_radps * self.half_m;
+        Sides {
+            left: self.per_speed * (speed_mps - half_mps),
+            right: self.per_speed * (speed_mps + half_mps),
+        }
+    }
+}
+
 impl Motion {
     /// The motion whose wheels turn as the slip track says.
     pub fn of_body(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64) -> Self {

@@ -21,13 +21,17 @@ impl Motor {
     ///
     /// Dogru & Marques (2018), eqs. 7-10. Holds for moderate rises: the paper finds it good below 65 °C.
     /// k2 stays at least 1, since no gear train delivers more than it takes.
-    #[inline]
+    #[inline(always)]
     pub fn at_temperature(&self, shared: &Motors, temperature_c: f64) -> WarmMotor {
         let rise_k = temperature_c - shared.reference_temperature_c;
         let resistance = 1.0 + shared.resistance_per_k * rise_k;
-        let constant = (1.0 + shared.motor_constant_per_k * rise_k).powi(-2);
+        let constant = 1.0 / square(1.0 + shared.motor_constant_per_k * rise_k);
         WarmMotor { k1_w_per_n2: self.k1_w_per_n2 * resistance * constant, k2: (self.k2 * constant).max(1.0) }
     }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 impl WarmMotor {

@@ -7,9 +7,9 @@ use crate::{
     balance::{Friction, FrictionShape, SideForces},
     gravity::{Attitude, Grade, STANDARD_GRAVITY_MPS2},
     kernel::{NO_FLOOR_W, PowerKernel, ahead_and_astern},
-    mechanism::{Adjustment, Moment},
+    mechanism::Adjustment,
     motion::{Acceleration, Motion},
-    paper::PaperForces,
+    prepared::PreparedSurface,
     robot::Surface,
 };
 
@@ -61,28 +61,7 @@ impl Manoeuvre {
         motion: Motion,
         motor_temperature_c: Sides<f64>,
     ) -> Self {
-        let adjustment = robot.adjustment(surface, &Moment::steady(motion));
-        match model {
-            PowerModel::ForceBalance => {
-                let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
-                let friction = Friction::new(robot, surface);
-                let forces = shape.side_forces(&friction.adjusted(&adjustment));
-                // Steady motion keeps the floor of itself, but not where wind pushes harder than friction holds: going in
-                // circles must not pay there either.
-                let pushed = adjustment.force_n != Sides::both(0.0)
-                    || adjustment.lifting_n != Sides::both(0.0)
-                    || adjustment.leaning_n != 0.0
-                    || robot.wheel_slip() != 0.0
-                    || robot.turning_slip() != 0.0;
-                let floor = if pushed { Floor::Kept } else { Floor::None };
-                Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, floor)
-            }
-            PowerModel::DogruMarques => {
-                let ground = surface.scaled(adjustment.mu_roll.sum() / 2.0, adjustment.mu_skid);
-                let forces = PaperForces::new(robot, &ground, &motion).side_forces(&motion);
-                Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, &adjustment, Floor::Printed)
-            }
-        }
+        PreparedSurface::new(model, robot, surface).manoeuvre(motion, motor_temperature_c)
     }
 
     /// Prepares the side forces of a motion from its shape, by the force balance, with what mechanisms add.
@@ -102,8 +81,8 @@ impl Manoeuvre {
         Manoeuvre::of_forces(robot, motion, forces, motor_temperature_c, adjustment, Floor::None)
     }
 
-    #[inline]
-    fn of_forces(
+    #[inline(always)]
+    pub(crate) fn of_forces(
         robot: &Robot,
         motion: Motion,
         forces: SideForces,
@@ -162,11 +141,13 @@ impl Manoeuvre {
     }
 
     /// Power in steady motion on a slope.
+    #[inline(always)]
     pub fn power(&self, attitude: Attitude) -> Power {
         self.power_accelerating(attitude, Acceleration::NONE)
     }
 
     /// Power on a slope while speeds change.
+    #[inline(always)]
     pub fn power_accelerating(&self, attitude: Attitude, acceleration: Acceleration) -> Power {
         self.power_on_grade(attitude.grade(), acceleration)
     }
@@ -179,7 +160,7 @@ impl Manoeuvre {
     ///
     /// Tyres that push inwards slip outwards: the robot turns about a place d ahead of its middle, and what pulls it there has to be driven
     /// against. It grows with the fourth power of speed on the same circle, so that slow robots hardly feel it.
-    #[inline]
+    #[inline(always)]
     fn steady_n(&self, grade: Grade<f64>, left_mps2: f64) -> Sides<f64> {
         if left_mps2 == 0.0 {
             return self.kernel.forces_n(grade);
@@ -195,7 +176,7 @@ impl Manoeuvre {
     }
 
     /// Power where it is known how the ground carries the weight.
-    #[inline]
+    #[inline(always)]
     pub fn power_on_grade(&self, grade: Grade<f64>, acceleration: Acceleration) -> Power {
         let steady_n = self.steady_n(grade, acceleration.left_mps2);
         let forward_n = self.mass_kg * acceleration.forward_mps2 / 2.0;
@@ -219,7 +200,7 @@ impl Manoeuvre {
 
 /// Whether the bus draws at least what lifting needs and returns at most what a descent holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Floor {
+pub(crate) enum Floor {
     /// The forces alone say what is drawn; while speeds change, a robot may give more back.
     None,
     /// Yes.

@@ -27,6 +27,7 @@ use crate::{
     builtin::{HUSKY_KG, HUSKY_TOP_MPS},
     knowledge::{ModelError, Posterior, PowerNoise, Sources},
     known::KnownMechanism,
+    motion::RimSpeeds,
 };
 
 /// A skid-steered robot with one motor a side.
@@ -151,9 +152,7 @@ impl Robot {
 
     /// Rim speeds of the wheels at a body speed and yaw rate [m/s].
     pub fn rim_speeds_mps(&self, speed_mps: f64, yaw_rate_radps: f64) -> Sides<f64> {
-        let turned = 1.0 / (1.0 - self.wheel_slip());
-        let half = yaw_rate_radps * self.half_slip_track_m() / (1.0 - self.turning_slip());
-        Sides { left: turned * (speed_mps - half), right: turned * (speed_mps + half) }
+        RimSpeeds::of(self).at_mps(speed_mps, yaw_rate_radps)
     }
 
     /// Checks every field's range; reading a file does this already, code that builds a robot may call it.

@@ -1,6 +1,6 @@
 //! Rolling resistance of the wheels.
 
-use crate::{Robot, Sides};
+use crate::{Robot, Sides, elementary};
 
 /// Rim speed over which rolling resistance turns round with the wheel [m/s].
 ///
@@ -12,9 +12,9 @@ pub const TURNAROUND_SPEED_MPS: f64 = 0.001;
 ///
 /// It opposes the turning of the wheel, not the sliding of the ground beneath it: the loss is in the
 /// carcass. Where the slip track equals the track both speeds are the same.
-#[inline]
+#[inline(always)]
 pub fn direction(rim_speed_mps: f64) -> f64 {
-    (rim_speed_mps / TURNAROUND_SPEED_MPS).tanh()
+    elementary::tanh(rim_speed_mps / TURNAROUND_SPEED_MPS)
 }
 
 /// How much easier the wheels roll when the centre of mass is off the middle.

@@ -14,11 +14,13 @@ pub struct Sides<T> {
 
 impl<T> Sides<T> {
     /// Builds both sides from one function of the value at hand.
+    #[inline(always)]
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Sides<U> {
         Sides { left: f(self.left), right: f(self.right) }
     }
 
     /// Combines two pairs side by side.
+    #[inline(always)]
     pub fn zip<U>(self, other: Sides<U>) -> Sides<(T, U)> {
         Sides { left: (self.left, other.left), right: (self.right, other.right) }
     }
@@ -26,6 +28,7 @@ impl<T> Sides<T> {
 
 impl<T: Copy> Sides<T> {
     /// The same value on both sides.
+    #[inline(always)]
     pub const fn both(value: T) -> Self {
         Sides { left: value, right: value }
     }
@@ -33,6 +36,7 @@ impl<T: Copy> Sides<T> {
 
 impl Sides<f64> {
     /// Left plus right.
+    #[inline(always)]
     pub fn sum(self) -> f64 {
         self.left + self.right
     }

@@ -1,6 +1,11 @@
 //! Lateral skid of the wheels while turning.
 
-use crate::{Robot, lateral, robot::Surface};
+use crate::{
+    Robot, Sides,
+    elementary::{first_quadrant_angle, tanh_of_positive},
+    lateral,
+    robot::Surface,
+};
 
 /// Moment that skid sets against the turn, per newton of normal load [m].
 ///
@@ -16,8 +21,8 @@ use crate::{Robot, lateral, robot::Surface};
 /// the robot really turns about a place nearer to that axle: in a spin on Coulomb ground at the axle itself, where f S is the lighter
 /// axle's load share times the wheelbase. Arcs so wide that tyres answer in proportion to their slip angles keep eq. 15, f = 1.
 pub fn moment_per_load_m(robot: &Robot, surface: &Surface, speed_mps: f64, yaw_rate_radps: f64) -> f64 {
-    let law = |slip_angle_rad| saturation(slip_angle_rad, surface.slip_angle_scale_rad);
-    mobilized_arm_m(robot, speed_mps, yaw_rate_radps, law) * sign(yaw_rate_radps) * surface.mu_skid
+    let skid = SkidLaw::new(robot, surface.slip_angle_scale_rad).skid(speed_mps, yaw_rate_radps);
+    skid.arm_m * surface.mu_skid
 }
 
 /// What a turn calls up of the full skid resistance.
@@ -38,18 +43,77 @@ impl Default for Skid {
     }
 }
 
-impl Skid {
-    pub(crate) fn new(robot: &Robot, slip_angle_scale_rad: f64, speed_mps: f64, yaw_rate_radps: f64) -> Self {
-        let law = |slip_angle_rad| saturation(slip_angle_rad, slip_angle_scale_rad);
-        let of = Skid::of_law(robot, speed_mps, yaw_rate_radps, law);
-        Skid { arm_m: of.arm_m * sign(yaw_rate_radps), ..of }
+/// What every turn of a robot on ground of one slip-angle scale shares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SkidLaw {
+    /// α_s [rad].
+    slip_angle_scale_rad: f64,
+    base: SkidBase,
+}
+
+impl SkidLaw {
+    pub(crate) fn new(robot: &Robot, slip_angle_scale_rad: f64) -> Self {
+        SkidLaw { slip_angle_scale_rad, base: SkidBase::of(robot) }
     }
 
-    /// For any law σ of how much a wheel feels at a slip angle; the arm without a sign.
-    fn of_law(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, law: impl Fn(f64) -> f64) -> Self {
-        let mobilized = mobilized(robot, speed_mps, yaw_rate_radps, law);
-        let level_share = lateral::level_share(load_forward(robot), mobilized);
-        Skid { arm_m: level_share * full_arm_m(robot) * mobilized, mobilized, level_share }
+    /// The skid of a turn; none straight on.
+    #[inline(always)]
+    pub(crate) fn skid(&self, speed_mps: f64, yaw_rate_radps: f64) -> Skid {
+        let slip_rad = self.base.slip_angles_rad(speed_mps, yaw_rate_radps);
+        // No closure, which is not sure to be computed in place.
+        let saturation = Sides {
+            left: saturation(slip_rad.left, self.slip_angle_scale_rad),
+            right: saturation(slip_rad.right, self.slip_angle_scale_rad),
+        };
+        let of = self.base.skid(yaw_rate_radps, saturation);
+        Skid { arm_m: of.arm_m * sign(yaw_rate_radps), ..of }
+    }
+}
+
+/// What skid asks of a robot's geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SkidBase {
+    /// a/2 [m].
+    half_wheelbase_m: f64,
+    /// b/2 [m].
+    half_track_m: f64,
+    /// Load share of the left side beyond one half [-].
+    load_left: f64,
+    /// ε [-].
+    load_forward: f64,
+    /// S of [`moment_per_load_m`] [m].
+    full_arm_m: f64,
+}
+
+impl SkidBase {
+    fn of(robot: &Robot) -> Self {
+        SkidBase {
+            half_wheelbase_m: robot.wheelbase_m / 2.0,
+            half_track_m: robot.track_m / 2.0,
+            load_left: robot.center_of_mass.left_m / robot.track_m,
+            load_forward: load_forward(robot),
+            full_arm_m: full_arm_m(robot),
+        }
+    }
+
+    /// α_i of [`moment_per_load_m`]; NaN where the robot stands [rad].
+    #[inline(always)]
+    fn slip_angles_rad(&self, speed_mps: f64, yaw_rate_radps: f64) -> Sides<f64> {
+        let across_mps = (yaw_rate_radps * self.half_wheelbase_m).abs();
+        let turned_mps = yaw_rate_radps * self.half_track_m;
+        Sides {
+            left: first_quadrant_angle(across_mps, (speed_mps - turned_mps).abs()),
+            right: first_quadrant_angle(across_mps, (speed_mps + turned_mps).abs()),
+        }
+    }
+
+    /// Of how much the wheels of each side feel of the full skid resistance, at any law; the arm without a sign.
+    #[inline(always)]
+    fn skid(&self, yaw_rate_radps: f64, felt: Sides<f64>) -> Skid {
+        let mobilized = (0.5 + self.load_left) * felt.left + (0.5 - self.load_left) * felt.right;
+        let mobilized = if yaw_rate_radps == 0.0 { 0.0 } else { mobilized };
+        let level_share = lateral::level_share(self.load_forward, mobilized);
+        Skid { arm_m: level_share * self.full_arm_m * mobilized, mobilized, level_share }
     }
 }
 
@@ -70,29 +134,18 @@ pub fn mobilized_arm_m(
     yaw_rate_radps: f64,
     mobilized: impl Fn(f64) -> f64,
 ) -> f64 {
-    Skid::of_law(robot, speed_mps, yaw_rate_radps, mobilized).arm_m
-}
-
-/// m of [`moment_per_load_m`].
-fn mobilized(robot: &Robot, speed_mps: f64, yaw_rate_radps: f64, law: impl Fn(f64) -> f64) -> f64 {
-    let across_mps = (yaw_rate_radps * robot.wheelbase_m / 2.0).abs();
-    if across_mps == 0.0 {
-        return 0.0;
-    }
-    let share = robot.center_of_mass.left_m / robot.track_m;
-    let side = |sign: f64| {
-        let along_mps = speed_mps - yaw_rate_radps * sign * robot.track_m / 2.0;
-        (0.5 + sign * share) * law(across_mps.atan2(along_mps.abs()))
-    };
-    side(1.0) + side(-1.0)
+    let base = SkidBase::of(robot);
+    base.skid(yaw_rate_radps, base.slip_angles_rad(speed_mps, yaw_rate_radps).map(mobilized)).arm_m
 }
 
 /// tanh(α/α_s): how much of the full skid resistance a wheel feels, 0 to 1.
+#[inline(always)]
 fn saturation(slip_angle_rad: f64, scale_rad: f64) -> f64 {
-    // tanh x = 1 − 2/(1 + exp 2x): for x ≥ 0 as exact as any part of a share has to be, in a third of the library's time.
-    if scale_rad == 0.0 { 1.0 } else { 1.0 - 2.0 / (1.0 + (2.0 * slip_angle_rad / scale_rad).exp()) }
+    let saturation = tanh_of_positive(slip_angle_rad / scale_rad);
+    if scale_rad == 0.0 { 1.0 } else { saturation }
 }
 
+#[inline(always)]
 fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
@@ -162,7 +215,7 @@ mod tests {
         ) {
             let mut robot = builtin::husky_a200();
             (robot.center_of_mass.forward_m, robot.center_of_mass.left_m) = (forward_m, left_m);
-            let arm_m = Skid::new(&robot, scale_rad, v, w).arm_m;
+            let arm_m = SkidLaw::new(&robot, scale_rad).skid(v, w).arm_m;
             let searched_m = arm_by_search_m(&robot, scale_rad, v, w);
             prop_assert!((arm_m / searched_m - 1.0).abs() < 0.03, "{} m for {} m", arm_m, searched_m);
         }

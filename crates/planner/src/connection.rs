@@ -2,7 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::{heading::turn_rad, primitive::Piece};
+use crate::{
+    heading::{turn_rad, within_full_turn},
+    primitive::Piece,
+};
 
 /// A pose anywhere on the map, in metres from the centre of cell (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +92,7 @@ impl Side {
 
     /// The turn from one direction to another on this side, 0 to 2π to the left or 0 to −2π to the right [rad].
     fn turn_rad(self, from_rad: f64, to_rad: f64) -> f64 {
-        let turn = (self.sign() * (to_rad - from_rad)).rem_euclid(TAU);
+        let turn = within_full_turn(self.sign() * (to_rad - from_rad));
         if turn > TAU - ROUNDING_RAD { 0.0 } else { self.sign() * turn }
     }
 }
@@ -125,7 +128,9 @@ impl Connection {
         }
         let straight_m = squared.max(0.0).sqrt();
         let apart = dx.abs().max(dy.abs()) > ROUNDING_M;
-        let straight_rad = if apart { dy.atan2(dx) - offset_m.atan2(straight_m) } else { start_rad };
+        // The direction from centre to centre less that of the offset beside the straight, as one quotient of complex numbers.
+        let along = dx * straight_m + dy * offset_m;
+        let straight_rad = if apart { (dy * straight_m - dx * offset_m).atan2(along) } else { start_rad };
         let turn = |i: usize, from_rad, to_rad| {
             if self.radii_m[i] == 0.0 {
                 turn_rad(from_rad, to_rad)

@@ -66,19 +66,20 @@ impl Course {
             let mut push = |place_m: [f64; 2], step: &Step| {
                 edge.add(step);
                 route.push(place_m, step);
+                Some(())
             };
             match &link.way {
                 Way::Given(steps) => {
                     for (step, pose) in
                         given.steps.get(steps.clone())?.iter().zip(&given.poses[steps.start + 1..])
                     {
-                        push([pose.x_m, pose.y_m], step);
+                        push([pose.x_m, pose.y_m], step)?;
                     }
                 }
                 Way::Free(connection) => {
                     let pieces = connection.pieces(&ends[0], &ends[1])?;
                     ground.drive(&pieces, connection.reverse, |step| {
-                        push([west_m + step.end_m[0], south_m + step.end_m[1]], step);
+                        push([west_m + step.end_m[0], south_m + step.end_m[1]], step)
                     })?;
                 }
             }

@@ -136,10 +136,10 @@ impl Chain {
         if lattice.clearance.at(index) <= self.reach && self.touches(lattice, cell) {
             return None;
         }
-        let mut height_m = lattice.ground.height_m(terrain, index);
+        let mut height_m = lattice.ground.height_m(terrain, cell);
         for (step, manoeuvres) in &self.steps {
             let manoeuvre_on = |class: usize| &manoeuvres[class];
-            let (done, end_m) = step.drive_on(lattice, index, height_m, self.reverse, manoeuvre_on)?;
+            let (done, end_m) = step.drive_on(lattice, cell, height_m, self.reverse, manoeuvre_on)?;
             visit(&done);
             height_m = end_m;
         }

@@ -1,6 +1,6 @@
 //! Driving anywhere on the map, by the same evaluation as from cell centre to cell centre.
 
-use model::Manoeuvre;
+use model::{Manoeuvre, PreparedSurface};
 use terrain::Cell;
 
 use crate::{
@@ -8,7 +8,9 @@ use crate::{
     connection::{Connection, Waypoint, is_nothing},
     edge::Edge,
     footprint::Footprint,
-    lattice::Lattice,
+    ground_class::GroundClass,
+    lattice::{Lattice, prepared_manoeuvre},
+    least::least_cost_per_m,
     objective::{Objective, Weights},
     primitive::Piece,
     step::{PreparedStep, Sample, Step, prepare_steps},
@@ -21,13 +23,22 @@ const STEP_CELLS: f64 = 1.0;
 /// Longest part of a piece that is looked at as one, in cells: short enough that parts far from obstacles are skipped.
 const PART_CELLS: f64 = 1.0;
 
+/// The cell from whose centre waypoints count.
+const ORIGIN: Cell = Cell { row: 0, column: 0 };
+
 /// The ground of a lattice, its robot and an objective.
 pub(crate) struct FreeGround<'l> {
     pub(crate) lattice: &'l Lattice,
     pub(crate) weights: Weights,
+    /// By kind of ground.
+    surfaces: Vec<PreparedSurface<'l>>,
     outline: Footprint,
     /// What a turn on the spot weighs besides what it takes, for the stop.
     stop: f64,
+    /// What lifting weighs at least, per metre of height.
+    lifted_per_m: f64,
+    /// What a metre of the map weighs at least besides lifting.
+    least_per_m: f64,
 }
 
 impl<'l> FreeGround<'l> {
@@ -35,13 +46,28 @@ impl<'l> FreeGround<'l> {
         let weights = lattice.weights(objective);
         let changes = Changes::of(lattice, objective);
         let stop = changes.map_or(0.0, |changes| weights.of_surcharge(&changes.price(true, false)));
-        FreeGround { lattice, weights, outline: Footprint::of(&lattice.robot), stop }
+        let (robot, model) = (&lattice.robot, lattice.settings.power_model);
+        let prepared = |class: &'l GroundClass| PreparedSurface::new(model, robot, &class.surface);
+        FreeGround {
+            lattice,
+            weights,
+            surfaces: lattice.classes.list.iter().map(prepared).collect(),
+            outline: Footprint::of(&lattice.robot),
+            stop,
+            lifted_per_m: weights.per_j * lattice.lift_j_per_m(),
+            least_per_m: least_cost_per_m(lattice, &weights),
+        }
     }
 
-    /// Visits every step of driving pieces; `None`, possibly after some visits, where ground or limits forbid it.
+    /// Visits every step of driving pieces; `None`, possibly after some visits, where ground or limits forbid it or a visit ends it.
     ///
     /// Obstacles are [`FreeGround::is_clear`]'s business.
-    pub(crate) fn drive(&self, pieces: &[Piece], reverse: bool, mut visit: impl FnMut(&Step)) -> Option<()> {
+    pub(crate) fn drive(
+        &self,
+        pieces: &[Piece],
+        reverse: bool,
+        mut visit: impl FnMut(&Step) -> Option<()>,
+    ) -> Option<()> {
         let lattice = self.lattice;
         let cell_size_m = lattice.terrain.grid.cell_size_m;
         let start = Sample::at(pieces.first()?.start_m, cell_size_m);
@@ -50,31 +76,71 @@ impl<'l> FreeGround<'l> {
             // Without mechanisms no force follows the heading, and a manoeuvre holds for the whole piece.
             let anew = !lattice.robot.mechanisms.is_empty();
             let mut prepared: Option<(usize, Manoeuvre)> = None;
+            let prepare = |class, heading_rad| (class, self.manoeuvre(piece, reverse, heading_rad, class));
             for step in prepare_steps(piece, reverse, cell_size_m, STEP_CELLS) {
                 if !self.holds(&step) {
                     return None;
                 }
-                let (done, end_m) = step.drive_on(lattice, 0, height_m, reverse, |class| {
-                    let same = prepared.take().filter(|(of, _)| *of == class && !anew);
-                    let heading_rad = step.heading_rad();
-                    let ready = same
-                        .unwrap_or_else(|| (class, lattice.manoeuvre(piece, reverse, heading_rad, class)));
-                    &prepared.insert(ready).1
+                let (done, end_m) = step.drive_on(lattice, ORIGIN, height_m, reverse, |class| {
+                    if anew || prepared.as_ref().is_some_and(|(of, _)| *of != class) {
+                        prepared = None;
+                    }
+                    &prepared.get_or_insert_with(|| prepare(class, step.heading_rad)).1
                 })?;
-                visit(&done);
+                visit(&done)?;
                 height_m = end_m;
             }
         }
         Some(())
     }
 
-    /// What a connection costs, in the objective's own unit; `None` where ground or limits forbid it.
-    pub(crate) fn cost(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> Option<f64> {
-        let mut total = Edge::default();
+    /// A piece as driven on one kind of ground at a heading [rad].
+    pub(crate) fn manoeuvre(
+        &self,
+        piece: &Piece,
+        reverse: bool,
+        heading_rad: f64,
+        class: usize,
+    ) -> Manoeuvre {
+        let Lattice { robot, settings, classes, .. } = self.lattice;
+        let driven = (piece, reverse, heading_rad);
+        prepared_manoeuvre(&self.surfaces[class], (robot, settings), driven, &classes.list[class])
+    }
+
+    /// What a connection costs, in the objective's own unit; `None` where ground or limits forbid it or it is not less than `most`.
+    ///
+    /// It is driven no further than it takes to know that: what is left of it weighs as much as its height and its length at least.
+    pub(crate) fn cost_below(
+        &self,
+        connection: &Connection,
+        [from, to]: [&Waypoint; 2],
+        most: f64,
+    ) -> Option<f64> {
         let pieces = connection.pieces(from, to)?;
-        self.drive(&pieces, connection.reverse, |step| total.add(step))?;
         let spins = pieces.iter().filter(|piece| piece.length_m == 0.0 && !is_nothing(piece)).count();
-        Some(self.weighed(&total) + spins as f64 * self.stop)
+        let stops = spins as f64 * self.stop;
+        let length_m: f64 = pieces.iter().map(|piece| piece.length_m).sum();
+        // What may be spent so far falls with the height and the length that are left.
+        let mut allowed = most - stops - self.lifted(from, to)? - self.least_per_m * length_m;
+        let mut total = Edge::default();
+        self.drive(&pieces, connection.reverse, |step| {
+            total.add(step);
+            allowed += self.lifted_per_m * step.rise_m + self.least_per_m * step.horizontal_m();
+            (self.weighed(&total) < allowed).then_some(())
+        })?;
+        Some(self.weighed(&total) + stops).filter(|cost| *cost < most)
+    }
+
+    /// The least that any connection costs between two places, in the objective's own unit; `None` off the map.
+    pub(crate) fn least_between(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
+        let distance_m = (to.x_m - from.x_m).hypot(to.y_m - from.y_m);
+        Some(self.lifted(from, to)? + self.least_per_m * distance_m)
+    }
+
+    /// What lifting from one place to another weighs at least.
+    fn lifted(&self, from: &Waypoint, to: &Waypoint) -> Option<f64> {
+        let height_m = |place: &Waypoint| self.height_at_m([place.x_m, place.y_m]).map(f64::from);
+        Some(self.lifted_per_m * (height_m(to)? - height_m(from)?))
     }
 
     /// Totals in the objective's own unit, lifting included: between the same ends it is the same for every path.
@@ -102,7 +168,8 @@ impl<'l> FreeGround<'l> {
         let mut part = 0;
         while part < swept.parts() {
             let [column, row] = swept.middle_m(part).map(|along_m| (along_m / cell_size_m).round() as i32);
-            let Some(index) = self.index((column, row)) else { return false };
+            let Some(cell) = self.cell((column, row)) else { return false };
+            let index = self.lattice.terrain.grid.index(cell);
             let room_cells = f64::from(clearance.at(index)) - reach_cells;
             if room_cells > 0.0 {
                 // The next parts lie within the room; all of them where the robot turns on the spot.
@@ -110,7 +177,7 @@ impl<'l> FreeGround<'l> {
                 continue;
             }
             let mut spans = swept.cover(part).spans(cell_size_m);
-            if spans.any(|span| span.first_blocked(clearance, Cell { row: 0, column: 0 }).is_some()) {
+            if spans.any(|span| span.first_blocked(clearance, ORIGIN).is_some()) {
                 return false;
             }
             part += 1;
@@ -118,16 +185,17 @@ impl<'l> FreeGround<'l> {
         true
     }
 
-    /// Row-major position of the cell at an offset (columns, rows) from cell (0, 0), if the map has it.
-    fn index(&self, (column, row): (i32, i32)) -> Option<usize> {
+    /// The cell at an offset (columns, rows) from cell (0, 0), if the map has it.
+    #[inline]
+    fn cell(&self, (column, row): (i32, i32)) -> Option<Cell> {
         let grid = &self.lattice.terrain.grid;
         let (column, row) = (usize::try_from(column).ok()?, usize::try_from(row).ok()?);
-        (row < grid.rows && column < grid.columns).then(|| row * grid.columns + column)
+        (row < grid.rows && column < grid.columns).then_some(Cell { row, column })
     }
 
     /// Whether all cells that a step reads lie on the map.
     fn holds(&self, step: &PreparedStep) -> bool {
-        [step.middle, step.end.corner, step.end.far_corner()].iter().all(|&cell| self.index(cell).is_some())
+        [step.middle, step.end.corner, step.end.far_corner()].iter().all(|&cell| self.cell(cell).is_some())
     }
 
     /// Height of the robot at a place, from the centre of cell (0, 0), above the map's lowest ground [m].
@@ -136,10 +204,63 @@ impl<'l> FreeGround<'l> {
     }
 
     fn height_m(&self, sample: &Sample) -> Option<f32> {
-        let corner = self.index(sample.corner)?;
-        self.index(sample.far_corner())?;
-        let terrain = &self.lattice.terrain;
-        let ground = &self.lattice.ground;
-        Some(sample.height_m(|index| ground.height_m(terrain, index), corner, terrain.grid.columns))
+        let corner = self.cell(sample.corner)?;
+        self.cell(sample.far_corner())?;
+        let (terrain, ground) = (&self.lattice.terrain, &self.lattice.ground);
+        Some(sample.height_m(|cell| ground.height_m(terrain, cell), corner))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use model::builtin;
+    use rand::{RngExt, SeedableRng};
+    use terrain::{Grid, Terrain};
+
+    use super::*;
+    use crate::{connection::WORDS, lattice::Settings};
+
+    /// Ground with hills of a few metres, in cells of one metre.
+    fn hills(side: usize) -> Terrain {
+        let grid = Grid { rows: side, columns: side, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        let height_m = |i: usize| {
+            let (x, y) = ((i % side) as f64, (i / side) as f64);
+            1.5 * (x / 5.0).sin() * (y / 7.0).cos() + 0.4 * (x / 2.0 + y / 3.0).sin()
+        };
+        let heights_m: Vec<f64> = (0..grid.cells()).map(height_m).collect();
+        Terrain::new(grid, &heights_m).unwrap()
+    }
+
+    #[test]
+    fn a_connection_is_given_up_only_where_it_costs_as_much_as_it_may() {
+        let (terrain, robot) = (hills(60), builtin::husky_a200());
+        let settings = Settings { reverse: true, ..Settings::of(&robot) };
+        let lattice = Lattice::new(&terrain, &robot, settings).unwrap();
+        let mut random = rand_pcg::Pcg64::seed_from_u64(7);
+        let (mut driven, mut given_up) = (0, 0);
+        for _ in 0..4000 {
+            let objective =
+                [Objective::Energy, Objective::Distance, Objective::Time][random.random_range(0..3)];
+            let ground = FreeGround::new(&lattice, objective);
+            let mut waypoint = || Waypoint {
+                x_m: random.random_range(10.0..50.0),
+                y_m: random.random_range(10.0..50.0),
+                heading_rad: random.random_range(-3.2..3.2),
+            };
+            let (from, to) = (waypoint(), waypoint());
+            let connection = Connection {
+                radii_m: [random.random_range(0.0..4.0), random.random_range(0.5..20.0)],
+                sides: WORDS[random.random_range(0..4)],
+                reverse: random.random(),
+            };
+            let Some(cost) = ground.cost_below(&connection, [&from, &to], f64::INFINITY) else { continue };
+            driven += 1;
+            assert!(ground.least_between(&from, &to).unwrap() <= cost);
+            let most = cost + random.random_range(-0.5..0.5) * cost.abs();
+            let within = ground.cost_below(&connection, [&from, &to], most);
+            assert_eq!(within, Some(cost).filter(|cost| *cost < most), "{connection:?} by {objective:?}");
+            given_up += usize::from(within.is_none());
+        }
+        assert!(driven > 1000 && given_up > 300, "{driven} {given_up}");
     }
 }

@@ -73,8 +73,7 @@ impl Ground {
 
     /// Height of the robot above the map's lowest ground, NaN where the ground is unknown [m].
     #[inline]
-    pub(crate) fn height_m(&self, terrain: &Terrain, index: usize) -> f32 {
-        let Cell { row, column } = terrain.grid.cell(index);
+    pub(crate) fn height_m(&self, terrain: &Terrain, Cell { row, column }: Cell) -> f32 {
         self.tile(terrain, row / TILE, column / TILE).height_m[row % TILE * TILE + column % TILE]
     }
 

@@ -127,7 +127,7 @@ impl Limit {
         match self {
             Limit::SideForce => largest_side_force_n(lattice, route),
             Limit::Pitch => {
-                let of_stance = route.steps.iter().map(|step| step.stance_pitch_rad.abs());
+                let of_stance = route.steps.iter().map(|step| step.stance_pitch_rad().abs());
                 of_stance.fold(of_poses(|pose| pose.pitch_rad), f64::max)
             }
             Limit::Roll => of_poses(|pose| pose.roll_rad),

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use model::{Manoeuvre, Motion as BodyMotion, PowerModel, Robot, STANDARD_GRAVITY_MPS2, Sides};
+use model::{
+    Manoeuvre, Motion as BodyMotion, PowerModel, PreparedSurface, Robot, STANDARD_GRAVITY_MPS2, Sides,
+};
 use terrain::{Cell, Terrain};
 
 use crate::{
@@ -226,7 +228,7 @@ impl Lattice {
     /// Height of the robot in a cell above the map's lowest ground: the mean over the disc that its wheels go round in a turn
     /// on the spot, NaN where the ground is unknown [m].
     pub fn height_m(&self, cell: Cell) -> f32 {
-        self.ground.height_m(&self.terrain, self.terrain.grid.index(cell))
+        self.ground.height_m(&self.terrain, cell)
     }
 
     /// κ m g: the potential per metre of height [J/m].
@@ -289,17 +291,6 @@ impl Lattice {
     /// One way to drive a motion, step by step.
     pub(crate) fn chain(&self, heading: Heading, motion: usize, variant: usize) -> &Chain {
         &self.chains[heading.index()][motion][variant]
-    }
-
-    /// A piece as driven on one kind of ground at a heading [rad].
-    pub(crate) fn manoeuvre(
-        &self,
-        piece: &Piece,
-        reverse: bool,
-        heading_rad: f64,
-        class: usize,
-    ) -> Manoeuvre {
-        manoeuvre(&self.robot, &self.settings, (piece, reverse, heading_rad), &self.classes.list[class])
     }
 
     /// Totals of a step east on level ground.
@@ -370,10 +361,20 @@ pub(crate) fn manoeuvre(
     (piece, reverse, heading_rad): (&Piece, bool, f64),
     class: &GroundClass,
 ) -> Manoeuvre {
+    let prepared = PreparedSurface::new(settings.power_model, robot, &class.surface);
+    prepared_manoeuvre(&prepared, (robot, settings), (piece, reverse, heading_rad), class)
+}
+
+/// The same with the surface of that kind of ground prepared.
+pub(crate) fn prepared_manoeuvre(
+    prepared: &PreparedSurface<'_>,
+    (robot, settings): (&Robot, &Settings),
+    (piece, reverse, heading_rad): (&Piece, bool, f64),
+    class: &GroundClass,
+) -> Manoeuvre {
     let settings = class.settings(settings);
     let motion = piece_motion(robot, &settings, piece, reverse).heading(heading_rad);
-    let temperature_c = Sides::both(settings.motor_temperature_c);
-    Manoeuvre::new(settings.power_model, robot, &class.surface, motion, temperature_c)
+    prepared.manoeuvre(motion, Sides::both(settings.motor_temperature_c))
 }
 
 /// Body speeds on a piece at the speed asked for.

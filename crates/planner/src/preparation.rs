@@ -67,7 +67,7 @@ impl Preparation<'_> {
         for piece in pieces {
             for step in prepare_steps(piece, reverse, self.cell_size_m, STEP_CELLS) {
                 progress.pacer.after(self.classes.len() as u64 * work::MOTION)?;
-                let manoeuvres = self.manoeuvres(piece, reverse, step.heading_rad());
+                let manoeuvres = self.manoeuvres(piece, reverse, step.heading_rad);
                 steps.push((step, manoeuvres));
             }
         }

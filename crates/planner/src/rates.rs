@@ -24,7 +24,7 @@ const MOST_MOVES: usize = 1000;
 /// The cost has valleys along which two arcs just touch; so many of the first radii, each with its best last one, are
 /// settled.
 const SETTLED_SEEDS: usize = 8;
-/// Ways to change two radii, as signs of the powers of two.
+/// Ways to change two radii, as signs of the powers of two: both together first.
 pub(crate) const BENDS: [[f64; 2]; 8] =
     [[1.0, 1.0], [-1.0, -1.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
 
@@ -69,11 +69,7 @@ impl LevelRates {
         self.radii_m[1]
     }
 
-    /// Cost of a connection on level ground; infinite where there is none.
-    pub(crate) fn cost(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> f64 {
-        self.cost_between(connection, &Ends::new(from, to, connection.reverse))
-    }
-
+    /// Cost of a connection between two poses on level ground; infinite where there is none.
     fn cost_between(&self, connection: &Connection, ends: &Ends) -> f64 {
         let Some(shape) = connection.shape_between(ends) else { return f64::INFINITY };
         let direction = &self.directions[usize::from(connection.reverse)];
@@ -87,9 +83,10 @@ impl LevelRates {
 
     /// The cheapest way for two arcs of given radii to bend.
     pub(crate) fn reworded(&self, connection: &Connection, from: &Waypoint, to: &Waypoint) -> Connection {
+        let ends = Ends::new(from, to, connection.reverse);
         let words = WORDS.map(|sides| Connection { sides, ..*connection });
-        let cost = |c: &Connection| self.cost(c, from, to);
-        words.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(*connection)
+        let costs = words.map(|word| (self.cost_between(&word, &ends), word));
+        costs.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or(*connection, |(_, word)| word)
     }
 
     /// Connections between two poses, the cheapest first: one for each way to bend and each direction that exists.
@@ -200,7 +197,7 @@ pub(crate) enum Radii {
 fn rate(ground: &FreeGround<'_>, length_m: f64, turn_rad: f64, reverse: bool) -> f64 {
     let piece = Piece { start_m: [0.0, 0.0], heading_rad: 0.0, length_m, turn_rad };
     let class = ground.lattice.classes.list.len() - 1;
-    let manoeuvre = ground.lattice.manoeuvre(&piece, reverse, f64::NAN, class);
+    let manoeuvre = ground.manoeuvre(&piece, reverse, f64::NAN, class);
     let motion = manoeuvre.motion();
     let duration_s =
         if length_m > 0.0 { length_m / motion.speed_mps.abs() } else { turn_rad / motion.yaw_rate_radps };

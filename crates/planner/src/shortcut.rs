@@ -1,9 +1,12 @@
 //! The cheapest way through a route's poses, skipping any number of them by curves.
 
+use std::collections::HashMap;
+
 use crate::{
     connection::{Connection, Waypoint},
     course::{Course, Link, Way},
     free::FreeGround,
+    heading::turn_rad,
     patience::Patience,
     rates::{LevelRates, Radii},
 };
@@ -23,17 +26,47 @@ pub(crate) fn best_link(
     radii: Radii,
     most: f64,
 ) -> Option<Link> {
+    cheapest_driven(ground, &rates.connections(from, to, radii), [from, to], most)
+}
+
+/// The cheapest of the first few connections between two poses that can be driven and costs less than `most`.
+fn cheapest_driven(
+    ground: &FreeGround<'_>,
+    connections: &[Connection],
+    [from, to]: [&Waypoint; 2],
+    most: f64,
+) -> Option<Link> {
     let mut best: Option<Link> = None;
-    let mut consider = |connection: Connection| {
+    for connection in connections.iter().take(DRIVEN) {
         let bound = best.as_ref().map_or(most, |b| b.cost);
-        if let Some(cost) = ground.cost(&connection, from, to).filter(|cost| *cost < bound)
-            && ground.is_clear(&connection, from, to)
+        if let Some(cost) = ground.cost_below(connection, [from, to], bound)
+            && ground.is_clear(connection, from, to)
         {
-            best = Some(Link { way: Way::Free(connection), cost });
+            best = Some(Link { way: Way::Free(*connection), cost });
         }
-    };
-    rates.connections(from, to, radii).into_iter().take(DRIVEN).for_each(&mut consider);
+    }
     best
+}
+
+/// Connections by where one pose lies from the other, of which a lattice has few.
+#[derive(Default)]
+struct KnownConnections(HashMap<[i64; 3], Vec<Connection>>);
+
+impl KnownConnections {
+    /// Places and headings that are this near are the same [m, rad].
+    const SAME: f64 = 1e-6;
+
+    fn between(&mut self, rates: &LevelRates, [from, to]: [&Waypoint; 2]) -> &[Connection] {
+        let (sin, cos) = from.heading_rad.sin_cos();
+        let (east_m, north_m) = (to.x_m - from.x_m, to.y_m - from.y_m);
+        let turned_rad = turn_rad(from.heading_rad, to.heading_rad);
+        let seen = [east_m * cos + north_m * sin, north_m * cos - east_m * sin, turned_rad];
+        self.0.entry(seen.map(|seen| (seen / Self::SAME).round() as i64)).or_insert_with(|| {
+            let mut connections = rates.connections(from, to, Radii::InTurn);
+            connections.truncate(DRIVEN);
+            connections
+        })
+    }
 }
 
 /// Least sum of given steps and curves over spans of poses, by dynamic programming along the route.
@@ -47,6 +80,7 @@ pub(crate) fn shortcut(
     let mut least = vec![f64::INFINITY; poses];
     let mut arrival: Vec<Option<(usize, Link)>> = vec![None; poses];
     least[0] = 0.0;
+    let mut known = KnownConnections::default();
     for i in 0..given.links.len() {
         let mut relax = |j: usize, link: Link| {
             if least[i] + link.cost < least[j] {
@@ -63,9 +97,8 @@ pub(crate) fn shortcut(
         let spans = SPANS.into_iter().filter(|span| i % (span / STARTS_PER_SPAN).max(1) == 0);
         for j in spans.map(|span| i + span).filter(|j| *j <= last) {
             let most = relax(j, Link { way: Way::Given(0..0), cost: f64::INFINITY });
-            if let Some(link) =
-                best_link(ground, rates, [&given.waypoints[i], &given.waypoints[j]], Radii::InTurn, most)
-            {
+            let ends = [&given.waypoints[i], &given.waypoints[j]];
+            if let Some(link) = cheapest_driven(ground, known.between(rates, ends), ends, most) {
                 relax(j, link);
             }
         }

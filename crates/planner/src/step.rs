@@ -1,6 +1,7 @@
 //! One step at constant grade, surface and curvature: the evaluation that lattice motions and free courses share.
 
 use model::{Acceleration, Grade, Manoeuvre, Motion as BodyMotion, Robot};
+use terrain::Cell;
 
 use crate::{heading::Heading, lattice::Lattice, objective::Surcharge, primitive::Piece, stance::Offset};
 
@@ -21,8 +22,9 @@ pub struct Step {
     pub motion: BodyMotion,
     /// How the ground carries the weight.
     pub grade: Grade<f64>,
-    /// Pitch of the robot on its wheels half way; on ground smaller than the robot it is not the slope of the way [rad].
-    pub stance_pitch_rad: f64,
+    /// Rise per metre under the robot's wheels half way, its nose up; on ground smaller than the robot it is not the slope of the
+    /// way [-].
+    pub stance_grade: f64,
     /// Index of the surface among the map's, the robot's default last.
     pub surface: usize,
     /// Power drawn from the battery [W].
@@ -36,6 +38,16 @@ impl Step {
     pub fn energy_j(&self) -> f64 {
         self.bus_w * self.duration_s
     }
+
+    /// Length on the map [m].
+    pub(crate) fn horizontal_m(&self) -> f64 {
+        (self.length_m * self.length_m - self.rise_m * self.rise_m).max(0.0).sqrt()
+    }
+
+    /// Pitch of the robot on its wheels half way [rad].
+    pub fn stance_pitch_rad(&self) -> f64 {
+        self.stance_grade.atan()
+    }
 }
 
 pub(crate) struct PreparedStep {
@@ -45,8 +57,8 @@ pub(crate) struct PreparedStep {
     end_heading_rad: f64,
     /// Unit vector of travel half way.
     pub(crate) travel: (f64, f64),
-    /// Heading less the direction of travel: half a turn where the robot backs [rad].
-    facing_rad: f64,
+    /// Heading of the robot half way [rad].
+    pub(crate) heading_rad: f64,
     /// Cell under the middle.
     pub(crate) middle: (i32, i32),
     /// The heading nearest to the robot's half way.
@@ -91,12 +103,6 @@ impl Limits {
 }
 
 impl PreparedStep {
-    /// Heading of the robot half way [rad].
-    pub(crate) fn heading_rad(&self) -> f64 {
-        let (cos, sin) = self.travel;
-        sin.atan2(cos) + self.facing_rad
-    }
-
     /// The lattice's pose at its end, if it ends in one: the offset of its cell and its heading.
     pub(crate) fn end_pose(&self) -> (Offset, Heading) {
         (self.end.corner, Heading::nearest(self.end_heading_rad))
@@ -104,13 +110,13 @@ impl PreparedStep {
 
     /// Drives the step on a lattice's ground, from a height; `None` where the limits or unknown ground forbid it.
     ///
-    /// The step counts its places from the cell at row-major position `from`, and the caller has seen to it that they
+    /// The step counts its places from the cell `from`, and the caller has seen to it that they
     /// lie on the map. Returns what it takes and the height at its end.
     #[inline]
     pub(crate) fn drive_on<'m>(
         &self,
         lattice: &Lattice,
-        from: usize,
+        from: Cell,
         height_m: f32,
         reverse: bool,
         manoeuvre_on: impl FnOnce(usize) -> &'m Manoeuvre,
@@ -119,23 +125,23 @@ impl PreparedStep {
     }
 
     /// The same within other limits than the robot's.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drive_within<'m>(
         &self,
         lattice: &Lattice,
-        (from, height_m): (usize, f32),
+        (from, height_m): (Cell, f32),
         reverse: bool,
         manoeuvre_on: impl FnOnce(usize) -> &'m Manoeuvre,
         limits: &Limits,
     ) -> Option<(Step, f32)> {
         let terrain = &lattice.terrain;
-        let columns = terrain.grid.columns;
-        let offset =
-            |(c, r): (i32, i32)| (from as isize + r as isize * columns as isize + c as isize) as usize;
+        let offset = |(columns, rows): (i32, i32)| Cell {
+            row: from.row.wrapping_add_signed(rows as isize),
+            column: from.column.wrapping_add_signed(columns as isize),
+        };
         let ground = &lattice.ground;
-        let end_m =
-            self.end.height_m(|index| ground.height_m(terrain, index), offset(self.end.corner), columns);
-        let middle = terrain.grid.cell(offset(self.middle));
+        let end_m = self.end.height_m(|cell| ground.height_m(terrain, cell), offset(self.end.corner));
+        let middle = offset(self.middle);
         let slope = ground.gradient(terrain, middle, self.heading);
         let place = lattice.classes.at(terrain, middle);
         let class = &lattice.classes.list[place];
@@ -144,13 +150,15 @@ impl PreparedStep {
         }
         let rise_m = f64::from(end_m - height_m);
         let mut step = self.drive(manoeuvre_on(place), rise_m, slope, reverse, limits, class.name)?;
-        let takes = [lattice.unlifted_j(&step), step.length_m, step.duration_s];
+        // Nearly all ground is weighed as it is.
+        let unlifted_j = if class.rule.cost_factor == 1.0 { 0.0 } else { lattice.unlifted_j(&step) };
+        let takes = [unlifted_j, step.length_m, step.duration_s];
         step.surcharge = class.surcharge(&lattice.settings, self, reverse, takes);
         Some((step, end_m))
     }
 
     /// The step on ground that rises by `rise_m` and slopes by `slope` (east, north) under the wheels half way.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn drive(
         &self,
         manoeuvre: &Manoeuvre,
@@ -196,7 +204,7 @@ impl PreparedStep {
             duration_s,
             motion,
             grade,
-            stance_pitch_rad: facing * stance_grade.atan(),
+            stance_grade: facing * stance_grade,
             surface,
             bus_w: power.bus_w,
             surcharge: Surcharge::default(),
@@ -208,14 +216,15 @@ impl Sample {
     /// Interpolates at a place; whole cells to nine decimals, so that lattice points read exactly one cell.
     pub(crate) fn at(place_m: [f64; 2], cell_size_m: f64) -> Self {
         let whole = |v: f64| {
-            let near = (v * 1e9).round() / 1e9;
-            (near.floor(), near - near.floor())
+            let near = rounded(v * 1e9) as f64 / 1e9;
+            let below = floored(near);
+            (below as i32, near - below as f64)
         };
         let (column, east) = whole(place_m[0] / cell_size_m);
         let (row, north) = whole(place_m[1] / cell_size_m);
         let weights =
             [(1.0 - east) * (1.0 - north), east * (1.0 - north), (1.0 - east) * north, east * north];
-        Sample { corner: (column as i32, row as i32), weights: weights.map(|w| w as f32) }
+        Sample { corner: (column, row), weights: weights.map(|w| w as f32) }
     }
 
     /// Offsets and weights of the cells that count.
@@ -234,13 +243,11 @@ impl Sample {
     }
 
     #[inline]
-    pub(crate) fn height_m(&self, at_m: impl Fn(usize) -> f32, corner: usize, columns: usize) -> f32 {
+    pub(crate) fn height_m(&self, at_m: impl Fn(Cell) -> f32, corner: Cell) -> f32 {
         let mut height_m = 0.0;
-        for (weight, index) in
-            self.weights.into_iter().zip([corner, corner + 1, corner + columns, corner + columns + 1])
-        {
+        for (weight, [rows, columns]) in self.weights.into_iter().zip([[0, 0], [0, 1], [1, 0], [1, 1]]) {
             if weight != 0.0 {
-                height_m += weight * at_m(index);
+                height_m += weight * at_m(Cell { row: corner.row + rows, column: corner.column + columns });
             }
         }
         height_m
@@ -258,34 +265,87 @@ pub(crate) fn prepare_steps(
     let by_length = (piece.length_m / (longest_cells * cell_size_m) - 1e-9).ceil();
     let count = by_length.max((piece.turn_rad.abs() / STEP_TURN_RAD).ceil()).max(1.0) as usize;
     let facing_rad = if reverse { std::f64::consts::PI } else { 0.0 };
-    let straight = (piece.turn_rad == 0.0).then(|| piece.heading_rad.sin_cos());
-    let along = move |fraction: f64| match straight {
-        None => {
-            let [x, y, heading] = piece.pose_at(fraction);
-            let (sin, cos) = heading.sin_cos();
-            ([x, y], heading, (cos, sin))
-        }
-        Some((sin, cos)) => {
-            let along_m = piece.length_m * fraction;
-            let place_m = [piece.start_m[0] + along_m * cos, piece.start_m[1] + along_m * sin];
-            (place_m, piece.heading_rad, (cos, sin))
-        }
-    };
+    let mut along = HalfSteps::new(piece, count);
     (0..count).map(move |i| {
-        let (end_m, heading, _) = along((i + 1) as f64 / count as f64);
-        let ([mx, my], _, travel) = along((i as f64 + 0.5) / count as f64);
+        let middle = along.next();
+        let end = along.next();
+        let heading_rad = |half_steps: usize| {
+            piece.heading_rad + piece.turn_rad * (half_steps as f64 / (2 * count) as f64) + facing_rad
+        };
+        let half_way_rad = heading_rad(2 * i + 1);
         PreparedStep {
             horizontal_m: piece.length_m / count as f64,
             turn_rad: piece.turn_rad / count as f64,
-            end_m,
-            end_heading_rad: heading + facing_rad,
-            travel,
-            facing_rad,
-            heading: Heading::nearest(
-                travel.1.atan2(travel.0) + facing_rad + TIE * piece.turn_rad / count as f64,
-            ),
-            middle: ((mx / cell_size_m).round() as i32, (my / cell_size_m).round() as i32),
-            end: Sample::at(end_m, cell_size_m),
+            end_m: end.place_m,
+            end_heading_rad: heading_rad(2 * i + 2),
+            travel: (middle.travel[0], middle.travel[1]),
+            heading_rad: half_way_rad,
+            heading: Heading::nearest(half_way_rad + TIE * piece.turn_rad / count as f64),
+            middle: {
+                let [column, row] = middle.place_m.map(|m| rounded(m / cell_size_m) as i32);
+                (column, row)
+            },
+            end: Sample::at(end.place_m, cell_size_m),
         }
     })
+}
+
+/// The next whole number below, without the call that the library's is on processors of before 2008.
+#[inline(always)]
+fn floored(value: f64) -> i64 {
+    let towards_zero = value as i64;
+    towards_zero - i64::from(towards_zero as f64 > value)
+}
+
+/// The nearest whole number, of two the one further from 0.
+#[inline(always)]
+fn rounded(value: f64) -> i64 {
+    (value + 0.5f64.copysign(value)) as i64
+}
+
+/// A place along a piece, and the unit vector of travel there.
+#[derive(Clone, Copy)]
+struct Along {
+    place_m: [f64; 2],
+    travel: [f64; 2],
+}
+
+/// Places half a step apart along a piece, each turned on from the one before, so that no angle is asked for its sine again.
+struct HalfSteps {
+    at: Along,
+    /// Unit vector of the chord to the next place.
+    chord: [f64; 2],
+    chord_m: f64,
+    /// Cosine and sine of what half a step turns.
+    turn: [f64; 2],
+}
+
+impl HalfSteps {
+    fn new(piece: &Piece, steps: usize) -> Self {
+        let halves = (2 * steps) as f64;
+        let (length_m, turn_rad) = (piece.length_m / halves, piece.turn_rad / halves);
+        // The chord of an arc points half way through its turn and is shorter by sinc of that half.
+        let half_rad = turn_rad / 2.0;
+        let chord_m = if half_rad.abs() < 1e-9 { length_m } else { length_m * half_rad.sin() / half_rad };
+        let unit = |angle_rad: f64| {
+            let (sin, cos) = angle_rad.sin_cos();
+            [cos, sin]
+        };
+        let travel = unit(piece.heading_rad);
+        let (chord, turn) = if turn_rad == 0.0 {
+            (travel, [1.0, 0.0])
+        } else {
+            (unit(piece.heading_rad + half_rad), unit(turn_rad))
+        };
+        HalfSteps { at: Along { place_m: piece.start_m, travel }, chord, chord_m, turn }
+    }
+
+    fn next(&mut self) -> Along {
+        let [[x_m, y_m], [east, north]] = [self.at.place_m, self.chord];
+        self.at.place_m = [x_m + self.chord_m * east, y_m + self.chord_m * north];
+        let [cos, sin] = self.turn;
+        let turned = |[east, north]: [f64; 2]| [cos * east - sin * north, sin * east + cos * north];
+        (self.at.travel, self.chord) = (turned(self.at.travel), turned(self.chord));
+        self.at
+    }
 }

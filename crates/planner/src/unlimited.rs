@@ -51,14 +51,13 @@ pub(crate) fn drive_unlimited(
     if first_blocked(&lattice.clearance, cell, chain.sweep()).is_some() {
         return None;
     }
-    let index = terrain.grid.index(cell);
-    let mut height_m = lattice.ground.height_m(terrain, index);
+    let mut height_m = lattice.ground.height_m(terrain, cell);
     for (step, manoeuvres, reverse) in chain.steps_with_manoeuvres() {
         for read in [step.end.corner, step.end.far_corner(), step.middle] {
             shifted(terrain, cell, read)?;
         }
         let manoeuvre_on = |class: usize| &manoeuvres[class];
-        let driven = step.drive_within(lattice, (index, height_m), reverse, manoeuvre_on, &Limits::NONE);
+        let driven = step.drive_within(lattice, (cell, height_m), reverse, manoeuvre_on, &Limits::NONE);
         let (done, end_m) = driven?;
         visit(&done);
         height_m = end_m;

@@ -106,7 +106,7 @@ fn a_kerb_of_five_centimetres_stays_a_kerb() {
     assert!((up.route.total.climb_m - 0.05).abs() < 1e-3, "{}", up.route.total.climb_m);
     let lifted_j = robot.mass_kg * STANDARD_GRAVITY_MPS2 * 0.05;
     assert!(up.route.total.energy_j > flat.route.total.energy_j + lifted_j);
-    let steepest = up.route.steps.iter().map(|s| s.stance_pitch_rad).fold(0.0, f64::max);
+    let steepest = up.route.steps.iter().map(|s| s.stance_pitch_rad()).fold(0.0, f64::max);
     assert!(
         (steepest - (0.05f64 / 0.54).atan()).abs() < 0.01,
         "on the kerb with the front wheels: {steepest}"

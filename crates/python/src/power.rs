@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use model::{Attitude, Motion, PowerModel, Sides, robot::Surface};
+use model::{MomentColumns, PowerColumns, PowerModel, PreparedSurface, Sides};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::{prelude::*, types::PyDict};
 use rayon::prelude::*;
@@ -15,10 +15,10 @@ use crate::{
     robot::Robot,
 };
 
-/// Moments between two looks for Ctrl-C: some 10 ms of one thread.
-const MOMENTS_A_LOOK: usize = 1 << 15;
-/// Fewest moments that a thread takes at a time: below that, sharing them out takes longer than they do.
-const LEAST_MOMENTS: usize = 1 << 10;
+/// Moments that a thread takes at a time and between two looks for Ctrl-C: a millisecond of it.
+const MOMENTS_A_LOOK: usize = 1 << 14;
+/// Values that are looked through before it is asked whether one was wrong, so that they are compared side by side.
+const VALUES_A_LOOK: usize = 1 << 12;
 /// Absolute zero [°C].
 const LOWEST_C: f64 = -273.15;
 
@@ -51,24 +51,25 @@ pub(crate) fn power<'py>(
     };
     let inputs = Inputs { moments, columns };
     let robot = &robot.robot;
-    let powers = beside(py, None, |computation| {
+    let [bus_w, left_w, right_w, left_n, right_n] = beside(py, None, |computation| {
         let model = model_of(power_model)?;
         let name = surface.unwrap_or(&robot.default_surface);
         let surface = robot
             .surface(name)
             .map_err(|error| Problem::new(ProblemType::UnknownSurface, error.to_string()).at("/surface"))?;
         inputs.check()?;
-        inputs.powers(model, robot, surface, computation)
+        inputs.powers(&PreparedSurface::new(model, robot, surface), computation)
     })?;
     let columns = PyDict::new(py);
-    let add = |name: &str, value: fn(&model::Power) -> f64| {
-        columns.set_item(name, PyArray1::from_iter(py, powers.iter().map(value)))
-    };
-    add("power_w", |power| power.bus_w)?;
-    add("power_left_w", |power| power.side_w.left)?;
-    add("power_right_w", |power| power.side_w.right)?;
-    add("force_left_n", |power| power.force_n.left)?;
-    add("force_right_n", |power| power.force_n.right)?;
+    for (name, values) in [
+        ("power_w", bus_w),
+        ("power_left_w", left_w),
+        ("power_right_w", right_w),
+        ("force_left_n", left_n),
+        ("force_right_n", right_n),
+    ] {
+        columns.set_item(name, PyArray1::from_vec(py, values))?;
+    }
     Ok(columns)
 }
 
@@ -81,7 +82,7 @@ impl Inputs<'_> {
                 let problem = Problem::new(ProblemType::InvalidRequest, detail).at(format!("/{name}"));
                 Err(Failure::of_class(problem, class))
             };
-            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            if let Some(row) = first_without(values, |value| value.is_finite()) {
                 return refused(row, "NotANumberError", "give numbers; leave gaps out, or fill them");
             }
             let (least, most, remedy) = match name {
@@ -95,37 +96,52 @@ impl Inputs<'_> {
                 }
                 _ => continue,
             };
-            if let Some(row) = values.iter().position(|value| !(least..=most).contains(value)) {
+            if let Some(row) = first_without(values, |value| least <= value && value <= most) {
                 return refused(row, "UnitError", remedy);
             }
         }
         Ok(())
     }
 
+    /// By moment: battery, motor drivers and wheel forces, left and right.
     fn powers(
         &self,
-        model: PowerModel,
-        robot: &model::Robot,
-        surface: &Surface,
+        prepared: &PreparedSurface<'_>,
         computation: &Computation,
-    ) -> Result<Vec<model::Power>, Failure> {
-        let at = |row: usize| self.columns.map(|(_, values)| values[if values.len() == 1 { 0 } else { row }]);
-        let power = |row: usize| {
-            let [speed_mps, yaw_rate_radps, pitch_rad, roll_rad, left_c, right_c] = at(row);
-            let motion = Motion::of_body(robot, speed_mps, yaw_rate_radps);
-            let motors_c = Sides { left: left_c, right: right_c };
-            model::power(model, robot, surface, motion, Attitude { pitch_rad, roll_rad }, motors_c)
+    ) -> Result<[Vec<f64>; 5], Failure> {
+        let [speed_mps, yaw_rate_radps, pitch_rad, roll_rad, left_c, right_c] =
+            self.columns.map(|(_, values)| values);
+        let moments = MomentColumns {
+            speed_mps,
+            yaw_rate_radps,
+            pitch_rad,
+            roll_rad,
+            motor_temperature_c: Sides { left: left_c, right: right_c },
         };
-        let mut powers = Vec::with_capacity(self.moments);
-        for from in (0..self.moments).step_by(MOMENTS_A_LOOK) {
-            if computation.is_called_off() {
-                return Err(internal("called off").into());
-            }
-            let until = self.moments.min(from + MOMENTS_A_LOOK);
-            powers.par_extend((from..until).into_par_iter().with_min_len(LEAST_MOMENTS).map(power));
-        }
-        Ok(powers)
+        let mut columns = [const { Vec::new() }; 5].map(|_: Vec<f64>| vec![0.0; self.moments]);
+        let [bus_w, left_w, right_w, left_n, right_n] =
+            columns.each_mut().map(|column| column.par_chunks_mut(MOMENTS_A_LOOK));
+        bus_w.zip(left_w).zip(right_w).zip(left_n).zip(right_n).enumerate().try_for_each(
+            |(piece, ((((bus_w, left_w), right_w), left_n), right_n))| {
+                if computation.is_called_off() {
+                    return Err(Failure::from(internal("called off")));
+                }
+                let (side_w, force_n) =
+                    (Sides { left: left_w, right: right_w }, Sides { left: left_n, right: right_n });
+                prepared.powers(&moments, piece * MOMENTS_A_LOOK, PowerColumns { bus_w, side_w, force_n });
+                Ok(())
+            },
+        )?;
+        Ok(columns)
     }
+}
+
+/// Place of the first value that is not right.
+fn first_without(values: &[f64], is_right: impl Fn(f64) -> bool) -> Option<usize> {
+    let wrong = |piece: &[f64]| !piece.iter().fold(true, |right, value| right & is_right(*value));
+    let piece = values.chunks(VALUES_A_LOOK).position(wrong)?;
+    let from = piece * VALUES_A_LOOK;
+    values[from..].iter().position(|value| !is_right(*value)).map(|row| from + row)
 }
 
 fn model_of(name: &str) -> Result<PowerModel, Problem> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibration::{current_readings_a, drives::Stretch, losses, power::seen_w, row::Row};
 use model::{
-    Friction, FrictionShape, Manoeuvre, Motion, Robot, Sides,
+    Friction, FrictionShape, Manoeuvre, Motion, Robot, ShapeLaw, Sides,
     mechanism::{Adjustment, Moment},
     robot::Surface,
 };
@@ -106,14 +106,14 @@ impl Part {
             let name = &self.drives.surfaces[stretch.surface];
             let surface = robot.surface(name).map_err(|_| Error::surface(name, robot))?;
             let friction = Friction::new(robot, surface);
+            let shapes = ShapeLaw::new(robot, surface.slip_angle_scale_rad);
             for row in &self.drives.rows[stretch.rows.clone()] {
                 let motion = row.motion(robot);
-                let shape = FrictionShape::new(robot, surface.slip_angle_scale_rad, &motion);
                 let manoeuvre = Manoeuvre::adjusted(
                     robot,
                     &friction,
                     motion,
-                    &shape,
+                    &shapes.shape(&motion),
                     row.motor_c,
                     &Adjustment::default(),
                 );
@@ -163,9 +163,9 @@ impl Part {
         self.shapes.of(Key::of(robot, scales_rad), |key| {
             let mut shapes = vec![FrictionShape::default(); self.drives.rows.len()];
             for stretch in &self.drives.stretches {
-                let scale_rad = key.scales_rad[stretch.surface];
+                let law = ShapeLaw::new(robot, key.scales_rad[stretch.surface]);
                 let rows = &self.drives.rows[stretch.rows.clone()];
-                let shape = |row: &Row| FrictionShape::new(robot, scale_rad, &row.motion(robot));
+                let shape = |row: &Row| law.shape(&row.motion(robot));
                 let shapes = &mut shapes[stretch.rows.clone()];
                 let pieces = shapes.par_chunks_mut(ROWS_A_LOOK).zip(rows.par_chunks(ROWS_A_LOOK));
                 pieces.enumerate().try_for_each(|(piece, (shapes, rows))| {
