@@ -14,7 +14,7 @@ use crate::{
     observe::observations::{Observations, REGIME},
 };
 
-/// Shares by which an effect's form may be off, one sigma, each twice as far and half as likely as the one before: in concealed worlds with
+/// Shares by which an effect's form may be off, one sigma, each twice as far and a quarter as likely as the one before: in concealed worlds with
 /// forms of their own, sizes that noise told to 5 % were off by 8 %, and a few by a third. The evidence is their weighted sum.
 const FORM_ERRORS: [f64; 3] = [0.07, 0.14, 0.28];
 /// Functions by which it is off, for each member: a third of the discrepancy's.
@@ -65,7 +65,7 @@ impl FormErrors {
             let evidence = reduced.evidence(halves);
             return FormErrors { likeliest: FORM_ERRORS[0], log_of_likeliest: evidence.log, evidence };
         }
-        let weights = FORM_ERRORS.map(|share| FORM_ERRORS[0] / share);
+        let weights = FORM_ERRORS.map(|share| (FORM_ERRORS[0] / share).powi(2));
         let total: f64 = weights.iter().sum();
         let of = |share: f64| reduced.scaled(&form_factors(halves.len(), forms, share)).evidence(halves);
         let each = FORM_ERRORS.map(of);

@@ -84,6 +84,14 @@ impl Member {
         }
     }
 
+    /// Parameters that stand at the farthest size that is looked at.
+    pub(crate) fn farthest(&self) -> Vec<&'static str> {
+        let is_farthest =
+            |size: &&Size| (self.values[size.parameter] / size.unit).abs() >= FARTHEST * (1.0 - f64::EPSILON);
+        let name = |size: &Size| self.mechanism.parameters()[size.parameter].name;
+        self.free.iter().filter(is_farthest).map(name).collect()
+    }
+
     /// Moves one size, whatever a robot can have.
     pub(crate) fn step(&mut self, j: usize, by: f64) {
         let share = if j == 1 { self.own_share() } else { 1.0 };
@@ -95,5 +103,29 @@ impl Member {
 
     fn own_share(&self) -> f64 {
         (1.0 - self.correlation * self.correlation).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_beyond_all_that_are_looked_at_ends_there_and_is_told() {
+        let robot = model::builtin::husky_a200();
+        let mechanism = model::mechanism::by_name("load_transfer").unwrap();
+        let size = Size { parameter: 0, unit: 0.27, half: Half::Positive };
+        let mut member = Member {
+            mechanism,
+            values: vec![0.5],
+            free: vec![size],
+            correlation: 0.0,
+            span: Span::ALL,
+            log_prior: 0.0,
+        };
+        assert!(member.farthest().is_empty());
+        member.set(&robot, &[7.0]);
+        assert!((member.values[0] - 6.0 * 0.27).abs() < 1e-12);
+        assert_eq!(member.farthest(), ["height_m"]);
     }
 }

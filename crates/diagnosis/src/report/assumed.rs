@@ -5,6 +5,7 @@ use model::{Robot, knowledge::Provenance};
 use crate::{
     fit::{
         held_out::{HeldOut, STRAY_SIGMAS},
+        member::Member,
         parameter::Parameter,
         temperature::UNTOLD,
     },
@@ -22,12 +23,15 @@ pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) 
         (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
         (false, None) => "by where its constants come from",
     };
-    let (share, most) = (100.0 * found.model_error, AMPLITUDES[AMPLITUDES.len() - 1]);
-    let mut notes = vec![format!(
-        "the model is taken to miss {share:.1} % of power smoothly or, less probably, up to {most:.0} times as much, {source}"
-    )];
+    let share = 100.0 * found.model_error;
+    let wider = match observed.series.has_healthy() {
+        true => String::new(),
+        false => format!(" or, less probably, up to {:.0} times as much", AMPLITUDES[AMPLITUDES.len() - 1]),
+    };
+    let mut notes =
+        vec![format!("the model is taken to miss {share:.1} % of power smoothly{wider}, {source}")];
     notes.push(known_to(file, &found.baseline.parameters.list));
-    notes.extend(said_of_reach(found, !observed.series.has_healthy()));
+    notes.extend(said_of_reach(&found.beyond));
     if found.run_variation > 0.0 {
         let share = 100.0 * found.run_variation;
         notes.push(format!(
@@ -73,6 +77,20 @@ fn known_to(file: &Robot, parameters: &[Parameter]) -> String {
     format!("the file's constants are taken to be known, one standard deviation, to: {}", all.join(", "))
 }
 
+/// Sizes that ended where no farther ones are looked at.
+pub(crate) fn farthest(members: &[Member]) -> Vec<String> {
+    let of = |member: &Member| {
+        let name = member.mechanism.name();
+        let said = move |parameter| {
+            format!(
+                "`{parameter}` of `{name}` ends at the farthest size that is looked at: it may be larger, and its interval is too short"
+            )
+        };
+        member.farthest().into_iter().map(said).collect::<Vec<String>>()
+    };
+    members.iter().flat_map(of).collect()
+}
+
 /// That more seconds than chance has lie far off.
 pub(crate) fn strays(held_out: HeldOut) -> Option<String> {
     /// Share beyond [`STRAY_SIGMAS`] standard deviations of a normal distribution, ten times.
@@ -86,14 +104,10 @@ pub(crate) fn strays(held_out: HeldOut) -> Option<String> {
     })
 }
 
-/// What these drives do that those did not by which the model's error is known.
-fn said_of_reach(found: &Found, is_calibrated: bool) -> Option<String> {
-    let words: Vec<String> = found.beyond.iter().map(Beyond::words).collect();
-    let known_by = if is_calibrated { "that the robot was calibrated on" } else { "that are healthy" };
+/// What these drives do that those of a calibration did not.
+fn said_of_reach(beyond: &[Beyond]) -> Option<String> {
+    let words: Vec<String> = beyond.iter().map(Beyond::words).collect();
     (!words.is_empty()).then(|| {
-        format!(
-            "these drives go beyond those {known_by}, where its model may miss more: {}",
-            words.join(", ")
-        )
+        format!("these drives go beyond those that the robot was calibrated on, where its model may miss more: {}", words.join(", "))
     })
 }

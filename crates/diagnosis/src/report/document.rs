@@ -8,7 +8,7 @@ use crate::{
     fit::member::Member,
     observe::observations::Observations,
     report::{
-        assumed::{assumed, strays},
+        assumed::{assumed, farthest, strays},
         corrected::corrected,
         detectable::{detectable, untold},
         diagnosis::{
@@ -69,6 +69,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         corrected(&fitted_robot(file, found, first), &applied, &observed.series.surfaces(), subject.drives);
     let mut notes = subject.doubts.to_vec();
     notes.extend(of_corrected);
+    notes.extend(farthest(first.map_or(&[][..], members)));
     notes.extend(assumed(file, observed, found));
     notes.extend(untold(&found.detectable, &observed.covered(0..observed.rows()), file));
     notes.extend(strays(found.held_out[usize::from(!findings.is_empty())]));

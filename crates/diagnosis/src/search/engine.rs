@@ -35,7 +35,7 @@ const LARGE: f64 = 3.5;
 /// unlisted class wins everything, since what is missing counts as stray there.
 const FLEXIBLE: f64 = 5.0;
 
-/// Factors of the discrepancy's amplitude that are summed over, each twice and half as likely as the one before.
+/// Factors of the discrepancy's amplitude that are summed over where no healthy drives tell it, each twice and half as likely as the one before.
 pub(crate) const AMPLITUDES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// What the engine found.
@@ -99,8 +99,8 @@ pub(crate) fn find(
     } else {
         file.model_error_fraction()
     };
-    let beyond = beyond_known(observed, file);
     // What is known of other drives says nothing of these where they do what those did not.
+    let beyond = beyond_calibration(observed, file);
     let model_error =
         if beyond.is_empty() { model_error } else { model_error.max(file.model_error_by_source()) };
     let mut others = baseline.discrepancy(observed, model_error);
@@ -118,8 +118,7 @@ pub(crate) fn find(
         temperature::UNTOLD
     };
     let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
-    let total: f64 = AMPLITUDES.iter().map(|by| AMPLITUDES[0] / by).sum();
-    let each = AMPLITUDES.map(|by| (by, (AMPLITUDES[0] / by / total).ln()));
+    let each = amplitudes(observed);
     let amplitudes = Amplitudes { columns: discrepancy, each: &each };
     let joint = Joint::new(observed, (&baseline, file), &others, whitening, temperature, &amplitudes);
     drop(others);
@@ -150,13 +149,19 @@ pub(crate) fn find(
     })
 }
 
-/// What the test drives do that healthy drives, or those of a calibration, did not.
-fn beyond_known(observed: &Observations<'_>, file: &Robot) -> Vec<Beyond> {
-    let here = observed.covered(0..observed.test_rows);
+/// What the test drives do that those of a calibration did not; healthy drives beside them are rows of the same model.
+fn beyond_calibration(observed: &Observations<'_>, file: &Robot) -> Vec<Beyond> {
+    let known = file.model_error.as_ref().filter(|_| !observed.series.has_healthy());
+    known.map_or_else(Vec::new, |known| beyond(&known.regimes, &observed.covered(0..observed.test_rows)))
+}
+
+/// Amplitudes of the discrepancy that are summed over, with their log priors: with healthy drives that which these show.
+fn amplitudes(observed: &Observations<'_>) -> Vec<(f64, f64)> {
     if observed.series.has_healthy() {
-        return beyond(&observed.covered(observed.test_rows..observed.rows()), &here);
+        return vec![(1.0, 0.0)];
     }
-    file.model_error.as_ref().map_or_else(Vec::new, |known| beyond(&known.regimes, &here))
+    let total: f64 = AMPLITUDES.iter().map(|by| AMPLITUDES[0] / by).sum();
+    AMPLITUDES.map(|by| (by, (AMPLITUDES[0] / by / total).ln())).into()
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
