@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn turns_that_no_known_drive_made_are_beyond_and_a_tenth_more_speed_is_not() {
         let known = Regimes { speed_mps: [0.0, 1.0], difference_mps: [-0.1, 0.1], pitch_rad: [-0.1, 0.1] };
-        let here = Regimes { speed_mps: [0.0, 1.09], difference_mps: [-0.6, 0.1], ..known.clone() };
+        let here = Regimes { speed_mps: [0.0, 1.09], difference_mps: [-0.6, 0.1], ..known };
         let found = beyond(&known, &here);
         assert_eq!(found.len(), 1);
         assert_eq!(
