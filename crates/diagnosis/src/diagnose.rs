@@ -171,6 +171,8 @@ fn shared(
 
 #[cfg(test)]
 mod tests {
+    use model::knowledge::{ModelError, Regimes};
+
     use super::*;
     use crate::{Applied, Span, observe::hills::drive, report::diagnosis::Verdict};
 
@@ -267,6 +269,22 @@ mod tests {
         let hilly =
             crate::diagnose(&Question::new(&robot, &drive(&robot, 0.0, &[]), None), &|_, _| {}).unwrap();
         assert!(!hilly.notes.join("").contains("level ground"), "{:?}", hilly.notes);
+    }
+
+    #[test]
+    fn what_a_calibration_found_is_not_believed_of_drives_that_do_what_its_own_did_not() {
+        let mut robot = model::builtin::husky_a200();
+        let suspect = drive(&robot, 0.0, &[]);
+        let wide = Regimes { speed_mps: [-1.0, 1.0], difference_mps: [-2.0, 2.0], pitch_rad: [-0.5, 0.5] };
+        let straight = Regimes { difference_mps: [-0.01, 0.01], ..wide };
+        let mut missed = |regimes: Regimes| {
+            robot.model_error = Some(ModelError { fraction: 0.006, hours: 1.0, regimes });
+            let found = crate::diagnose(&Question::new(&robot, &suspect, None), &|_, _| {}).unwrap();
+            found.notes.join("\n")
+        };
+        let (known, new) = (missed(wide), missed(straight));
+        assert!(known.contains("miss 0.6 %") && !known.contains("go beyond"), "{known}");
+        assert!(new.contains("miss 3.0 %") && new.contains("go beyond"), "{new}");
     }
 
     #[test]

@@ -120,13 +120,9 @@ impl Robot {
 
     /// Share of power that the model is taken to miss: what a fit found, else by the least known of its constants.
     pub fn model_error_fraction(&self) -> f64 {
-        self.model_error.as_ref().map_or_else(|| self.model_error_by_source(), |found| found.fraction)
-    }
-
-    /// The same by the least known of its constants, whatever a fit found in the drives that it saw.
-    pub fn model_error_by_source(&self) -> f64 {
         let by_source = self.provenance.values().map(|source| source.model_error());
-        by_source.fold(Provenance::Measured.model_error(), f64::max)
+        let found = self.model_error.as_ref().map(|found| found.fraction);
+        found.unwrap_or_else(|| by_source.fold(Provenance::Measured.model_error(), f64::max))
     }
 }
 

@@ -20,6 +20,9 @@ const FAR_OFF_SIGMAS: f64 = 2.5;
 pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) -> Vec<String> {
     let source = match (observed.series.has_healthy(), &file.model_error) {
         (true, _) => "by the healthy drives",
+        (false, Some(_)) if !found.beyond.is_empty() => {
+            "as of any fitted constants, since these drives go beyond those of its calibration"
+        }
         (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
         (false, None) => "by where its constants come from",
     };

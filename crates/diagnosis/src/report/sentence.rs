@@ -30,8 +30,8 @@ fn found(verdict: Verdict, findings: &[Finding]) -> String {
     match verdict {
         Verdict::Consistent => "Within its uncertainty nothing is missing.".to_owned(),
         Verdict::Ambiguous if statements.is_empty() => {
-            "Whether something is missing these drives do not tell: the model describes them poorly, and with nothing missing hardly worse than \
-             with what is likeliest."
+            "These drives do not tell whether something is missing: the model describes them poorly, and with nothing missing about as well as with \
+             the likeliest explanation."
                 .to_owned()
         }
         Verdict::Explained | Verdict::Ambiguous => capital(&format!("{}.", statements.join("; "))),
@@ -86,6 +86,12 @@ fn capital(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_answer_without_names_says_that_the_drives_do_not_tell() {
+        let said = found(Verdict::Ambiguous, &[]);
+        assert!(said.starts_with("These drives do not tell whether something is missing"), "{said}");
+    }
 
     #[test]
     fn names_are_listed_as_people_do() {

@@ -2,6 +2,7 @@
 
 use model::{
     Robot,
+    knowledge::Provenance,
     mechanism::{Mechanism, Scale},
 };
 use nalgebra::DMatrix;
@@ -99,10 +100,10 @@ pub(crate) fn find(
     } else {
         file.model_error_fraction()
     };
-    // What is known of other drives says nothing of these where they do what those did not.
+    // What a calibration found says nothing of drives that do what its own did not: there constants are fitted ones, and no more is known.
     let beyond = beyond_calibration(observed, file);
-    let model_error =
-        if beyond.is_empty() { model_error } else { model_error.max(file.model_error_by_source()) };
+    let least = if beyond.is_empty() { 0.0 } else { Provenance::Fitted.model_error() };
+    let model_error = model_error.max(least);
     let mut others = baseline.discrepancy(observed, model_error);
     let first = baseline.sensitivities.len();
     let discrepancy = first..first + others.len();
