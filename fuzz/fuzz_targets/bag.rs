@@ -2,8 +2,9 @@
 //! Any bytes are read as a ROS 1 bag or refused.
 
 use libfuzzer_sys::fuzz_target;
-use recording::{Format, read};
+use recording::{Format, beginning_of_bytes, read};
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = read(bytes.to_vec(), Format::Bag, "fuzz", None);
+    let _ = beginning_of_bytes(bytes.to_vec(), Format::Bag);
 });

@@ -4,7 +4,7 @@
 use std::sync::Once;
 
 use libfuzzer_sys::fuzz_target;
-use recording::{Format, read};
+use recording::{Format, beginning_of_bytes, read};
 
 static HOOK: Once = Once::new();
 
@@ -13,4 +13,5 @@ fuzz_target!(|bytes: &[u8]| {
     // panic that reaches the fuzzer still does.
     HOOK.call_once(|| std::panic::set_hook(Box::new(|_| {})));
     let _ = read(bytes.to_vec(), Format::Parquet, "fuzz", None);
+    let _ = beginning_of_bytes(bytes.to_vec(), Format::Parquet);
 });

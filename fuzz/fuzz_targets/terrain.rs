@@ -1,5 +1,5 @@
 #![no_main]
-//! Any bytes are read as a GeoTIFF or refused.
+//! Any bytes are read as a GeoTIFF, and as cells in bytes, or refused.
 
 use libfuzzer_sys::fuzz_target;
 use terrain::io;
@@ -9,4 +9,7 @@ const MOST_CELLS: u64 = 1 << 16;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = io::geotiff::read(bytes, MOST_CELLS);
+    if io::cells::claimed(bytes).is_ok_and(|cells| cells <= MOST_CELLS) {
+        let _ = io::cells::read_sent(bytes);
+    }
 });

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 import time
 import uuid
 
@@ -52,6 +53,22 @@ def test_what_is_out_of_reach_is_tried_again_and_what_is_wrong_is_not(cluster, t
     assert (tries.count("0"), tries.count("1")) == (3, 1)
 
 
+def test_a_piece_that_hangs_is_lost_by_name_after_its_time_and_the_others_are_done(cluster):
+    def work(shared, piece):
+        if piece == 1:
+            threading.Event().wait()
+        if piece == 2:
+            # Nothing reaches it: only the end of its worker ends it.
+            signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGALRM])
+            threading.Event().wait()
+        return piece
+
+    found = dict(outcomes(work, None, range(4), retries=0, task_timeout_s=1.0))
+    assert (found[0], found[3]) == (0, 3)
+    assert isinstance(found[1], Lost) and str(found[1]) == "it took longer than 1 s, the most that a task may take (task_timeout_s)"
+    assert isinstance(found[2], Lost) and "took longer than 1 s" in str(found[2])
+
+
 def test_no_more_is_under_way_than_may_be(cluster):
     handed, ended, most = 0, 0, 0
 
@@ -85,7 +102,7 @@ def test_a_killed_node_loses_nothing_and_counts_nothing_twice(cluster):
     assert sorted(found) == list(range(16))
 
 
-@pytest.mark.parametrize("wrong", [{"cores_per_task": 0}, {"retries": -1}, {"in_flight": 0}])
+@pytest.mark.parametrize("wrong", [{"cores_per_task": 0}, {"retries": -1}, {"in_flight": 0}, {"task_timeout_s": 0.0}, {"task_timeout_s": float("nan")}])
 def test_ways_that_cannot_be_gone_are_refused(wrong):
-    with pytest.raises(FleetError, match="must be 1 or more"):
+    with pytest.raises(FleetError, match="must be (1 or more|a number of seconds above 0)"):
         Ways(**wrong).check()

@@ -66,6 +66,15 @@ def test_a_run_whose_driver_was_killed_is_taken_up_where_it_was(logs, tmp_path, 
     assert len(list(storage.glob("reports/*.json"))) == 3
 
 
+def test_a_recording_that_takes_too_long_is_named_as_failed_and_computed_by_the_next_run(logs, tmp_path):
+    storage = tmp_path / "store"
+    run = fleet.calibrate(f"{logs}/unit-0", storage=storage, ways=fleet.Ways(task_timeout_s=0.01))
+    assert (run.counts.done, run.counts.failed) == (0, 1)
+    assert "unit-0): it took longer than 0.01 s" in str(run)
+    again = fleet.calibrate(f"{logs}/unit-0", storage=storage)
+    assert (again.counts.done, again.counts.failed) == (1, 0)
+
+
 def test_drives_are_compared_with_healthy_ones_of_their_own_unit(logs, tmp_path):
     suspect, healthy = f"{logs}/unit-0/2026-03-02.csv", fleet.Drive(f"{logs}/unit-1/2026-03-02.csv", "unit-0")
     storage = fleet.Storage(tmp_path / "store")

@@ -33,6 +33,24 @@ fn a_recording_is_stored_with_its_reading_report_and_forgotten_when_deleted() {
 }
 
 #[test]
+fn a_log_is_looked_into_without_being_stored() {
+    const PARQUET: &str = "application/vnd.apache.parquet";
+    let server = Server::start();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/recording/tests/files/drive-pandas.parquet");
+    let columns = server.post("/v1/recordings/columns", PARQUET, &std::fs::read(path).unwrap());
+    assert_eq!(columns.status, 200, "{}", columns.text);
+    let columns = columns.json();
+    let named =
+        |name: &str| columns["columns"].as_array().unwrap().iter().find(|one| one["name"] == name).cloned();
+    assert!(named("v_left_mps").unwrap()["cells"][0].as_str().unwrap().parse::<f64>().is_ok());
+    assert_eq!(server.get("/v1/recordings").json()["recordings"], json!([]));
+    server.post("/v1/recordings/columns", PARQUET, b"PAR1 no more").problem(400, "invalid-recording");
+    let text = server.post("/v1/recordings/columns", CSV, b"a,b\n1,2\n").json();
+    assert_eq!(text, json!({"columns": [{"name": "a", "cells": ["1"]}, {"name": "b", "cells": ["2"]}]}));
+    server.post("/v1/recordings/columns", "text/plain", b"a").problem(415, "unsupported-media-type");
+}
+
+#[test]
 fn recordings_in_a_folder_outlive_the_service() {
     let folder = tempfile::tempdir().unwrap();
     let store = folder.path().join("store").display().to_string();

@@ -99,6 +99,68 @@ fn a_stored_map_plans_like_the_same_map_inline_and_is_forgotten_when_deleted() {
 }
 
 #[test]
+fn an_inline_map_is_known_again_by_its_content() {
+    let server = Server::start();
+    let ask = |question: &Value| server.post_json("/v1/plan", question).json();
+    let (first, again) = (ask(&question()), ask(&question()));
+    for field in ["energy_j", "poses", "refined", "warnings"] {
+        assert_eq!(first[field], again[field], "{field}");
+    }
+    let outcomes = |outcome: &str| {
+        server.metric(&format!("joulepath_planner_cache_requests_total{{outcome=\"{outcome}\"}}"))
+    };
+    assert_eq!((outcomes("miss"), outcomes("hit")), (1.0, 1.0));
+    let mut other = question();
+    other["map"]["elevation_m"][5][5] = json!(0.9);
+    let higher = ask(&other);
+    assert_ne!(higher["energy_j"], Value::Null);
+    assert_eq!(outcomes("miss"), 2.0, "other ground, by a single cell");
+    assert!(server.metric("joulepath_kept_memory_bytes") > 2.0 * 12.0 * 20.0 * 13.0, "their ground counts");
+}
+
+#[test]
+fn a_map_in_bytes_is_the_same_map_as_in_json() {
+    let server = Server::start();
+    let (rows, columns) = (3u64, 4u64);
+    // From 100 m on, one cell unknown and one an obstacle.
+    let above_m: Vec<f32> =
+        (0..rows * columns).map(|i| if i == 6 { f32::NAN } else { 0.25 * i as f32 }).collect();
+    let mut bytes = b"JPT1".to_vec();
+    bytes.extend([rows, columns].iter().flat_map(|count| count.to_le_bytes()));
+    bytes.extend([0.5f64, 10.0, 20.0, 100.0].iter().flat_map(|number| number.to_le_bytes()));
+    bytes.push(2);
+    bytes.extend(above_m.iter().flat_map(|z| z.to_le_bytes()));
+    bytes.extend((0..rows * columns).map(|i| u8::from(i == 1)));
+    let row = |row: u64| (0..columns).map(move |column| (row * columns + column) as usize);
+    let elevation_m: Vec<Vec<Value>> = (0..rows)
+        .map(|r| row(r).map(|i| if i == 6 { Value::Null } else { json!(100.0 + 0.25 * i as f64) }).collect())
+        .collect();
+    let obstacle: Vec<Vec<bool>> = (0..rows).map(|r| row(r).map(|i| i == 1).collect()).collect();
+    let map = json!({
+        "cell_size_m": 0.5, "origin_m": [10.0, 20.0], "rows": rows, "columns": columns,
+        "elevation_m": elevation_m, "obstacle": obstacle
+    });
+    let sent = server.post("/v1/maps", "application/octet-stream", &bytes);
+    assert_eq!(sent.status, 201, "{}", sent.text);
+    let named = server.post_json("/v1/maps", &map);
+    assert_eq!((named.status, &named.json()["id"]), (200, &sent.json()["id"]), "it is at hand already");
+    let cut = assert_problem(
+        &server.post("/v1/maps", "application/octet-stream", &bytes[..80]),
+        400,
+        "invalid-map",
+    );
+    assert!(cut["detail"].as_str().unwrap().contains("byte 80"), "{cut}");
+    let other = server.post("/v1/maps", "application/octet-stream", b"JPC1");
+    let detail = assert_problem(&other, 400, "invalid-map");
+    assert!(detail["detail"].as_str().unwrap().contains("JPT1"), "{detail}");
+    // Rows and columns whose product is beyond any map.
+    let mut vast = bytes.clone();
+    vast[4..20].fill(0xff);
+    let answer = server.post("/v1/maps", "application/octet-stream", &vast);
+    assert!((400..500).contains(&answer.status), "{}", answer.text);
+}
+
+#[test]
 fn the_same_ground_as_json_ascii_and_geotiff_has_a_path() {
     let server = Server::start();
     let ascii = "ncols 12\nnrows 8\nxllcorner 0\nyllcorner 0\ncellsize 1\n".to_owned() + &"1.5 ".repeat(96);
@@ -180,6 +242,32 @@ fn robots_are_listed_and_read_by_name_and_one_of_them_may_be_posted_back() {
     let in_full = server.post_json("/v1/plan", &question_with("/robot", husky)).json();
     assert_eq!(in_full["energy_j"], by_name["energy_j"]);
     assert_problem(&server.get("/v1/robots/r2d2"), 404, "unknown-robot");
+}
+
+#[test]
+fn a_mechanism_within_its_stated_range_is_taken_and_beyond_it_refused_on_small_robots_and_large_ones() {
+    let server = Server::start();
+    for name in ["husky-a200", "warthog"] {
+        let robot = server.get(&format!("/v1/robots/{name}")).json();
+        let answer = server.get(&format!("/v1/robots/{name}/mechanisms")).json();
+        let drag =
+            answer["mechanisms"].as_array().unwrap().iter().find(|one| one["mechanism"] == "drivetrain_drag");
+        let parameters = &drag.unwrap()["parameters"];
+        assert_eq!((&parameters[0]["name"], &parameters[0]["unit"]), (&json!("left_n"), &json!("N")));
+        let greatest_n = parameters[0]["greatest"].as_f64().unwrap();
+        // 300 N on a Husky of 90 kg, and more on a heavier robot.
+        let expected_n = 300.0 * robot["mass_kg"].as_f64().unwrap() / 90.0;
+        assert!((greatest_n - expected_n).abs() < 1e-6 * expected_n, "{greatest_n}");
+        let with_drag_n = |left_n: f64| {
+            let mut robot = robot.clone();
+            robot["mechanisms"] =
+                json!([{"mechanism": "drivetrain_drag", "parameters": {"left_n": left_n, "right_n": 0.0}}]);
+            server.post_json("/v1/robots", &robot)
+        };
+        assert_eq!(with_drag_n(greatest_n).status, 201);
+        with_drag_n(1.01 * greatest_n).problem(400, "invalid-robot");
+    }
+    assert_problem(&server.get("/v1/robots/r2d2/mechanisms"), 404, "unknown-robot");
 }
 
 #[test]
@@ -353,19 +441,47 @@ fn the_description_lists_what_the_service_does() {
     insta::assert_json_snapshot!("openapi", server.get("/openapi.json").json());
 }
 
+/// A question over a stored map, from near its south-west corner to the north-east.
+fn question_between(map: &Value) -> Value {
+    let origin = [map["origin_m"][0].as_f64().unwrap(), map["origin_m"][1].as_f64().unwrap()];
+    json!({
+        "map_id": map["id"], "robot": "husky-a200",
+        "start": { "x_m": origin[0] + 60.0, "y_m": origin[1] + 70.0 },
+        "goal": { "x_m": origin[0] + 240.0, "y_m": origin[1] + 210.0 }
+    })
+}
+
+/// Totals of a path against sums over its poses.
+fn totals_follow_from_poses(path: &Value) {
+    let total = |field: &str| path[field].as_f64().unwrap();
+    let poses = path["poses"].as_array().unwrap();
+    let steps = |field: &str| -> Vec<f64> {
+        poses.windows(2).map(|p| p[1][field].as_f64().unwrap() - p[0][field].as_f64().unwrap()).collect()
+    };
+    let (rises_m, energies_j) = (steps("z_m"), steps("energy_j"));
+    let sum = |values: &[f64], sign: f64| values.iter().map(|v| (sign * v).max(0.0)).sum::<f64>();
+    for (name, from_poses) in [
+        ("climb_m", sum(&rises_m, 1.0)),
+        ("descent_m", sum(&rises_m, -1.0)),
+        ("recovered_j", sum(&energies_j, -1.0)),
+        ("energy_j", energies_j.iter().sum()),
+        ("distance_m", steps("distance_m").iter().sum()),
+        ("duration_s", steps("t_s").iter().sum()),
+    ] {
+        assert!((total(name) - from_poses).abs() < 1e-6 * (1.0 + from_poses.abs()), "{name}: {from_poses}");
+    }
+    let [low_j, high_j] = [0, 1].map(|end| path["energy_interval_j"][end].as_f64().unwrap());
+    assert!(low_j < total("energy_j") && total("energy_j") < high_j, "{low_j} to {high_j}");
+    assert!(path["clearance_m"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
     let server = Server::start();
     let map =
         server.post("/v1/maps", "image/tiff", &std::fs::read(file("maps/minnesota.tif")).unwrap()).json();
     let ask = |extra: Value| {
-        let mut question = json!({
-            "map_id": map["id"], "robot": "husky-a200",
-            "start": null, "goal": null
-        });
-        let origin = [map["origin_m"][0].as_f64().unwrap(), map["origin_m"][1].as_f64().unwrap()];
-        question["start"] = json!({ "x_m": origin[0] + 60.0, "y_m": origin[1] + 70.0 });
-        question["goal"] = json!({ "x_m": origin[0] + 240.0, "y_m": origin[1] + 210.0 });
+        let mut question = question_between(&map);
         question.as_object_mut().unwrap().extend(extra.as_object().unwrap().clone());
         let answer = server.post_json("/v1/plan", &question);
         assert_eq!(answer.status, 200, "{}", answer.text);
@@ -383,6 +499,18 @@ fn a_loose_bound_is_proven_and_the_refined_path_is_never_worse() {
     for field in ["x_m", "y_m", "heading_rad"] {
         assert_eq!(lattice[0][field], refined[0][field], "both begin in one pose");
     }
+    totals_follow_from_poses(&best["refined"]);
+    totals_follow_from_poses(&best);
+    assert_eq!(best["refined"]["finished"], true);
+    // What files hold is the refined path.
+    let mut asked = question_between(&map);
+    asked["map_id"] = map["id"].clone();
+    let headers = [("content-type", "application/json"), ("accept", "application/geo+json")];
+    let geojson = server.ask("POST", "/v1/plan", &headers, asked.to_string().as_bytes()).json();
+    let feature = &geojson["features"][0];
+    assert_eq!(feature["properties"]["energy_j"], best["refined_energy_j"]);
+    assert_eq!(feature["properties"]["lattice_energy_j"], best["energy_j"]);
+    assert_eq!(feature["geometry"]["coordinates"].as_array().map(Vec::len), Some(refined.len()));
     let loose = ask(json!({ "bound": 1.2, "refine": false }));
     let bound = loose["search"]["bound"].as_f64().unwrap();
     assert!((1.0..=1.2).contains(&bound) && energy(&loose) <= energy(&best) * bound * 1.001);

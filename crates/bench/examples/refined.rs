@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let found = planner.plan(&query, Objective::Energy)?;
             let by_clock_s = began.elapsed().as_secs_f64();
             let ms = 1e3 * cpu_s().zip(began_s).map_or(by_clock_s, |(ended_s, began_s)| ended_s - began_s);
-            let energy_j = found.refined.as_ref().unwrap_or(&found.route).total.energy_j;
+            let energy_j = found.best_route().total.energy_j;
             Ok::<_, planner::Error>((energy_j, ms))
         };
         // The first plan leaves everything at hand.

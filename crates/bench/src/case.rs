@@ -1,6 +1,6 @@
 //! Plans corner to corner under each bound.
 
-use planner::{Found, GoalField, Outcome, Patience, Search, Workspace, search};
+use planner::{Found, Objective, Outcome, Patience, Planner, Query, Search, Workspace, search};
 use serde::Serialize;
 
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     scene::Scene,
 };
 
-/// One way across one map under one bound, on one core with the motions' costs at hand.
+/// One way across one map under one bound, on one core.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
     /// Side of the map [cells].
@@ -20,9 +20,9 @@ pub struct Case {
     pub bound: f64,
     /// What was proven of it.
     pub proven: f64,
-    /// The first time a goal is asked for: field and search, in fresh memory [ms].
+    /// The first plan with nothing at hand: preparation of the robot's motions, costs, field and search [ms].
     pub cold_ms: f64,
-    /// With the goal's field at hand and memory kept: the search alone [ms].
+    /// With costs and the goal's field at hand and memory kept: the search alone [ms].
     pub warm_ms: f64,
     /// States expanded.
     pub expansions: u64,
@@ -48,11 +48,10 @@ pub(crate) fn measure(scene: &Scene, built: &Built) -> Result<Vec<Case>, Error> 
         let question =
             Search { starts: &scene.starts, goals: &goals, besides: 0.0, bound, patience: &patience };
         let (cold, cold_time) = timed(|| {
-            let field = GoalField::new(&built.table, built.ends(Some(scene.starts[0].cell)), &patience);
-            let mut workspace = Workspace::of(&scene.lattice);
-            field.map(|field| search(&built.table, &field, &question, &mut workspace))
+            let planner = Planner::new(&scene.terrain, &scene.robot, scene.lattice.settings)?;
+            planner.plan(&Query { bound, ..scene.query([0.0, 0.0]) }, Objective::Energy)
         });
-        found(scene, cold)?;
+        cold.map_err(|source| Error::Plan { side: scene.side, source })?;
         let mut workspace = Workspace::of(&scene.lattice);
         let mut fastest: Option<(Found, f64)> = None;
         for _ in 0..REPEATS {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use planner::{CostTable, ExactField, FieldEnds, GoalField, Objective, Patience, Planner, Query, State};
 use serde::Serialize;
-use terrain::{Cell, SlopeMap};
+use terrain::SlopeMap;
 
 use crate::{Error, scene::Scene};
 
@@ -38,13 +38,6 @@ pub(crate) struct Built {
     goals: Vec<(State, f64)>,
     table_time: Duration,
     field_time: Duration,
-}
-
-impl Built {
-    /// The scene's goal, with a start or for the whole map.
-    pub(crate) fn ends(&self, start: Option<Cell>) -> FieldEnds<'_> {
-        FieldEnds { goals: &self.goals, start }
-    }
 }
 
 /// Plans in a batch.

@@ -14,10 +14,7 @@ use model::Robot;
 use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
-pub use self::{
-    change::{CHANGES, Change},
-    scale::speeds,
-};
+pub use self::{change::mends, scale::speeds};
 use crate::Error;
 
 /// A doubt about a recording, with the numbers that show it and what to do.
@@ -86,7 +83,7 @@ pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec
     let mut all = scale::speeds(robot, &recording);
     let followed = follow::of(robot, &recording, watch)?;
     all.extend(scale::power(&followed));
-    all.extend(change::mends(robot, &recording, &followed, watch)?);
+    all.extend(change::better(robot, &recording, &followed, watch)?);
     if all.is_empty() {
         all.extend(charging::charging(&recording, &seconds));
     }

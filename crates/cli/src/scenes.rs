@@ -7,7 +7,7 @@ use routing::Reach;
 use service::routes::{
     compare::CompareAnswer,
     mission::MissionAnswer,
-    plan::{PlanAnswer, PoseAnswer},
+    plan::{DrivenPath, PlanAnswer, PoseAnswer},
     reachable::ReachableAnswer,
 };
 use terrain::Terrain;
@@ -77,35 +77,39 @@ fn ends(poses: &[PoseAnswer]) -> Vec<Mark> {
     }
 }
 
-fn figures(plan: &PlanAnswer) -> Vec<String> {
+fn figures(plan: &DrivenPath<'_>) -> Vec<String> {
     let [low, high] = plan.energy_interval_j.map(|j| j / 1e3);
     vec![
         format!("{:.1} kJ  (95 %: {low:.1} to {high:.1} kJ)", plan.energy_j / 1e3),
         format!("{:.0} m, {:.1} min", plan.distance_m, plan.duration_s / 60.0),
         format!("climbs {:.1} m, descends {:.1} m", plan.climb_m, plan.descent_m),
         format!("{:.1} kJ recovered on descents", plan.recovered_j / 1e3),
+        format!("{:.1} kJ on the lattice", plan.lattice_energy_j / 1e3),
     ]
 }
 
 fn path<'a>(name: &str, color: [u8; 3], plan: &'a PlanAnswer) -> Line<'a> {
-    let entry = KeyEntry { name: name.to_owned(), color, figures: figures(plan) };
-    Line { entry, is_dashed: false, poses: Cow::Borrowed(&plan.poses) }
+    let followed = plan.followed_path();
+    let entry = KeyEntry { name: name.to_owned(), color, figures: figures(&followed) };
+    Line { entry, is_dashed: false, poses: Cow::Borrowed(followed.poses) }
 }
 
 /// One path.
 pub(crate) fn plan<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a PlanAnswer, name: &str) -> Scene<'a> {
-    let headline = format!("{} over {:.0} m", energy(found.energy_j), found.distance_m);
+    let followed = found.followed_path();
+    let headline = format!("{} over {:.0} m", energy(followed.energy_j), followed.distance_m);
     Scene {
         lines: vec![path(name, BLUE, found)],
-        marks: ends(&found.poses),
+        marks: ends(followed.poses),
         ..empty(terrain, robot, headline)
     }
 }
 
 /// The energy-minimal, shortest and fastest paths.
 pub(crate) fn compare<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a CompareAnswer) -> Scene<'a> {
-    let headline = format!("{:.0} % less energy", 100.0 * found.saving_fraction);
-    let further_m = found.energy.distance_m - found.distance.distance_m;
+    let headline = format!("{:.0} % less energy", 100.0 * found.followed_saving_fraction());
+    let (least, shortest) = (found.energy.followed_path(), found.distance.followed_path());
+    let further_m = least.distance_m - shortest.distance_m;
     let mut about = vec![format!("than the shortest path, by driving {further_m:.0} m further")];
     about.extend(short_conditions(terrain, robot));
     // The fastest path often lies on the shortest: it is drawn after it, in dashes.
@@ -114,7 +118,7 @@ pub(crate) fn compare<'a>(terrain: &'a Terrain, robot: &Robot, found: &'a Compar
         Line { is_dashed: true, ..path("fastest", PURPLE, &found.time) },
         path("energy-minimal", BLUE, &found.energy),
     ];
-    Scene { about, lines, marks: ends(&found.energy.poses), ..empty(terrain, robot, headline) }
+    Scene { about, lines, marks: ends(least.poses), ..empty(terrain, robot, headline) }
 }
 
 /// The way over all stops.

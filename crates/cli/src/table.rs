@@ -2,14 +2,15 @@
 
 use service::routes::{
     compare::CompareAnswer,
-    plan::{ObjectiveName, PlanAnswer},
+    plan::{DrivenPath, ObjectiveName, PlanAnswer},
 };
 
-const HEAD: [&str; 7] = ["", "energy", "95 % interval", "distance", "time", "climb", "recovered"];
+const HEAD: [&str; 8] =
+    ["", "energy", "95 % interval", "distance", "time", "climb", "recovered", "on the lattice"];
 
 /// The path with least of an objective, a line a figure.
 pub(crate) fn plan(answer: &PlanAnswer, objective: ObjectiveName) -> String {
-    let [_, energy, interval, distance, time, climb, recovered] = cells("", answer);
+    let [_, energy, interval, distance, time, climb, recovered, _] = cells("", &answer.lattice_path());
     let refined = refined(answer).map_or(String::new(), |text| format!("\n{text}"));
     format!(
         "energy     {energy}  ({interval})\ndistance   {distance}\ntime       {time}\nclimb      {climb} up, {:.1} m down\nrecovered  {recovered}\nclearance  {}{}\nsearch     {} states in {:.0} ms, {}{refined}",
@@ -83,15 +84,18 @@ fn quality(answer: &PlanAnswer, objective: ObjectiveName) -> String {
 
 /// Three paths as a table, and what the energy-minimal one saves.
 pub(crate) fn compare(answer: &CompareAnswer) -> String {
-    let rows = compared(answer).map(|(name, path)| cells(name, path));
+    let rows = compared(answer).map(|(name, path)| cells(name, &path.followed_path()));
     let head = [HEAD.map(str::to_owned)];
     let mut text = aligned(&[&head[..], &rows].concat());
-    let (least, shortest) = (&answer.energy, &answer.distance);
+    let (least, shortest) = (answer.energy.followed_path(), answer.distance.followed_path());
     let saved = energy(shortest.energy_j - least.energy_j);
     let further_m = least.distance_m - shortest.distance_m;
     text.push_str(&format!("\nThe energy-minimal path saves {saved}"));
     if shortest.energy_j > 0.0 {
-        text.push_str(&format!(", {:.1} % of the shortest path's energy,", 100.0 * answer.saving_fraction));
+        text.push_str(&format!(
+            ", {:.1} % of the shortest path's energy,",
+            100.0 * answer.followed_saving_fraction()
+        ));
     }
     text.push_str(&format!(" by driving {further_m:.1} m further."));
     text
@@ -113,7 +117,7 @@ pub(crate) fn path_name(objective: ObjectiveName) -> &'static str {
 
 /// Figures of paths, a heading first.
 pub(crate) fn path_rows(paths: &[(&str, &PlanAnswer)]) -> Vec<Vec<String>> {
-    let rows = paths.iter().map(|(name, path)| cells(name, path).to_vec());
+    let rows = paths.iter().map(|(name, path)| cells(name, &path.followed_path()).to_vec());
     std::iter::once(HEAD.map(str::to_owned).to_vec()).chain(rows).collect()
 }
 
@@ -133,16 +137,17 @@ pub(crate) fn aligned<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> Strin
     text
 }
 
-fn cells(name: &str, answer: &PlanAnswer) -> [String; 7] {
-    let [low, high] = answer.energy_interval_j;
+fn cells(name: &str, path: &DrivenPath<'_>) -> [String; 8] {
+    let [low, high] = path.energy_interval_j;
     [
         name.to_owned(),
-        energy(answer.energy_j),
+        energy(path.energy_j),
         format!("{} to {}", energy(low), energy(high)),
-        format!("{:.1} m", answer.distance_m),
-        time(answer.duration_s),
-        format!("{:.1} m", answer.climb_m),
-        energy(answer.recovered_j),
+        format!("{:.1} m", path.distance_m),
+        time(path.duration_s),
+        format!("{:.1} m", path.climb_m),
+        energy(path.recovered_j),
+        energy(path.lattice_energy_j),
     ]
 }
 

@@ -199,6 +199,8 @@ mod tests {
             let left = &finding.parameters[0];
             let [low, high] = left.interval_95.unwrap();
             assert!(low <= 8.0 && 8.0 <= high && (left.value - 8.0).abs() < 1.0, "{left:?}");
+            // No drive tells a form that is off by 7 % everywhere from another size.
+            assert!(high - low > 2.0 * 1.96 * 0.07 * left.value, "{left:?}");
             let scope = finding.scope.as_ref().unwrap();
             assert!((scope.from_s.unwrap() - 400.0).abs() < 20.0, "{scope:?}");
             assert!(found.corrected.held_out_rmse_w < found.baseline.held_out_rmse_w);

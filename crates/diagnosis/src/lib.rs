@@ -27,6 +27,7 @@ mod evidence {
     pub(crate) mod linear_model;
     pub(crate) mod noise;
     pub(crate) mod reduced;
+    pub(crate) mod width;
 }
 
 /// Drives as the model sees them, second by second, and what a robot would have shown.

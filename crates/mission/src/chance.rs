@@ -1,11 +1,13 @@
 //! What is not known for sure, and draws of it.
 
-use model::{Robot, robot::Battery};
+use model::{Grade, Manoeuvre, Robot, robot::Battery};
+use planner::HiddenRelief;
 use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand_distr::{Exp1, StandardNormal};
 use rand_pcg::Pcg64Mcg;
+use terrain::hidden_relief::MOST_OVERSTATED;
 
-use crate::{Error, pack::Pack};
+use crate::{Error, journey::Step, pack::Pack};
 
 /// How uncertain a prediction's inputs are, beyond what the robot's file says of itself and its battery.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Doubt {
     pub model_mean: f64,
     /// One-sigma scatter about that. Default [`MODEL_SIGMA`].
     pub model_sigma: f64,
+    /// Whether cells far coarser than the robot hide ups and downs. Default true.
+    pub hidden_relief: bool,
 }
 
 /// Mean error of a drive's energy that is left when every parameter is known, over what the drives draw and return together:
@@ -38,14 +42,20 @@ impl Default for Doubt {
             elevation_scale_m: 10.0,
             model_mean: MODEL_MEAN,
             model_sigma: MODEL_SIGMA,
+            hidden_relief: true,
         }
     }
 }
 
 impl Doubt {
     /// No doubt beyond the robot's file.
-    pub const NONE: Doubt =
-        Doubt { elevation_sigma_m: 0.0, elevation_scale_m: 10.0, model_mean: 0.0, model_sigma: 0.0 };
+    pub const NONE: Doubt = Doubt {
+        elevation_sigma_m: 0.0,
+        elevation_scale_m: 10.0,
+        model_mean: 0.0,
+        model_sigma: 0.0,
+        hidden_relief: false,
+    };
 
     /// Checks that the map's error does not change too often along a way of a length.
     ///
@@ -92,6 +102,16 @@ pub struct Chance {
     /// Error of the map's grade by stretches of the way.
     grade_error: Vec<f64>,
     scale_m: f64,
+    hidden_ground: Option<HiddenGround>,
+}
+
+/// What cells far coarser than the robot hide, as it may be.
+#[derive(Clone, Copy, Debug)]
+struct HiddenGround {
+    /// Slopes that are hidden, over those that the cells around tell [-].
+    slope_share: f64,
+    /// Which cells add more and which less.
+    seed: u64,
 }
 
 impl Chance {
@@ -104,6 +124,7 @@ impl Chance {
             model_error: 0.0,
             grade_error: Vec::new(),
             scale_m: Doubt::NONE.elevation_scale_m,
+            hidden_ground: None,
         }
     }
 
@@ -111,7 +132,20 @@ impl Chance {
     pub(crate) fn grade_error(&self, along_m: f64) -> f64 {
         self.grade_error.get((along_m / self.scale_m) as usize).copied().unwrap_or(0.0)
     }
+
+    /// Power that the relief hidden by a step's cell adds [W]: a cell adds more or less by as much as it adds on average, so that
+    /// what it adds is exponentially distributed, and the same for all steps in it.
+    pub(crate) fn hidden_w(&self, step: &Step, manoeuvre: &Manoeuvre, grade: Grade<f64>) -> f64 {
+        let Some((hidden, ground)) = step.hidden.zip(self.hidden_ground) else { return 0.0 };
+        let mut random = Pcg64Mcg::seed_from_u64(ground.seed ^ (hidden.cell as u64).wrapping_mul(SPREAD));
+        let times: f64 = random.sample(Exp1);
+        let slope_rms = ground.slope_share * hidden.slope_rms;
+        times * HiddenRelief { slope_rms, ..hidden }.added_w(manoeuvre, grade)
+    }
 }
+
+/// Odd number near 2⁶⁴ over the golden ratio: its multiples lie far apart (D. E. Knuth, The Art of Computer Programming 3, 6.4).
+const SPREAD: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Drawn<'_> {
     /// A draw for a way of a length; the same seed and number give the same, however many are drawn and in what order.
@@ -119,10 +153,11 @@ impl Drawn<'_> {
     /// Parameters have log-normal factors, as they are all positive: one for every surface's μ_R, one for μ_S, and one each for
     /// k1 and k2 of both sides, as [`model::robot::Uncertainty`] has it. They are independent, since robot files say nothing of
     /// how they go together. The charge has a normal error. The map errs by independent normal heights, `elevation_scale_m`
-    /// apart along the way and straight between them, so that what is climbed too much comes back.
+    /// apart along the way and straight between them, so that what is climbed too much comes back. Slopes hidden by cells far coarser
+    /// than the robot are what their neighbours tell, or less, by a factor between what these overstate at most and 1.
     pub fn chance(&self, length_m: f64, number: u64) -> Chance {
         let Drawn { robot, battery, charge, doubt, seed } = *self;
-        let mut random = Pcg64Mcg::seed_from_u64(seed ^ number.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut random = Pcg64Mcg::seed_from_u64(seed ^ number.wrapping_mul(SPREAD));
         let mut normal = || random.sample::<f64, _>(StandardNormal);
         let mut factor = |sigma: f64| (sigma * normal()).exp();
         let mut changed = robot.clone();
@@ -153,6 +188,11 @@ impl Drawn<'_> {
                 (0..stretches).map(|_| grade()).collect()
             }
         };
-        Chance { robot: changed, pack, charge, model_error, grade_error, scale_m: doubt.elevation_scale_m }
+        let hidden_ground = doubt.hidden_relief.then(|| HiddenGround {
+            slope_share: random.random_range(1.0 / MOST_OVERSTATED..=1.0),
+            seed: random.random(),
+        });
+        let scale_m = doubt.elevation_scale_m;
+        Chance { robot: changed, pack, charge, model_error, grade_error, scale_m, hidden_ground }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, hash_map::Entry};
 
 use model::{Grade, Motion, PowerModel, Robot};
-use planner::{Step as PlannedStep, body_motion};
+use planner::{HiddenRelief, Lattice, Route, Step as PlannedStep, body_motion, hidden_relief};
 
 use crate::Error;
 
@@ -49,6 +49,8 @@ pub(crate) struct Step {
     pub(crate) middle_m: f64,
     /// Whether it gets anywhere: turns on the spot do not.
     pub(crate) moves: bool,
+    /// Relief that its cell hides; `None` where cells are not far coarser than the robot.
+    pub(crate) hidden: Option<HiddenRelief>,
 }
 
 /// A stay at one place.
@@ -74,6 +76,27 @@ impl Journey {
     /// Nothing yet.
     pub fn new(model: PowerModel) -> Self {
         Journey { model, kinds: Vec::new(), parts: Vec::new(), surfaces: Vec::new(), length_m: 0.0 }
+    }
+
+    /// Adds a route over a lattice's map, with what the map's cells hide under it.
+    ///
+    /// # Errors
+    /// A surface that the robot does not know.
+    pub fn drive_route(
+        &mut self,
+        lattice: &Lattice,
+        route: &Route,
+        surfaces: &[String],
+    ) -> Result<(), Error> {
+        let from = self.parts.len();
+        self.drive(&lattice.robot, &route.steps, surfaces)?;
+        let added = self.parts.iter_mut().skip(from);
+        for (part, relief) in added.zip(hidden_relief(route, lattice)) {
+            if let Part::Step(step) = part {
+                step.hidden = Some(relief);
+            }
+        }
+        Ok(())
     }
 
     /// Adds the steps of a route; `surfaces` names the surface of each index that they carry.
@@ -133,6 +156,7 @@ impl Journey {
                 duration_s: step.duration_s * slower,
                 middle_m: self.length_m + step.length_m / 2.0,
                 moves,
+                hidden: None,
             }));
             self.length_m += step.length_m;
         }

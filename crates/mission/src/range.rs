@@ -254,7 +254,7 @@ impl Way {
         let surfaces = planner::surface_names(lattice);
         let mut journey = Journey::new(lattice.settings.power_model);
         for plan in &plans {
-            journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?;
+            journey.drive_route(lattice, &plan.route, &surfaces)?;
         }
         Ok(Way { queries, plans, journey, surfaces })
     }

@@ -52,7 +52,7 @@ pub(crate) fn replanned(
         let mut journey = Journey::new(lattice.settings.power_model);
         for query in *queries {
             match own.plan(query, Objective::Energy) {
-                Ok(plan) => journey.drive(&lattice.robot, &plan.route.steps, &surfaces)?,
+                Ok(plan) => journey.drive_route(lattice, &plan.route, &surfaces)?,
                 // A draw whose robot cannot go there, or no time for it, tells nothing of the others.
                 Err(_) => return Ok(None),
             }

@@ -174,7 +174,9 @@ impl<'a> Traveller<'a> {
     /// Drives a step; the voltage in it [V].
     pub(crate) fn step(&mut self, step: &Step) -> f64 {
         let winding_c = self.out.heat.map(|h| h.winding_c);
-        let Some((power, standing_w)) = self.power(step, winding_c) else { return self.out.least_voltage_v };
+        let Some((power, standing_w, hidden_w)) = self.power(step, winding_c) else {
+            return self.out.least_voltage_v;
+        };
         let losses = losses_w(&self.chance.robot, &power, winding_c);
         let ambient_c = self.conditions.ambient_c;
         for (motor, (copper_w, gear_w)) in
@@ -183,7 +185,7 @@ impl<'a> Traveller<'a> {
             motor.advance(&self.thermal, copper_w, gear_w, ambient_c, step.duration_s);
             self.out.hottest_c = self.out.hottest_c.max(motor.winding_c);
         }
-        let drawn_w = standing_w + self.drives_w(&power, standing_w);
+        let drawn_w = standing_w + self.drives_w(&power, standing_w) + hidden_w;
         let delivered = self.deliver(drawn_w, step.duration_s);
         self.sag(&power, step, standing_w, delivered.voltage_v);
         delivered.voltage_v
@@ -191,8 +193,8 @@ impl<'a> Traveller<'a> {
 
     /// Change of the charge while a step is driven as warm as the motors are [1/s]; `None` where it cannot be driven.
     pub(crate) fn charge_per_s(&mut self, step: &Step) -> Option<f64> {
-        let (power, standing_w) = self.power(step, self.out.heat.map(|h| h.winding_c))?;
-        let drawn_w = standing_w + self.drives_w(&power, standing_w);
+        let (power, standing_w, hidden_w) = self.power(step, self.out.heat.map(|h| h.winding_c))?;
+        let drawn_w = standing_w + self.drives_w(&power, standing_w) + hidden_w;
         Some(self.chance.pack.charge_per_s(self.charge, drawn_w))
     }
 
@@ -202,8 +204,8 @@ impl<'a> Traveller<'a> {
         drives_w + self.chance.model_error * drives_w.abs()
     }
 
-    /// The power on the ground as it may be, and how much of it is hotel load and electronics [W].
-    fn power(&mut self, step: &Step, winding_c: Sides<f64>) -> Option<(Power, f64)> {
+    /// The power on the ground as it may be, how much of it is hotel load and electronics, and what hidden relief adds to it [W].
+    fn power(&mut self, step: &Step, winding_c: Sides<f64>) -> Option<(Power, f64, f64)> {
         let kind = &self.journey.kinds[step.kind];
         let stale = |(at_c, _): &(Sides<f64>, Manoeuvre)| {
             (at_c.left - winding_c.left).abs() > STALE_K || (at_c.right - winding_c.right).abs() > STALE_K
@@ -220,7 +222,8 @@ impl<'a> Traveller<'a> {
         let error = if step.moves { facing * self.chance.grade_error(step.middle_m) } else { 0.0 };
         let grade = Grade { along: step.grade.along + error, ..step.grade };
         let power = manoeuvre.power_on_grade(grade, Acceleration::NONE);
-        Some((power, manoeuvre.kernel().standing_w))
+        let hidden_w = self.chance.hidden_w(step, manoeuvre, grade);
+        Some((power, manoeuvre.kernel().standing_w, hidden_w))
     }
 
     /// What a sagging voltage does to the drives: less speed, so that more time passes, or not enough force.

@@ -61,6 +61,7 @@ const ROUNDING_RAD: f64 = 1e-9;
 const ROUNDING_M: f64 = 1e-9;
 
 /// Two poses as all connections of one direction between them need them.
+#[derive(Clone, Copy)]
 pub(crate) struct Ends {
     /// From the first to the last [m].
     apart_m: [f64; 2],

@@ -31,6 +31,8 @@ pub struct GoalField {
     units: f64,
     costs: StepCosts,
     pub(crate) layout: Layout,
+    /// Tiles whose costs it was worked out from.
+    touched: Vec<bool>,
 }
 
 /// Where a field begins and how far it has to reach.
@@ -81,6 +83,7 @@ impl GoalField {
             units: table.units(),
             costs,
             layout,
+            touched: Vec::new(),
         };
         let home = ends.start.map_or(Home::ANYWHERE, |start| Home {
             row: start.row as f32,
@@ -110,9 +113,18 @@ impl GoalField {
             field.bound_rest(Beyond::Towards { floor, home, least }, &touched, patience)?;
         }
         if let Some(near) = near {
+            // Motions lead out of their tiles by no more than a tile.
+            let tiles = near.costs.keys().map(|cell| *cell as usize / TILE_CELLS);
+            tiles.flat_map(|tile| layout.tiles_around(tile)).for_each(|tile| touched[tile] = true);
             field.take_near(near);
         }
+        field.touched = touched;
         Some(field)
+    }
+
+    /// Tiles whose costs it was worked out from: where these stay as they are, it does.
+    pub(crate) fn touched_tiles(&self) -> impl Iterator<Item = usize> + '_ {
+        self.touched.iter().enumerate().filter(|(_, touched)| **touched).map(|(tile, _)| tile)
     }
 
     /// Lets exact costs stand for the poses that have one; others in the same cells have the field's.

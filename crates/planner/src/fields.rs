@@ -114,6 +114,24 @@ impl FieldCache {
         self.keep(key, |entry| entry.exact = Some(Arc::new(exact)));
     }
 
+    /// The fields that depend on nothing but tiles which `is_untouched`, for other ground; exact ones cover all of it.
+    pub(crate) fn kept_where(&self, is_untouched: impl Fn(Objective, usize) -> bool) -> Self {
+        let stays = |entry: &&Entry| {
+            let field = entry.field.as_ref();
+            field.is_some_and(|field| {
+                field.touched_tiles().all(|tile| is_untouched(entry.key.objective, tile))
+            })
+        };
+        let known = self.lock();
+        let entries = known.iter().filter(stays).map(|entry| Entry {
+            key: entry.key.clone(),
+            towards: entry.towards,
+            field: entry.field.clone(),
+            exact: None,
+        });
+        FieldCache { entries: Mutex::new(entries.collect()) }
+    }
+
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
         self.lock().iter().map(Entry::bytes).sum()

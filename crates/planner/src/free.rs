@@ -1,5 +1,7 @@
 //! Driving anywhere on the map, by the same evaluation as from cell centre to cell centre.
 
+use std::cell::OnceCell;
+
 use model::{Manoeuvre, PreparedSurface};
 use terrain::Cell;
 
@@ -33,6 +35,8 @@ pub(crate) struct FreeGround<'l> {
     /// By kind of ground.
     surfaces: Vec<PreparedSurface<'l>>,
     outline: Footprint,
+    /// Manoeuvres straight ahead and astern, by direction and kind of ground: half of all pieces are straight.
+    straights: [Vec<OnceCell<Manoeuvre>>; 2],
     /// What a turn on the spot weighs besides what it takes, for the stop.
     stop: f64,
     /// What lifting weighs at least, per metre of height.
@@ -52,6 +56,7 @@ impl<'l> FreeGround<'l> {
             lattice,
             weights,
             surfaces: lattice.classes.list.iter().map(prepared).collect(),
+            straights: [0, 1].map(|_| vec![OnceCell::new(); lattice.classes.list.len()]),
             outline: Footprint::of(&lattice.robot),
             stop,
             lifted_per_m: weights.per_j * lattice.lift_j_per_m(),
@@ -76,12 +81,16 @@ impl<'l> FreeGround<'l> {
             // Without mechanisms no force follows the heading, and a manoeuvre holds for the whole piece.
             let anew = !lattice.robot.mechanisms.is_empty();
             let mut prepared: Option<(usize, Manoeuvre)> = None;
+            let straights = (!anew && piece.turn_rad == 0.0).then(|| &self.straights[usize::from(reverse)]);
             let prepare = |class, heading_rad| (class, self.manoeuvre(piece, reverse, heading_rad, class));
             for step in prepare_steps(piece, reverse, cell_size_m, STEP_CELLS) {
                 if !self.holds(&step) {
                     return None;
                 }
                 let (done, end_m) = step.drive_on(lattice, ORIGIN, height_m, reverse, |class| {
+                    if let Some(straights) = straights {
+                        return straights[class].get_or_init(|| prepare(class, step.heading_rad).1);
+                    }
                     if anew || prepared.as_ref().is_some_and(|(of, _)| *of != class) {
                         prepared = None;
                     }

@@ -99,6 +99,14 @@ impl Layout {
         (tile >> self.tile_column_bits, tile & ((1 << self.tile_column_bits) - 1))
     }
 
+    /// A tile and those around it that hold cells of the grid.
+    pub(crate) fn tiles_around(&self, tile: usize) -> impl Iterator<Item = usize> + '_ {
+        let (row, column) = self.tile_place(tile);
+        let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        near(row, self.tile_rows)
+            .flat_map(move |row| near(column, self.tile_columns).map(move |column| self.tile_at(row, column)))
+    }
+
     /// Packs a state.
     pub(crate) fn pack(&self, state: State) -> u32 {
         let Cell { row, column } = state.cell;

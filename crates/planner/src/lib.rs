@@ -92,7 +92,7 @@ mod window;
 
 pub use astar::{Found, Outcome, Search, search};
 pub use clearance::Clearance;
-pub use coarse::is_coarse;
+pub use coarse::{HiddenRelief, hidden_relief, is_coarse};
 pub use edge::Edge;
 pub use ends::Ends;
 pub use error::{Blocked, Error, Place};
@@ -110,7 +110,7 @@ pub use planner::{Planner, surface_names};
 pub use prices::Prices;
 pub use primitive::{Kind, Motion, Piece, motions};
 pub use query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start};
-pub use refine::{Refined, refine};
+pub use refine::{Refined, RefinedPath, refine};
 pub use room::least_room_m;
 pub use route::{Pose, Route};
 pub use step::Step;

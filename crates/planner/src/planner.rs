@@ -26,7 +26,7 @@ use crate::{
     objective::Objective,
     patience::{Patience, work},
     query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
-    refine::refine,
+    refine::RefinedPath,
     rings::{farthest_ring, ring},
     route::{Pose, Route},
     step_costs::StepCosts,
@@ -74,7 +74,8 @@ impl Planner {
         }
     }
 
-    /// A planner for the same robot on ground that differs in some cells; costs that these do not touch are kept.
+    /// A planner for the same robot on ground that differs in some cells; costs that these do not touch are kept, and fields of goals that
+    /// were worked out from such costs alone.
     ///
     /// # Errors
     /// As [`Lattice::prepare`].
@@ -88,7 +89,12 @@ impl Planner {
         if terrain.grid != self.lattice.terrain.grid {
             return Ok(Self::over(lattice));
         }
-        let planner = Self::over(Arc::clone(&lattice));
+        let fields = self.fields.kept_where(|objective, tile| {
+            self.tables[objective as usize]
+                .get()
+                .is_some_and(|table| table.is_untouched(tile, &lattice, changed))
+        });
+        let planner = Planner { fields, ..Self::over(Arc::clone(&lattice)) };
         for (old, new) in self.tables.iter().zip(&planner.tables) {
             if let Some(old) = old.get() {
                 let _ = new.set(old.patched(&lattice, changed));
@@ -206,9 +212,10 @@ impl Planner {
         }
         let search = SearchReport::proven(&found, objective, &route.total, duration);
         let mut plan = self.answer(ends, (query, objective), route, search)?;
-        // Last: it takes all the time that is left, and an answer that is there must not be lost to it.
-        plan.refined =
-            query.refine.then(|| refine(&self.lattice, objective, &plan.route, &query.patience).route);
+        // Last: an answer that is there must not be lost to it.
+        if query.refine {
+            plan.refined = RefinedPath::of(&self.lattice, objective, &plan.route, &query.patience);
+        }
         Ok(plan)
     }
 

@@ -22,6 +22,8 @@ const EVERY_BEND_LINKS: usize = 16;
 const HALVINGS: usize = 5;
 /// Rounds over the whole course at each size of move.
 const ROUNDS: usize = 4;
+/// Waypoints are dropped after the first size of move and every other one, the last included.
+const DROPS_EVERY: usize = 2;
 /// Smallest share of a cost worth a change; less is rounding.
 const LEAST_GAIN: f64 = 1e-7;
 
@@ -37,7 +39,9 @@ pub(crate) fn polish(ground: &FreeGround<'_>, rates: &LevelRates, course: &mut C
                 break;
             }
         }
-        polish.drop_waypoints(patience);
+        if halving % DROPS_EVERY == 0 {
+            polish.drop_waypoints(patience);
+        }
         if patience.is_over() {
             return;
         }
@@ -89,7 +93,7 @@ impl Polish<'_, '_> {
         if bent == connection {
             return false;
         }
-        let bent = self.rates.reworded(&bent, from, to);
+        let Some(bent) = self.rates.reworded(&bent, from, to) else { return false };
         match self.ground.cost_below(&bent, [from, to], worth_changing(self.course.links[i].cost)) {
             Some(cost) if self.ground.is_clear(&bent, from, to) => {
                 self.course.links[i] = Link { way: Way::Free(bent), cost };
@@ -142,12 +146,10 @@ impl Polish<'_, '_> {
     /// A link's radii between other ends, or the best ones where it has none or they do not fit, if they cost less than `most`.
     fn relinked(&self, i: usize, [from, to]: [&Waypoint; 2], most: f64) -> Option<(Connection, f64)> {
         let kept = match self.course.links[i].way {
-            Way::Free(connection) => Some(self.rates.reworded(&connection, from, to)),
+            Way::Free(connection) => self.rates.reworded(&connection, from, to),
             Way::Given(_) => None,
         };
-        let connection = kept.filter(|c| c.shape(from, to).is_some());
-        let connection =
-            connection.or_else(|| self.rates.connections(from, to, Radii::InTurn).first().copied())?;
+        let connection = kept.or_else(|| self.rates.connections(from, to, Radii::InTurn).first().copied())?;
         Some((connection, self.ground.cost_below(&connection, [from, to], most)?))
     }
 

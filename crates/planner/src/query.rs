@@ -9,6 +9,7 @@ use crate::{
     lattice::Settings,
     objective::Objective,
     patience::Patience,
+    refine::RefinedPath,
     route::Route,
 };
 
@@ -139,8 +140,8 @@ impl SearchReport {
 pub struct Plan {
     /// Totals, poses and steps of the lattice's path, with the curves to its ends where these are to be exact.
     pub route: Route,
-    /// The same way with shortcuts and freely placed arcs, never worse than `route`, where it was asked for.
-    pub refined: Option<Route>,
+    /// The same way with shortcuts and freely placed arcs, never worse than `route`, where it was asked for and time was left.
+    pub refined: Option<RefinedPath>,
     /// Central 95 % interval of the energy, from the robot's parameter uncertainty [J].
     pub energy_interval_j: [f64; 2],
     /// How far the start was moved; nothing where the path begins exactly where it was asked to.
@@ -153,6 +154,18 @@ pub struct Plan {
     pub short_of_goal_m: Option<f64>,
     /// What the search did.
     pub search: SearchReport,
+}
+
+impl Plan {
+    /// Every route of the answer: that of the lattice, and the refined one where there is one.
+    pub fn routes(&self) -> impl Iterator<Item = &Route> {
+        std::iter::once(&self.route).chain(self.refined.iter().map(|refined| &refined.route))
+    }
+
+    /// The route to drive: the refined one where there is one, else that of the lattice.
+    pub fn best_route(&self) -> &Route {
+        self.refined.as_ref().map_or(&self.route, |refined| &refined.route)
+    }
 }
 
 /// The energy-minimal, shortest and fastest paths between the same ends.
@@ -171,8 +184,18 @@ impl Comparison {
     ///
     /// Above 1 where the energy-minimal path returns energy and the shortest takes some; 0 between equal places.
     pub fn saving_fraction(&self) -> f64 {
-        let shortest_j = self.distance.route.total.energy_j;
-        let saved_j = shortest_j - self.energy.route.total.energy_j;
-        if shortest_j == 0.0 { 0.0 } else { saved_j / shortest_j.abs() }
+        saved_share(&self.energy.route, &self.distance.route)
     }
+
+    /// The same of the refined paths; `None` where one of both is missing.
+    pub fn refined_saving_fraction(&self) -> Option<f64> {
+        let (energy, distance) = (self.energy.refined.as_ref()?, self.distance.refined.as_ref()?);
+        Some(saved_share(&energy.route, &distance.route))
+    }
+}
+
+/// What a route saves of another's energy, as a share of its size; 0 where that is nothing.
+fn saved_share(route: &Route, other: &Route) -> f64 {
+    let (takes_j, other_j) = (route.total.energy_j, other.total.energy_j);
+    if other_j == 0.0 { 0.0 } else { (other_j - takes_j) / other_j.abs() }
 }

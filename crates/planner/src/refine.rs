@@ -1,5 +1,7 @@
 //! From the lattice's best path to a smooth one near it.
 
+use std::time::Instant;
+
 use crate::{
     changes::Changes,
     course::Course,
@@ -11,7 +13,11 @@ use crate::{
     rates::{LevelRates, Radii},
     route::Route,
     shortcut::{best_link, shortcut},
+    uncertainty::energy_interval_j,
 };
+
+/// Part of the time that is left that refinement may take: what follows it needs far less than the other half.
+const PART_OF_TIME: f64 = 0.5;
 
 /// A route freed from the lattice.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +26,32 @@ pub struct Refined {
     pub route: Route,
     /// Whether it was refined to the end, not only until patience was over.
     pub finished: bool,
+}
+
+/// A refined route as a plan has it, with how far its energy may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefinedPath {
+    /// Totals, poses and steps.
+    pub route: Route,
+    /// Central 95 % interval of the energy, from the robot's parameter uncertainty [J].
+    pub energy_interval_j: [f64; 2],
+    /// Whether it was refined to the end; else the time for it was over first, and it is the best until then.
+    pub finished: bool,
+}
+
+impl RefinedPath {
+    /// Refines a route within half of the time that patience leaves, so that what follows has the other half.
+    ///
+    /// `None` where patience ends before the interval of a long path is known.
+    pub fn of(lattice: &Lattice, objective: Objective, route: &Route, patience: &Patience) -> Option<Self> {
+        let own = patience.no_later_than(patience.deadline.map(|deadline| {
+            let now = Instant::now();
+            now + deadline.saturating_duration_since(now).mul_f64(PART_OF_TIME)
+        }));
+        let Refined { route, finished } = refine(lattice, objective, route, &own);
+        let energy_interval_j = energy_interval_j(&route, lattice, patience)?;
+        Some(RefinedPath { route, energy_interval_j, finished })
+    }
 }
 
 /// Frees a route from the lattice: the same ends, less of the objective or as much.

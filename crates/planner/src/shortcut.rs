@@ -11,13 +11,10 @@ use crate::{
     rates::{LevelRates, Radii},
 };
 
-/// How many poses a curve may skip to; each twice as far, and once in between.
-const SPANS: [usize; 14] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 256];
+/// How many poses a curve may skip to; each twice as far, and once in between. Over two and three poses the lattice's own motions do as well.
+const SPANS: [usize; 12] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 256];
 /// Curves over a span start at every pose whose number is a multiple of this share of the span.
 const STARTS_PER_SPAN: usize = 4;
-/// So many of the curves between two poses, the best by level ground, are driven.
-const DRIVEN: usize = 3;
-
 /// The cheapest connection between two poses that can be driven and costs less than `most`.
 pub(crate) fn best_link(
     ground: &FreeGround<'_>,
@@ -29,7 +26,7 @@ pub(crate) fn best_link(
     cheapest_driven(ground, &rates.connections(from, to, radii), [from, to], most)
 }
 
-/// The cheapest of the first few connections between two poses that can be driven and costs less than `most`.
+/// The cheapest of a few connections between two poses that can be driven and costs less than `most`.
 fn cheapest_driven(
     ground: &FreeGround<'_>,
     connections: &[Connection],
@@ -37,7 +34,7 @@ fn cheapest_driven(
     most: f64,
 ) -> Option<Link> {
     let mut best: Option<Link> = None;
-    for connection in connections.iter().take(DRIVEN) {
+    for connection in connections {
         let bound = best.as_ref().map_or(most, |b| b.cost);
         if let Some(cost) = ground.cost_below(connection, [from, to], bound)
             && ground.is_clear(connection, from, to)
@@ -61,11 +58,9 @@ impl KnownConnections {
         let (east_m, north_m) = (to.x_m - from.x_m, to.y_m - from.y_m);
         let turned_rad = turn_rad(from.heading_rad, to.heading_rad);
         let seen = [east_m * cos + north_m * sin, north_m * cos - east_m * sin, turned_rad];
-        self.0.entry(seen.map(|seen| (seen / Self::SAME).round() as i64)).or_insert_with(|| {
-            let mut connections = rates.connections(from, to, Radii::InTurn);
-            connections.truncate(DRIVEN);
-            connections
-        })
+        self.0
+            .entry(seen.map(|seen| (seen / Self::SAME).round() as i64))
+            .or_insert_with(|| rates.connections(from, to, Radii::InTurn))
     }
 }
 

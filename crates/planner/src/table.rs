@@ -106,19 +106,7 @@ impl CostTable {
     /// The lattice must be that of the same robot and settings over a map of the same size.
     pub(crate) fn patched(&self, lattice: &Arc<Lattice>, changed: &CellRange) -> Self {
         let table = CostTable { proof: self.proof, ..Self::weighted(lattice, self.weights) };
-        if lattice.classes != self.lattice.classes {
-            // The numbers of kinds of ground have changed, so every tile has.
-            return table;
-        }
-        let reach = self.kernel.reach();
-        let near = |at: usize, changed: &Range<usize>| {
-            at * TILE < changed.end + reach && changed.start < (at + 1) * TILE + reach
-        };
-        for tile in 0..self.codes.len() {
-            let (row, column) = lattice.layout.tile_place(tile);
-            if near(row, &changed.rows) && near(column, &changed.columns) {
-                continue;
-            }
+        for tile in (0..self.codes.len()).filter(|tile| self.is_untouched(*tile, lattice, changed)) {
             if let Some(least) = self.least[tile].get() {
                 let _ = table.least[tile].set(Arc::clone(least));
             }
@@ -128,6 +116,18 @@ impl CostTable {
             }
         }
         table
+    }
+
+    /// Whether no motion from a tile depends on cells that another lattice of the same robot and settings has changed, nor on kinds of
+    /// ground whose numbers have.
+    pub(crate) fn is_untouched(&self, tile: usize, lattice: &Lattice, changed: &CellRange) -> bool {
+        let reach = self.kernel.reach();
+        let near = |at: usize, changed: &Range<usize>| {
+            at * TILE < changed.end + reach && changed.start < (at + 1) * TILE + reach
+        };
+        let (row, column) = lattice.layout.tile_place(tile);
+        lattice.classes == self.lattice.classes
+            && !(near(row, &changed.rows) && near(column, &changed.columns))
     }
 
     /// The lattice whose motions it prices.
@@ -251,13 +251,8 @@ impl CostTable {
     /// Evaluates a tile together with its neighbours, in parallel: a search that needs one will soon need those.
     #[cold]
     fn evaluate_around(&self, tile: usize, keep_codes: bool, patience: &Patience) -> Option<()> {
-        let layout = &self.lattice.layout;
-        let (row, column) = layout.tile_place(tile);
-        let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
-        let around: Vec<usize> = near(row, layout.tile_rows)
-            .flat_map(|r| near(column, layout.tile_columns).map(move |c| layout.tile_at(r, c)))
-            .filter(|t| self.least[*t].get().is_none())
-            .collect();
+        let around = self.lattice.layout.tiles_around(tile);
+        let around: Vec<usize> = around.filter(|t| self.least[*t].get().is_none()).collect();
         around.into_par_iter().try_for_each(|t| self.evaluate(t, keep_codes, patience))?;
         self.evaluate(tile, keep_codes, patience)
     }

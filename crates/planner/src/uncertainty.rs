@@ -3,14 +3,12 @@
 use std::collections::{HashMap, hash_map::Entry};
 
 use model::{
-    Acceleration, Attitude, Grade, Manoeuvre, Motion, PowerModel, Robot, Sides,
+    Acceleration, Grade, Manoeuvre, Motion, PowerModel, Robot, Sides,
     robot::{NORMAL_95, interval},
 };
 
-use terrain::hidden_relief;
-
 use crate::{
-    coarse::is_coarse,
+    coarse::{HiddenRelief, hidden_relief},
     lattice::Lattice,
     patience::{Patience, work},
     planner::surface_names,
@@ -37,33 +35,11 @@ pub(crate) fn energy_interval_j(route: &Route, lattice: &Lattice, patience: &Pat
         let [upper, lower] = parameter.ends(robot);
         ends_j.push([replay.energy_j(&upper)?, replay.energy_j(&lower)?]);
     }
-    if is_coarse(lattice) {
-        ends_j.push([replay.over_relief_j(robot, &hidden_slopes(route, lattice))?, energy_j]);
+    let hidden = hidden_relief(route, lattice);
+    if !hidden.is_empty() {
+        ends_j.push([replay.over_relief_j(robot, &hidden)?, energy_j]);
     }
     Some(interval(energy_j, least_j, &ends_j))
-}
-
-/// The cell that each step ends in and how steep the ground may be within it, beside the slope that the map has there [-].
-fn hidden_slopes(route: &Route, lattice: &Lattice) -> Vec<Hidden> {
-    let terrain = &lattice.terrain;
-    let mut known: HashMap<usize, f64> = HashMap::new();
-    let ends = route.poses.iter().skip(1);
-    let cells = ends.map(|pose| terrain.grid.cell_at(pose.x_m, pose.y_m));
-    let hidden = cells.map(|cell| {
-        let Some(cell) = cell else { return Hidden { cell: usize::MAX, slope_rms: 0.0 } };
-        let index = terrain.grid.index(cell);
-        let slope_rms = *known.entry(index).or_insert_with(|| hidden_relief::slope_rms(terrain, cell));
-        Hidden { cell: index, slope_rms }
-    });
-    hidden.collect()
-}
-
-/// Relief that a cell hides.
-struct Hidden {
-    /// Index of the cell.
-    cell: usize,
-    /// Root mean square of its slopes about that of the map [-].
-    slope_rms: f64,
 }
 
 /// The steps of a path, ready to be driven by other robots: power is prepared once for each of the few motions and surfaces.
@@ -120,23 +96,16 @@ impl<'a> Replay<'a> {
         })
     }
 
-    /// Upper end of the energy over relief that cells hide [J]. Slopes within a cell are normally distributed about that of the map: what
-    /// climbs take is more than what descents give back, and the way along the ground is longer. Each cell may add more or less, by as
-    /// much as it adds on average, independently of the others.
-    fn over_relief_j(&self, robot: &Robot, hidden: &[Hidden]) -> Option<f64> {
-        // Gauss and Hermite's rule of three points: nodes in standard deviations, and their weights.
-        let nodes = [(-f64::sqrt(3.0), 1.0 / 6.0), (0.0, 2.0 / 3.0), (f64::sqrt(3.0), 1.0 / 6.0)];
+    /// Upper end of the energy over relief that cells hide ([`HiddenRelief::added_w`]) [J]. Each cell may add more or less, by as much
+    /// as it adds on average, independently of the others.
+    fn over_relief_j(&self, robot: &Robot, hidden: &[HiddenRelief]) -> Option<f64> {
         let mut added_j: HashMap<usize, f64> = HashMap::new();
         let mut energy_j = 0.0;
         self.each(robot, |step, manoeuvre, grade, duration_s| {
-            let own_j = manoeuvre.power_on_grade(grade, Acceleration::NONE).bus_w * duration_s;
-            energy_j += own_j;
-            let Some(Hidden { cell, slope_rms }) = hidden.get(step) else { return };
-            let of_node_j = |(node, weight): (f64, f64)| {
-                let (pitched, stretch) = pitched(grade, node * slope_rms);
-                weight * stretch * manoeuvre.power_on_grade(pitched, Acceleration::NONE).bus_w * duration_s
-            };
-            *added_j.entry(*cell).or_default() += nodes.into_iter().map(of_node_j).sum::<f64>() - own_j;
+            energy_j += manoeuvre.power_on_grade(grade, Acceleration::NONE).bus_w * duration_s;
+            if let Some(hidden) = hidden.get(step) {
+                *added_j.entry(hidden.cell).or_default() += hidden.added_w(manoeuvre, grade) * duration_s;
+            }
         })?;
         let (sum_j, squares) =
             added_j.values().fold((0.0, 0.0), |(sum, squares), j| (sum + j, squares + j * j));
@@ -166,11 +135,4 @@ impl<'a> Replay<'a> {
         }
         Some(())
     }
-}
-
-/// A grade with the nose up by so much more [-], and how much longer the way along it is over the same ground plan.
-fn pitched(grade: Grade<f64>, slope: f64) -> (Grade<f64>, f64) {
-    let pitch_rad = grade.along.clamp(-1.0, 1.0).asin();
-    let steeper = Attitude { pitch_rad: (pitch_rad.tan() + slope).atan(), roll_rad: grade.tilt.atan() };
-    (steeper.grade(), pitch_rad.cos() / steeper.pitch_rad.cos())
 }

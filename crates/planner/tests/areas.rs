@@ -59,7 +59,7 @@ const ACROSS: [[f64; 2]; 2] = [[2.25, 10.25], [17.75, 10.25]];
 
 /// Both forms of a path.
 fn routes(plan: &Plan) -> Vec<&planner::Route> {
-    std::iter::once(&plan.route).chain(&plan.refined).collect()
+    plan.routes().collect()
 }
 
 #[test]

@@ -129,7 +129,7 @@ fn touched(terrain: &Terrain, robot: &Robot, route: &Route) -> Option<(Cell, [f6
 fn assert_clear(terrain: &Terrain, robot: &Robot, answer: &Plan) {
     assert_eq!(touched(terrain, robot, &answer.route), None, "the lattice's path");
     if let Some(refined) = &answer.refined {
-        assert_eq!(touched(terrain, robot, refined), None, "the refined path");
+        assert_eq!(touched(terrain, robot, &refined.route), None, "the refined path");
     }
 }
 

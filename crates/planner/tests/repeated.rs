@@ -114,6 +114,49 @@ fn a_patched_map_plans_as_if_it_had_been_made_so() {
 }
 
 #[test]
+fn a_goal_is_at_hand_on_a_changed_map_where_the_change_lies_far_from_it_and_only_there() {
+    let mut random = ground::random(53);
+    let robot = builtin::husky_a200();
+    let mut spared = 0;
+    for case in 0..4 {
+        let terrain = synthetic::mirrored(&ground::small_terrain(&mut random, 40), 500, 500).unwrap();
+        let mut query = ground::some_query(&mut random, &terrain, &robot);
+        [query.start.x_m, query.start.y_m] = terrain.grid.at_fraction_m(0.04, 0.05);
+        [query.goal.x_m, query.goal.y_m] = terrain.grid.at_fraction_m(0.12, 0.1);
+        query.bound = [1.0, 1.05][case % 2];
+        let before = Planner::new(&terrain, &robot, query.settings).unwrap();
+        if before.plan(&query, Objective::Energy).is_err() {
+            continue;
+        }
+        let worked = |planner: &Planner| {
+            let (patience, meter) = Patience::default().metered();
+            let found = planner.plan(&Query { patience, ..query.clone() }, Objective::Energy);
+            (found.ok().map(|plan| (plan.route.total.energy_j, plan.search.expanded)), meter.total())
+        };
+        for row in [400, 30] {
+            let patch = Patch {
+                areas: None,
+                row,
+                column: 30,
+                elevation_m: Some(vec![vec![Some(random.random_range(0.0..1.0)); 9]; 6]),
+                obstacle: None,
+                surface: None,
+            };
+            let (changed, cells) = terrain.patched(&patch).unwrap();
+            let after = before.patched(&changed, &cells, &Patience::default()).unwrap();
+            let (found, work) = worked(&after);
+            let (afresh, all_work) = worked(&Planner::new(&changed, &robot, query.settings).unwrap());
+            assert_eq!(found, afresh, "row {row}");
+            if row == 400 {
+                assert!(4 * work < all_work, "{work} of {all_work}");
+                spared += 1;
+            }
+        }
+    }
+    assert!(spared > 1, "{spared}");
+}
+
+#[test]
 fn a_search_leaves_nothing_behind_in_the_memory_it_shares() {
     let mut random = ground::random(52);
     let terrain = synthetic::mirrored(&ground::small_terrain(&mut random, 30), 140, 140).unwrap();

@@ -293,7 +293,7 @@ fn exact_ends_are_where_they_were_asked_for_and_the_way_between_is_driven_and_cl
                 assert!(off.abs() < 1e-9, "{wanted:?} and {pose:?}");
             }
         }
-        for route in std::iter::once(&plan.route).chain(&plan.refined) {
+        for route in plan.routes() {
             // Poses follow from the steps, and none stands on blocked ground.
             let drawn_j: f64 = route.steps.iter().map(|s| s.bus_w * s.duration_s).sum();
             assert!((drawn_j - route.total.energy_j).abs() < 1e-6 * (1.0 + drawn_j.abs()));
@@ -308,9 +308,9 @@ fn exact_ends_are_where_they_were_asked_for_and_the_way_between_is_driven_and_cl
             }
         }
         if let Some(refined) = &plan.refined {
-            let end = refined.poses.last().unwrap();
+            let end = refined.route.poses.last().unwrap();
             assert!((end.x_m - last.x_m).hypot(end.y_m - last.y_m) < 1e-9);
-            assert!(refined.total.energy_j <= plan.route.total.energy_j + 1e-9);
+            assert!(refined.route.total.energy_j <= plan.route.total.energy_j + 1e-9);
         }
     }
     assert!(exact > 20, "{exact} of {compared} had both ends exact");

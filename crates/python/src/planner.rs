@@ -6,7 +6,7 @@ use planner::Patience;
 use pyo3::prelude::*;
 use serde::{Serialize, de::DeserializeOwned};
 use service::{
-    Limits, Planners, Problem, ProblemType,
+    KeyedMap, Limits, Planners, Problem, ProblemType,
     routes::{
         alternatives::{self, AlternativesRequest},
         compare,
@@ -124,7 +124,8 @@ impl Planner {
     /// a service would keep.
     fn planner(&self, request: &PlanRequest, patience: &Patience) -> Result<Arc<planner::Planner>, Problem> {
         const ONLY_MAP: &str = "";
-        let (found, _) = request.kept_planner(&self.planners, (ONLY_MAP, &self.terrain), patience)?;
+        let map = KeyedMap { id: ONLY_MAP, terrain: &self.terrain, is_stored: true };
+        let (found, _) = request.kept_planner(&self.planners, map, patience)?;
         self.planners.shrink(Limits::default().kept_bytes);
         Ok(found)
     }

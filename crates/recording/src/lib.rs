@@ -10,6 +10,7 @@ pub mod align;
 mod arrow_schema;
 mod bag;
 mod bag_loss;
+mod beginning;
 mod built_in_map;
 mod bursts;
 mod calendar;
@@ -71,6 +72,7 @@ mod unused_runs;
 mod walk;
 mod watch;
 
+pub use beginning::{BeginningColumn, MOST_COLUMNS, MOST_ROWS, beginning, beginning_of_bytes};
 pub use channel::{Channel, Quantity};
 pub use clock::{GREATEST_TIME_S, LONGEST_STEP_S, SHORTEST_STEP_S, TimeEvidence, TimeUnit};
 pub use columns::{ColumnValues, NamedColumn};

@@ -7,7 +7,7 @@ mod rhythm;
 
 use absence::{constant, empty, present, saturated, sparse};
 use magnitude::{magnitude, mounting, units_of_runs};
-use motion::{degrees, lone_flips, turning, unsigned};
+use motion::{degrees, lone_flips, mirrored, turning, unsigned};
 use rhythm::slow_motion;
 
 use crate::{
@@ -47,6 +47,9 @@ pub(crate) fn suspicions_watched(recording: &Recording, looks: &Looks) -> Result
         doubts.extend(mounting(channel, &present).map(|statement| doubt(Kind::Mounting, statement)));
         doubts.extend(magnitude(channel, &present).map(|statement| doubt(Kind::Unit, statement)));
     }
+    let mirrored = mirrored(recording);
+    let signs_are_right = mirrored.is_none();
+    doubts.extend(mirrored);
     for run in &recording.runs {
         looks.worked(run.rows.len())?;
         doubts.extend(empty(recording, run));
@@ -56,7 +59,7 @@ pub(crate) fn suspicions_watched(recording: &Recording, looks: &Looks) -> Result
                 doubts.push(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Sign, statement });
             }
         }
-        doubts.extend(turning(recording, run));
+        doubts.extend(turning(recording, run).filter(|_| signs_are_right));
         doubts.extend(degrees(recording, run));
         doubts.extend(slow_motion(recording, run));
     }
@@ -150,6 +153,40 @@ mod tests {
         assert!(suspicions(&two).iter().all(|doubt| !doubt.statement.contains("degrees")));
         // Whatever a compass shows beside motors is no contradiction.
         assert_eq!(told([&left, &right], &|rad| (40.0 * rad).sin()), []);
+    }
+
+    #[test]
+    fn a_mirrored_side_is_told_and_wheels_that_spin_on_snow_are_not_mirrored() {
+        let t_s: Vec<f64> = (0..ROWS).map(|row| row as f64 * 0.1).collect();
+        let half = ROWS / 2;
+        let told = |wheels: &dyn Fn(usize) -> [f64; 2], rate: &dyn Fn(usize) -> f64| -> Vec<Kind> {
+            let side = |side: usize| (0..ROWS).map(|row| wheels(row)[side]).collect();
+            let channels = BTreeMap::from([
+                (Channel::LeftSpeed, side(0)),
+                (Channel::RightSpeed, side(1)),
+                (Channel::YawRate, (0..ROWS).map(rate).collect()),
+            ]);
+            let runs = [0..half, half..ROWS].map(|rows| Run::new("drive".into(), rows, &t_s, None)).into();
+            let recording = Recording { t_s: t_s.clone(), channels, runs, ..Recording::default() };
+            let kinds = suspicions(&recording).into_iter().map(|doubt| doubt.kind);
+            kinds.filter(|kind| matches!(kind, Kind::Opposed | Kind::Slip)).collect()
+        };
+        let turn = |row: usize| 0.2 * (0.03 * row as f64).sin();
+        let mirrored = told(&|row| [-0.5 + turn(row), 0.5 + turn(row)], &|row| 1.2 * turn(row));
+        assert_eq!(mirrored, [Kind::Opposed], "once for both drives");
+        // On firm ground first; then the wheels turn against each other and the robot hardly does, but for moments when one side takes hold.
+        let takes_hold = |row: usize| row % 40 < 4;
+        let wheels = |row: usize| match (row < half, takes_hold(row)) {
+            (true, _) => [0.5 - turn(row), 0.5 + turn(row)],
+            (false, true) => [0.0, 0.3],
+            (false, false) => [-0.4, 0.4],
+        };
+        let rate = |row: usize| match (row < half, takes_hold(row)) {
+            (true, _) => 2.4 * turn(row) + 0.01 * (0.9 * row as f64).sin(),
+            (false, true) => 0.3 + 0.01 * (0.9 * row as f64).sin(),
+            (false, false) => 0.05 * (0.9 * row as f64).sin(),
+        };
+        assert_eq!(told(&wheels, &rate), [Kind::Slip]);
     }
 
     #[test]

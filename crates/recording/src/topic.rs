@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{
     Error, Ignored, Map, Repair,
+    beginning::Looked,
     compression::decompress_message,
     format::ZSTD_MAGIC,
     layout::Layout,
@@ -34,6 +35,8 @@ pub(crate) struct Topics<'m> {
     budget: Budget,
     /// Numbers held by all topics.
     numbers: usize,
+    /// What was seen of all topics, where the file is only looked into.
+    pub(crate) looked: Option<Looked>,
 }
 
 pub(crate) struct Topic {
@@ -62,6 +65,7 @@ impl<'m> Topics<'m> {
             plain: Vec::new(),
             budget,
             numbers: 0,
+            looked: None,
         }
     }
 
@@ -118,6 +122,10 @@ impl<'m> Topics<'m> {
         }
         if !self.names.iter().any(|name| name == topic) {
             self.names.push(topic.to_owned());
+        }
+        if let Some(looked) = &mut self.looked {
+            self.connections.insert(id, looked.open(topic, schema));
+            return Ok(());
         }
         let same = |known: &Topic| known.name == topic && known.type_name == schema.type_name;
         let known = self.topics.iter().position(same);
@@ -211,6 +219,10 @@ impl<'m> Topics<'m> {
     /// Reads a message, if its topic is wanted.
     pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) -> Result<(), Error> {
         let Some(Some(index)) = self.connections.get(&id) else { return Ok(()) };
+        if let Some(looked) = &mut self.looked {
+            looked.message(*index, bytes, &mut self.found);
+            return Ok(());
+        }
         let Some(topic) = self.topics.get_mut(*index) else { return Ok(()) };
         let read = match topic.layout.is_cdr() && bytes.starts_with(&ZSTD_MAGIC) {
             true => decompress_message(bytes, &mut self.plain),

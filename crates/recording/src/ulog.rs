@@ -40,7 +40,7 @@ pub(crate) fn read(
 }
 
 /// Reads a log front to back, one that was cut off as far as it goes.
-fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
+pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
     let mut source = opened(source, MAGIC, FORMAT, "it does not begin with the ULog magic")?;
     let mut bytes = Vec::new();
     if !read_up_to(&mut source, HEADER_BYTES, &mut bytes)? {

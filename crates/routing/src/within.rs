@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use planner::{Objective, Plan, Planner, Query, SearchReport, refine};
+use planner::{Objective, Plan, Planner, Query, RefinedPath, SearchReport};
 
 use crate::{
     bounded::{Bounded, Way},
@@ -29,15 +29,15 @@ pub fn plan_within(
 ) -> Result<Plan, Error> {
     let free = planner.plan(query, objective)?;
     if limits.hold(&free.route.total) {
-        let refined = free.refined.filter(|route| limits.hold(&route.total));
+        let refined = free.refined.filter(|refined| limits.hold(&refined.route.total));
         return Ok(Plan { refined, ..free });
     }
     // Curves to exact ends could break a limit that the lattice's path just keeps.
     let query = &Query { exact_ends: false, ..query.clone() };
     let mut plan = best_within(planner, query, objective, limits)?;
     if query.refine {
-        let refined = refine(planner.lattice(), objective, &plan.route, &query.patience).route;
-        plan.refined = Some(refined).filter(|route| limits.hold(&route.total));
+        let refined = RefinedPath::of(planner.lattice(), objective, &plan.route, &query.patience);
+        plan.refined = refined.filter(|refined| limits.hold(&refined.route.total));
     }
     Ok(plan)
 }

@@ -57,7 +57,7 @@ pub use hosts::Hosts;
 pub use limits::Limits;
 pub use numbers::with_exponents;
 pub use planner::Patience;
-pub use planners::Planners;
+pub use planners::{KeyedMap, Planners};
 pub use problem::{Problem, ProblemType};
 pub use router::{openapi, router};
 pub use schemas::{SCHEMAS, schema};

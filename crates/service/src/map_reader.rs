@@ -17,6 +17,8 @@ const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
 /// The same of a GeoTIFF: samples in double precision, what its mask shows, their interpolation onto other cells, and cells as
 /// they are kept.
 const TIFF_CELL_BYTES: u64 = 8 + 1 + 8 + 4;
+/// The same of cells in bytes: an elevation as it comes, as it is read, in double precision and as it is kept, and three layers.
+const BYTES_CELL_BYTES: u64 = 4 + 4 + 8 + 4 + 3;
 /// The same of a ROS map: a pixel of four colours in 16 bits, as it is decoded and as one colour, and what it stands for.
 const PIXEL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8 + 2;
 /// Bytes of a cell while holes are filled: two sums, two marks and its place in a hole.
@@ -38,6 +40,8 @@ pub(crate) enum MapReader {
     Json,
     Ascii,
     GeoTiff,
+    /// Cells in bytes.
+    Cells,
     /// A form with this boundary between its parts.
     RosMap(String),
 }
@@ -57,10 +61,11 @@ impl MapReader {
             "application/json" => MapReader::Json,
             "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => MapReader::Ascii,
             "image/tiff" | "image/geotiff" | "application/geotiff" => MapReader::GeoTiff,
+            "application/octet-stream" => MapReader::Cells,
             "multipart/form-data" => MapReader::RosMap(form::boundary_of(request)?),
             _ => {
                 let detail = format!(
-                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
+                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF), application/octet-stream (cells in bytes, JPT1) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
                 );
                 return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
             }
@@ -92,6 +97,12 @@ impl MapReader {
                 let cells = cells.min(options.most_cells);
                 content.reserved.grow_to(length + (TIFF_CELL_BYTES + filling) * cells)?;
                 io::read_bytes(io::Format::GeoTiff, &content.bytes, options)
+            }
+            MapReader::Cells => {
+                let cells = io::cells::claimed(&content.bytes).map_err(|error| invalid(&error))?;
+                let cells = cells.min(options.most_cells).min(length / 4);
+                content.reserved.grow_to(length + (BYTES_CELL_BYTES + filling) * cells)?;
+                io::read_bytes(io::Format::Cells, &content.bytes, options)
             }
             MapReader::RosMap(boundary) => {
                 let Content { bytes, mut reserved } = content;

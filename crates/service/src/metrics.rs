@@ -110,7 +110,7 @@ impl Metrics {
         registry.register("expansions", "States that searches expanded", self.expansions.clone());
         registry.register(
             "planner_cache_requests",
-            "Questions about stored maps, by whether their planner was at hand",
+            "Questions about maps, by whether their planner was at hand",
             self.planners.clone(),
         );
         registry.register("shed", "Requests refused because of too much to do", self.shed.clone());

@@ -9,7 +9,37 @@ use model::{Robot, robot::RobotFile};
 use planner::{Patience, Planner, Settings};
 use terrain::{CellRange, Terrain};
 
-/// A stored map, a robot and how it is driven.
+/// A map by its content.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyedMap<'a> {
+    /// Hash of its content, by which a map in a request is the stored one of the same content.
+    pub id: &'a str,
+    /// The ground.
+    pub terrain: &'a Terrain,
+    /// Whether the store of maps holds it too; else the planner alone keeps it.
+    pub is_stored: bool,
+}
+
+/// Bytes of a cell that a planner keeps of ground that nobody else does: its elevation and three layers of a byte, and what the robot
+/// stands on, touches and keeps clear of.
+const OWN_GROUND_BYTES_PER_CELL: usize = 4 + 3 + 4 + 2;
+
+/// A planner that is kept.
+#[derive(Clone)]
+struct Kept {
+    key: Key,
+    planner: Arc<Planner>,
+    /// Bytes of ground that it alone keeps.
+    ground_bytes: usize,
+}
+
+impl Kept {
+    fn bytes(&self) -> usize {
+        self.ground_bytes + self.planner.bytes()
+    }
+}
+
+/// A map, a robot and how it is driven.
 #[derive(Clone, Debug, PartialEq)]
 struct Key {
     map_id: String,
@@ -23,71 +53,72 @@ const PATCH_TIME: Duration = Duration::from_millis(50);
 /// Planners by what they are for, the latest at the end.
 #[derive(Default)]
 pub struct Planners {
-    kept: Mutex<Vec<(Key, Arc<Planner>)>>,
+    kept: Mutex<Vec<Kept>>,
 }
 
 impl Planners {
-    /// The planner for a stored map, made if it is not at hand, and whether it was.
+    /// The planner for a map, made if it is not at hand, and whether it was.
     pub(crate) fn get(
         &self,
-        map_id: &str,
-        terrain: &Terrain,
+        map: KeyedMap<'_>,
         robot: &Robot,
         settings: Settings,
         patience: &Patience,
     ) -> Result<(Arc<Planner>, bool), planner::Error> {
-        let key = Key { map_id: map_id.to_owned(), robot: RobotFile::from(robot.clone()), settings };
+        let KeyedMap { id, terrain, is_stored } = map;
+        let key = Key { map_id: id.to_owned(), robot: RobotFile::from(robot.clone()), settings };
         let mut kept = self.lock();
-        if let Some(at) = kept.iter().position(|(other, _)| *other == key) {
+        if let Some(at) = kept.iter().position(|kept| kept.key == key) {
             let found = kept.remove(at);
-            let planner = Arc::clone(&found.1);
+            let planner = Arc::clone(&found.planner);
             kept.push(found);
             return Ok((planner, true));
         }
         drop(kept);
         let planner = Arc::new(Planner::prepare(terrain, robot, settings, patience)?);
-        self.lock().push((key, Arc::clone(&planner)));
+        let ground_bytes = if is_stored { 0 } else { terrain.grid.cells() * OWN_GROUND_BYTES_PER_CELL };
+        self.lock().push(Kept { key, planner: Arc::clone(&planner), ground_bytes });
         Ok((planner, false))
     }
 
-    /// Whether there is a planner for a stored map, whatever the robot and settings.
+    /// Whether there is a planner for a map, whatever the robot and settings.
     pub(crate) fn knows(&self, map_id: &str) -> bool {
-        self.lock().iter().any(|(key, _)| key.map_id == map_id)
+        self.lock().iter().any(|kept| kept.key.map_id == map_id)
     }
 
     /// Bytes that all planners hold.
     pub(crate) fn bytes(&self) -> usize {
-        self.lock().iter().map(|(_, planner)| planner.bytes()).sum()
+        self.lock().iter().map(Kept::bytes).sum()
     }
 
     /// Makes planners for a map that differs from another in some cells only, out of those of the other, within
     /// [`PATCH_TIME`]; the rest are made when they are asked for.
     pub(crate) fn patch(&self, from_id: &str, to_id: &str, terrain: &Terrain, changed: &CellRange) {
         let patience = Patience::until(Instant::now() + PATCH_TIME);
-        let from: Vec<_> = self.lock().iter().filter(|(key, _)| key.map_id == from_id).cloned().collect();
-        for (key, planner) in from {
+        let from: Vec<Kept> = self.lock().iter().filter(|kept| kept.key.map_id == from_id).cloned().collect();
+        for Kept { key, planner, .. } in from {
             let key = Key { map_id: to_id.to_owned(), ..key };
             // A surface that the robot lacks is told when it is asked for a path.
             let Ok(planner) = planner.patched(terrain, changed, &patience) else { continue };
-            self.lock().push((key, Arc::new(planner)));
+            self.lock().push(Kept { key, planner: Arc::new(planner), ground_bytes: 0 });
         }
     }
 
     /// Forgets the planners of a map.
     pub(crate) fn forget(&self, map_id: &str) {
-        self.lock().retain(|(key, _)| key.map_id != map_id);
+        self.lock().retain(|kept| kept.key.map_id != map_id);
     }
 
     /// Forgets what was not asked for lately until the rest holds so many bytes at most.
     pub fn shrink(&self, most_bytes: usize) {
         let mut kept = self.lock();
-        let mut held: usize = kept.iter().map(|(_, planner)| planner.bytes()).sum();
+        let mut held: usize = kept.iter().map(Kept::bytes).sum();
         while held > most_bytes && !kept.is_empty() {
-            held -= kept.remove(0).1.bytes().min(held);
+            held -= kept.remove(0).bytes().min(held);
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Vec<(Key, Arc<Planner>)>> {
+    fn lock(&self) -> MutexGuard<'_, Vec<Kept>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -18,7 +18,7 @@ use crate::{
     problem::{Problem, ProblemType},
     routes::{
         alternatives, calibrate, compare, diagnose, earth, guide, health, jobs, map_areas, maps, matrix,
-        metrics, mission, page, plan, range, reachable, recordings, robots, status,
+        metrics, mission, page, plan, range, reachable, recordings, robot_mechanisms, robots, status,
     },
     schemas,
 };
@@ -57,7 +57,9 @@ fn guarded() -> OpenApiRouter<Engine> {
         .routes(routes!(earth::read))
         .routes(routes!(robots::create, robots::list))
         .routes(routes!(robots::read, robots::remove))
+        .routes(routes!(robot_mechanisms::list))
         .routes(routes!(recordings::create, recordings::list))
+        .routes(routes!(recordings::columns))
         .routes(routes!(recordings::read, recordings::remove))
         .routes(routes!(calibrate::handler))
         .routes(routes!(diagnose::handler))

@@ -18,5 +18,6 @@ pub mod plan;
 pub mod range;
 pub mod reachable;
 pub mod recordings;
+pub mod robot_mechanisms;
 pub mod robots;
 pub mod status;

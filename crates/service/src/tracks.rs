@@ -136,16 +136,18 @@ impl<'a> Tracks<'a> {
 
 impl<'a> Track<'a> {
     fn of(plan: &'a PlanAnswer, name: Option<String>) -> Self {
+        let path = plan.followed_path();
         let totals = vec![
-            ("energy_j", json!(plan.energy_j)),
-            ("energy_interval_j", json!(plan.energy_interval_j)),
-            ("duration_s", json!(plan.duration_s)),
-            ("distance_m", json!(plan.distance_m)),
-            ("climb_m", json!(plan.climb_m)),
-            ("descent_m", json!(plan.descent_m)),
-            ("recovered_j", json!(plan.recovered_j)),
+            ("energy_j", json!(path.energy_j)),
+            ("energy_interval_j", json!(path.energy_interval_j)),
+            ("duration_s", json!(path.duration_s)),
+            ("distance_m", json!(path.distance_m)),
+            ("climb_m", json!(path.climb_m)),
+            ("descent_m", json!(path.descent_m)),
+            ("recovered_j", json!(path.recovered_j)),
+            ("lattice_energy_j", json!(path.lattice_energy_j)),
         ];
-        Track { name, poses: &plan.poses, totals, warnings: &plan.warnings }
+        Track { name, poses: path.poses, totals, warnings: &plan.warnings }
     }
 
     /// Totals, warnings and the name, if there is one, as properties of GeoJSON.

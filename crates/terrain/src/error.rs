@@ -317,6 +317,14 @@ pub enum Error {
         /// The path.
         path: String,
     },
+    /// Cells in bytes that are no map.
+    #[error("these bytes are no map of cells: at byte {at}, {why}; see \"Maps in bytes\" of the guide")]
+    CellBytes {
+        /// Why.
+        why: String,
+        /// So many bytes were read.
+        at: usize,
+    },
     /// The file cannot be read at all.
     #[error("{path}: {source}")]
     Read {

@@ -8,11 +8,12 @@ const NEVER_A_LENGTH_M: f64 = 1e9;
 const INTEGER_LIMITS: [f64; 6] =
     [-32_768.0, -32_767.0, 32_767.0, 65_535.0, -2_147_483_648.0, 2_147_483_647.0];
 
+/// No number that [`is_never_ground`] is smaller than this. Most elevations are, and are asked nothing more.
+pub(crate) const LEAST_MAGNITUDE: f64 = 9999.0;
+
 /// Whether a number is a conventional fill value that no ground has as its elevation: −9999 and −99 999 (nines, by habit of
 /// ESRI's grids), limits of integers, and magnitudes of the limits of single precision.
 pub fn is_never_ground(value: f64) -> bool {
-    /// None of them is less than this; most numbers are, and are asked nothing more.
-    const LEAST_MAGNITUDE: f64 = 9999.0;
     if value.abs() < LEAST_MAGNITUDE {
         return false;
     }

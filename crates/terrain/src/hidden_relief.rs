@@ -8,6 +8,9 @@ use crate::{Cell, Terrain};
 /// Cells on each side whose slopes are compared.
 const AROUND: usize = 2;
 
+/// Most that [`slope_rms`] overstates the slope that is hidden, as a factor; it hardly understates it.
+pub const MOST_OVERSTATED: f64 = 1.9;
+
 /// Root mean square of the differences between the slopes of neighbouring cells around a cell, along rows and columns [-]; 0 where
 /// fewer than three known cells lie in a row.
 ///

@@ -45,6 +45,8 @@ pub enum Format {
     Ascii,
     /// GeoTIFF.
     GeoTiff,
+    /// Cells in bytes: see [`cells`].
+    Cells,
 }
 
 /// Most bytes that a packed text is unpacked to: 24 for each cell of the largest map, as `%.15g` and a blank take.
@@ -99,6 +101,7 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
         Format::Json => json::read(text(bytes)?)?.as_asked(options),
         Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options),
         Format::GeoTiff => read_geotiff(bytes, &geotiff::Sidecars::default(), options),
+        Format::Cells => cells::read_sent(bytes)?.as_asked(options),
     }
 }
 

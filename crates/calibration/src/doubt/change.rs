@@ -14,21 +14,21 @@ const FOLLOWS: f64 = 0.5;
 pub(super) const FOLLOWS_WELL: f64 = 0.9;
 
 /// What may have been wrong with a recording, and the recording with that mended; none where it lacks the channels.
-pub struct Change {
+struct Change {
     /// Name of the doubt.
-    pub name: &'static str,
+    name: &'static str,
     /// What seems wrong, in words.
-    pub words: &'static str,
+    words: &'static str,
     /// What mends it.
-    pub cure: &'static str,
+    cure: &'static str,
     /// The recording with that mended.
-    pub mended: fn(&Recording) -> Option<Recording>,
+    mended: fn(&Recording) -> Option<Recording>,
 }
 
 const SCALE: &str = "give its source \"scale\": -1 in a map";
 
 /// All changes that are tried.
-pub const CHANGES: [Change; 9] = [
+const CHANGES: [Change; 9] = [
     Change {
         name: "power_sign",
         words: "power seems to have the wrong sign (drawn from the battery must be positive, charging negative)",
@@ -69,24 +69,33 @@ pub const CHANGES: [Change; 9] = [
         name: "pitch_sign",
         words: "pitch seems to have the wrong sign (nose up must be positive), as of an IMU that is mounted back to front or tells axes north-east-down",
         cure: SCALE,
-        mended: |of| turned(of, &[Channel::Pitch]),
+        mended: |of| has_slopes(of).then(|| turned(of, &[Channel::Pitch]))?,
     },
     Change {
         name: "imu_turned_left",
         words: "pitch seems to be roll, as of an IMU that is mounted a quarter turn about the vertical",
         cure: "name `orientation.roll` as the source of `pitch_rad` in a map, and `orientation.pitch` as that of `roll_rad`",
-        mended: |of| exchanged(of, [1.0, -1.0]),
+        mended: |of| has_slopes(of).then(|| exchanged(of, [1.0, -1.0]))?,
     },
     Change {
         name: "imu_turned_right",
         words: "pitch seems to be roll of the other sign, as of an IMU that is mounted a quarter turn about the vertical",
         cure: "name `orientation.roll` with \"scale\": -1 as the source of `pitch_rad` in a map, and `orientation.pitch` as that of `roll_rad`",
-        mended: |of| exchanged(of, [-1.0, 1.0]),
+        mended: |of| has_slopes(of).then(|| exchanged(of, [-1.0, 1.0]))?,
     },
 ];
 
 /// The change that would mend a recording best, if any clearly does.
-pub(super) fn mends(
+///
+/// # Errors
+/// As [`crate::predict_watched()`].
+pub fn mends(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Option<Doubt>, Error> {
+    let recording = recording.thinned_watched(watch)?;
+    better(robot, &recording, &follow::of(robot, &recording, watch)?, watch)
+}
+
+/// The same, of a recording that is followed as given.
+pub(super) fn better(
     robot: &Robot,
     recording: &Recording,
     given: &Followed,
@@ -102,7 +111,9 @@ pub(super) fn mends(
             continue;
         }
         let other = follow::of(robot, &mended, watch)?;
-        let is_believed = other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2);
+        let is_clear = other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2);
+        // Sensors are mounted and wired the same in every run: two runs on grounds of their own differ by more than a sign.
+        let is_believed = is_clear && other.within_runs_r2 > given.within_runs_r2;
         if is_believed && best.is_none_or(|(r2, _)| other.r2 > r2) {
             best = Some((other.r2, change));
         }
@@ -127,6 +138,21 @@ pub(super) fn mends(
 fn turns_as_wheels_say(recording: &Recording) -> bool {
     let is_told = [Channel::YawRate, Channel::Heading].iter().any(|turn| recording.channel(*turn).is_some());
     is_told && !suspicions(recording).iter().any(|doubt| doubt.kind == SuspicionKind::Opposed)
+}
+
+/// Whether drives have slopes by which the axes of an inclinometer are told: on level ground they differ by its own error.
+fn has_slopes(recording: &Recording) -> bool {
+    /// What an inclinometer is askew by (2 degrees) \[rad\].
+    const ERROR_RAD: f64 = 0.035;
+    /// Shares of rows between which pitch or roll ranges farther: what shakes does not count.
+    const BETWEEN: [f64; 2] = [0.05, 0.95];
+    let ranges = |channel: Channel| {
+        let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
+        all.sort_by(f64::total_cmp);
+        let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
+        Some(high? - low?)
+    };
+    [Channel::Pitch, Channel::Roll].into_iter().filter_map(ranges).any(|range| range > ERROR_RAD)
 }
 
 fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {

@@ -12,8 +12,9 @@ use crate::{
 /// Predictions beside what was recorded, over one-second averages of all sides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Followed {
-    /// Squared correlation with its sign.
+    /// Squared correlation with its sign, and the same about the mean of each run.
     pub(crate) r2: f64,
+    pub(crate) within_runs_r2: f64,
     /// Recorded over predicted, at best; of motor currents none.
     pub(crate) ratio: Option<f64>,
 }
@@ -32,22 +33,41 @@ pub(crate) fn of(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<
         (first, second)
     })?;
     let is_current = form == PowerForm::MotorCurrents;
-    let mut sums = [0.0; 5];
+    let runs: Vec<usize> = drives.averages.iter().map(|average| average.run).collect();
+    let (mut whole, mut within) = (Sums::default(), Sums::default());
     for (predicted, recorded) in [&sides.0, &sides.1].into_iter().zip(&drives.recorded) {
         // Currents come without a sign.
         let recorded = drives.averaged_by(|i| if is_current { recorded[i].abs() } else { recorded[i] });
-        let mut pairs: Vec<(f64, f64)> = drives.averaged(predicted).into_iter().zip(recorded).collect();
-        pairs.retain(|(p, r)| p.is_finite() && r.is_finite());
+        let all = runs.iter().zip(drives.averaged(predicted).into_iter().zip(recorded));
+        let mut pairs: Vec<(usize, (f64, f64))> = all.map(|(run, pair)| (*run, pair)).collect();
+        pairs.retain(|(_, (p, r))| p.is_finite() && r.is_finite());
         // Sides differ by constants: only what varies within one tells how it is followed.
-        let count = pairs.len().max(1) as f64;
-        let mean = |value: fn(&(f64, f64)) -> f64| pairs.iter().map(value).sum::<f64>() / count;
-        let (p0, r0) = (mean(|pair| pair.0), mean(|pair| pair.1));
-        for (p, r) in &pairs {
-            let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
-            sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
+        whole.add(pairs.iter().map(|(_, pair)| *pair));
+        pairs.chunk_by(|a, b| a.0 == b.0).for_each(|run| within.add(run.iter().map(|(_, pair)| *pair)));
+    }
+    let ratio = (!is_current && whole.of[4] > 0.0).then(|| whole.of[3] / whole.of[4]);
+    Ok(Followed { r2: whole.r2(), within_runs_r2: within.r2(), ratio })
+}
+
+/// Sums of products of predicted and recorded, about means of their own.
+#[derive(Default)]
+struct Sums {
+    /// Of both, of recorded, of predicted, and of both and of predicted about zero.
+    of: [f64; 5],
+}
+
+impl Sums {
+    fn add(&mut self, pairs: impl Iterator<Item = (f64, f64)> + Clone) {
+        let count = pairs.clone().count().max(1) as f64;
+        let (p0, r0) = pairs.clone().fold((0.0, 0.0), |(p0, r0), (p, r)| (p0 + p / count, r0 + r / count));
+        for (p, r) in pairs {
+            let by = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
+            self.of.iter_mut().zip(by).for_each(|(sum, x)| *sum += x);
         }
     }
-    let r = sums[0] / (sums[1] * sums[2]).sqrt().max(f64::MIN_POSITIVE);
-    let ratio = (!is_current && sums[4] > 0.0).then(|| sums[3] / sums[4]);
-    Ok(Followed { r2: r * r.abs(), ratio })
+
+    fn r2(&self) -> f64 {
+        let r = self.of[0] / (self.of[1] * self.of[2]).sqrt().max(f64::MIN_POSITIVE);
+        r * r.abs()
+    }
 }

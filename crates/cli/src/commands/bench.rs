@@ -60,7 +60,7 @@ fn text(report: &Report) -> String {
             peer.name, peer.cells_per_side, peer.ms, peer.ratio
         ));
     }
-    text.push_str("\nWays across the map, on one core with the costs of motions at hand\n\n");
+    text.push_str("\nWays across the map, on one core: cold with nothing at hand, warm with costs and the goal's field at hand\n\n");
     text.push_str(&format!(
         "{:>6} {:>10} {:>6} {:>7} {:>9} {:>9} {:>11} {:>13} {:>12}\n",
         "side",

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::{
-    evidence::linear_model::products,
+    evidence::linear_model::transposed,
     fit::joint::{Fitted, Joint},
 };
 
@@ -31,17 +31,16 @@ pub(crate) fn held_out(joint: &Joint<'_>, fitted: &Fitted) -> HeldOut {
     let observed = joint.observed;
     let fold = |i: usize| (i < observed.test_rows).then(|| (observed.driven_s[i] / STRETCH_S) as usize % 2);
     let sizes = joint.whiten(&fitted.raw_columns);
-    let white = with_sizes(joint.model.transposed(), &sizes);
-    let (columns, rows) = white.shape();
-    let left = fitted.left.columns.column(0);
-    let of = |seen: &[usize]| {
-        let train = white.select_columns(seen);
-        let right = &train * DVector::from_iterator(seen.len(), seen.iter().map(|i| left[*i]));
-        (products(&train), right)
-    };
+    let sizes = transposed(observed.test_rows, sizes.len(), sizes.iter().map(DVector::as_slice));
+    let left = &fitted.left.columns;
+    let basis = joint.model.transposed();
+    let columns = basis.nrows() + sizes.nrows();
     let parts: Vec<_> = [None, Some(0), Some(1)]
         .into_par_iter()
-        .map(|part| of(&(0..rows).filter(|i| fold(*i) == part).collect::<Vec<_>>()))
+        .map(|part| {
+            let rows: Vec<usize> = (0..basis.ncols()).filter(|i| fold(*i) == part).collect();
+            moments((basis, &sizes), left, &rows)
+        })
         .collect();
     let (mut squares, mut cut, mut variances, mut strays, mut rows) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for held_out in 0..2 {
@@ -70,13 +69,37 @@ pub(crate) fn held_out(joint: &Joint<'_>, fitted: &Fitted) -> HeldOut {
     HeldOut { rmse_w: (squares / rows).sqrt(), over_noise: (cut / variances).sqrt(), strays: strays / rows }
 }
 
-/// A transposed basis with columns of the test drives below it.
-fn with_sizes(basis: &DMatrix<f64>, sizes: &[DVector<f64>]) -> DMatrix<f64> {
-    let mut white = basis.clone().resize_vertically(basis.nrows() + sizes.len(), 0.0);
-    for (j, size) in sizes.iter().enumerate() {
-        (0..size.len()).for_each(|i| white[(basis.nrows() + j, i)] = size[i]);
+/// Products of a transposed basis, with columns of the test drives below it, over some rows, and theirs with what is left there; stretch by
+/// stretch, since a copy of a long drive's basis is half of all memory.
+fn moments(
+    (basis, sizes): (&DMatrix<f64>, &DMatrix<f64>),
+    left: &DMatrix<f64>,
+    rows: &[usize],
+) -> (DMatrix<f64>, DVector<f64>) {
+    /// Rows that are multiplied at once: they stay in the cache.
+    const ROWS_AT_ONCE: usize = 1024;
+    let (first, count) = (basis.nrows(), basis.nrows() + sizes.nrows());
+    let (mut gram, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
+    let stretches = rows.chunk_by(|a, b| a + 1 == *b).flat_map(|stretch| stretch.chunks(ROWS_AT_ONCE));
+    for stretch in stretches {
+        let (from, rows) = (stretch[0], stretch.len());
+        let own = basis.columns(from, rows);
+        gram.view_mut((0, 0), (first, first)).gemm(1.0, &own, &own.transpose(), 1.0);
+        right.rows_mut(0, first).gemv(1.0, &own, &left.column(0).rows(from, rows), 1.0);
+        // Only the test drives have effects, and a stretch is in them or beside them.
+        if from + rows <= sizes.ncols() && sizes.nrows() > 0 {
+            let beside = sizes.columns(from, rows);
+            let across = beside * own.transpose();
+            let mut below = gram.view_mut((first, 0), (sizes.nrows(), first));
+            below += &across;
+            let mut above = gram.view_mut((0, first), (first, sizes.nrows()));
+            above += across.transpose();
+            let mut last = gram.view_mut((first, first), (sizes.nrows(), sizes.nrows()));
+            last += beside * beside.transpose();
+            right.rows_mut(first, sizes.nrows()).gemv(1.0, &beside, &left.column(0).rows(from, rows), 1.0);
+        }
     }
-    white
+    (gram, right)
 }
 
 /// Recorded less predicted of the test drives, with weights of the basis and of sizes.

@@ -52,8 +52,9 @@ pub(crate) struct Joint<'a> {
 /// Evidence summed over the shares by which forms may be off.
 struct FormErrors {
     evidence: Evidence,
-    /// The likeliest share.
+    /// The likeliest share, and the mean of their squares.
     likeliest: f64,
+    mean_square: f64,
     /// Log evidence with it alone.
     log_of_likeliest: f64,
 }
@@ -63,7 +64,8 @@ impl FormErrors {
     fn new(reduced: &Reduced, halves: &[Half], forms: usize) -> Self {
         if forms == 0 {
             let evidence = reduced.evidence(halves);
-            return FormErrors { likeliest: FORM_ERRORS[0], log_of_likeliest: evidence.log, evidence };
+            let likeliest = FORM_ERRORS[0];
+            return FormErrors { likeliest, mean_square: 0.0, log_of_likeliest: evidence.log, evidence };
         }
         let weights = FORM_ERRORS.map(|share| (FORM_ERRORS[0] / share).powi(2));
         let total: f64 = weights.iter().sum();
@@ -73,17 +75,26 @@ impl FormErrors {
         let best = (0..each.len()).max_by(|a, b| log(a).total_cmp(&log(b))).unwrap_or(0);
         let (likeliest, log_of_likeliest) = (FORM_ERRORS[best], each[best].log);
         let logs: Vec<f64> = (0..each.len()).map(|i| log(&i)).collect();
-        FormErrors {
-            evidence: Evidence::mixed(&logs, each.iter().map(|one| (&one.mean, &one.covariance))),
-            likeliest,
-            log_of_likeliest,
-        }
+        let evidence = Evidence::mixed(&logs, each.iter().map(|one| (&one.mean, &one.covariance)));
+        let squares =
+            FORM_ERRORS.iter().zip(&logs).map(|(share, log)| share * share * (log - evidence.log).exp());
+        FormErrors { mean_square: squares.sum(), evidence, likeliest, log_of_likeliest }
     }
 }
 
 /// Factors of columns of sizes and of forms that are off by a share.
 fn form_factors(sizes: usize, forms: usize, share: f64) -> Vec<f64> {
     (0..sizes + forms).map(|i| if i < sizes { 1.0 } else { share }).collect()
+}
+
+/// Gives members the likeliest widths of their sizes, and their columns the same units.
+fn widen(members: &mut [Member], columns: &mut [Vec<f64>]) {
+    let mut columns = columns.iter_mut();
+    for member in members {
+        let by = member.widen();
+        let own = columns.by_ref().take(member.free.len());
+        own.flatten().for_each(|x| *x *= by);
+    }
 }
 
 /// Members, their effect, and the log density that they reach.
@@ -96,6 +107,8 @@ pub(crate) struct Fitted {
     pub(crate) members: Vec<Member>,
     /// Evidence with the posterior of all sizes, form errors last.
     pub(crate) evidence: Evidence,
+    /// Mean square of the share by which forms may be off.
+    pub(crate) form_variance: f64,
     /// Log evidence and log priors of forms and windows.
     pub(crate) log: f64,
     /// Log evidence that something unlisted beside [`Fitted::columns`] is compared with: theirs at the first amplitude of the discrepancy,
@@ -151,6 +164,9 @@ impl<'a> Joint<'a> {
     /// A surface that the robot does not know; a watch that breaks.
     pub(crate) fn fit(&self, members: &[Member]) -> Result<Fitted, Error> {
         let mut members = members.to_vec();
+        members.iter_mut().for_each(|member| {
+            member.widen();
+        });
         let mut effect = self.effect(&members)?;
         let mut objective = self.objective(&effect, &members);
         let mut columns = self.columns(&members, &effect)?;
@@ -163,6 +179,7 @@ impl<'a> Joint<'a> {
                 break;
             };
             (members, effect) = (next, next_effect);
+            widen(&mut members, &mut columns);
             let gained = next_objective - objective;
             objective = next_objective;
             if gained < SETTLED {
@@ -240,13 +257,14 @@ impl<'a> Joint<'a> {
         let (group, left) = self.groups(columns, effect, &sizes, &forms, |all| self.model.group_at_all(all));
         let reduced = self.model.reduce(&[&group, &left]);
         let halves: Vec<Half> = members.iter().flat_map(|m| m.free.iter().map(|size| size.half)).collect();
-        let FormErrors { evidence, likeliest, .. } = FormErrors::new(&reduced, &halves, forms.len());
+        let FormErrors { evidence, likeliest, mean_square, .. } =
+            FormErrors::new(&reduced, &halves, forms.len());
         let (group, left) = (self.model.at_first(&group), self.model.at_first(&left));
         let at_first = FormErrors::new(&reduced.first(left.halves.len()), &halves, forms.len());
         // What the first amplitude has of the evidence, of which the likeliest form error has its part.
         let log_beside = at_first.log_of_likeliest + evidence.log - at_first.evidence.log;
         let reduced = reduced.scaled(&form_factors(halves.len(), forms.len(), likeliest));
-        let log = evidence.log + members.iter().map(|m| m.log_prior).sum::<f64>();
+        let log = evidence.log + members.iter().map(Member::log_prior).sum::<f64>();
         let weights = self.model.basis_weights(&reduced, &self.less(effect));
         Ok(Fitted {
             log,
@@ -265,6 +283,7 @@ impl<'a> Joint<'a> {
             halves,
             members,
             evidence,
+            form_variance: mean_square,
         })
     }
 
@@ -298,8 +317,8 @@ impl<'a> Joint<'a> {
     /// Log density of the rows with an effect taken out, and of its sizes.
     fn objective(&self, effect: &[f64], members: &[Member]) -> f64 {
         let alone = self.model.group(DMatrix::from_columns(&[self.less(effect)]));
-        let sizes: f64 = members.iter().flat_map(Member::sizes).map(|x| x * x).sum();
-        self.model.reduce(&[&alone]).evidence(&[]).log - 0.5 * sizes
+        let sizes: f64 = members.iter().map(Member::log_density).sum();
+        self.model.reduce(&[&alone]).evidence(&[]).log + sizes
     }
 
     /// Change with each free size, per prior standard deviation, about where members stand.

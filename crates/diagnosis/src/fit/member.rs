@@ -5,9 +5,15 @@ use model::{
     mechanism::{Form, Mechanism, Sign, SizePrior},
 };
 
-use crate::{Applied, Span, evidence::reduced::Half};
+use crate::{
+    Applied, Span,
+    evidence::{
+        reduced::Half,
+        width::{self, WIDTHS},
+    },
+};
 
-/// Sizes beyond so many prior standard deviations are not looked at: the prior gives them a chance of 2·10⁻⁹.
+/// Sizes beyond so many standard deviations of the widest prior are not looked at: it gives them a chance of 2·10⁻⁹.
 const FARTHEST: f64 = 6.0;
 
 /// Size of one free parameter, in prior standard deviations of a direction that is always possible.
@@ -45,8 +51,10 @@ pub(crate) struct Member {
     pub(crate) mechanism: &'static dyn Mechanism,
     /// Values of all its parameters.
     pub(crate) values: Vec<f64>,
-    /// Free parameters.
+    /// Free parameters, their units those of the width.
     pub(crate) free: Vec<Size>,
+    /// Factor of the prior standard deviations of the sizes.
+    pub(crate) width: f64,
     /// Prior correlation of the first two.
     pub(crate) correlation: f64,
     /// When and where it acts.
@@ -77,17 +85,49 @@ impl Member {
         if let [first, second, ..] = &mut values[..] {
             *second = self.correlation * *first + self.own_share() * *second;
         }
+        let farthest = self.farthest_size();
         for (size, x) in self.free.iter().zip(values) {
-            let least = if size.half == Half::Positive { 0.0 } else { -FARTHEST };
+            let least = if size.half == Half::Positive { 0.0 } else { -farthest };
             let [low, high] = self.mechanism.bounds(file, size.parameter);
-            self.values[size.parameter] = (size.unit * x.clamp(least, FARTHEST)).clamp(low, high);
+            self.values[size.parameter] = (size.unit * x.clamp(least, farthest)).clamp(low, high);
         }
+    }
+
+    /// The size beyond which none is looked at, in units of the width.
+    fn farthest_size(&self) -> f64 {
+        FARTHEST * WIDTHS[WIDTHS.len() - 1] / self.width
+    }
+
+    /// The likeliest width of its sizes, and the log density of these with it.
+    fn likeliest_width(&self) -> (f64, f64, f64) {
+        let sizes: Vec<f64> = self.sizes().iter().map(|x| x * self.width).collect();
+        width::likeliest(&sizes)
+    }
+
+    /// Log density of its sizes, whatever the width.
+    pub(crate) fn log_density(&self) -> f64 {
+        self.likeliest_width().2
+    }
+
+    /// Log prior of its form, window and width.
+    pub(crate) fn log_prior(&self) -> f64 {
+        let of_width = WIDTHS.iter().zip(width::log_priors()).find(|(by, _)| **by == self.width);
+        self.log_prior + of_width.map_or(0.0, |(_, log)| log)
+    }
+
+    /// Takes the likeliest width of its sizes, and says by which factor its units grow.
+    pub(crate) fn widen(&mut self) -> f64 {
+        let by = self.likeliest_width().0 / self.width;
+        self.width *= by;
+        self.free.iter_mut().for_each(|size| size.unit *= by);
+        by
     }
 
     /// Parameters that stand at the farthest size that is looked at.
     pub(crate) fn farthest(&self) -> Vec<&'static str> {
-        let is_farthest =
-            |size: &&Size| (self.values[size.parameter] / size.unit).abs() >= FARTHEST * (1.0 - f64::EPSILON);
+        let is_farthest = |size: &&Size| {
+            (self.values[size.parameter] / size.unit).abs() >= self.farthest_size() * (1.0 - f64::EPSILON)
+        };
         let name = |size: &Size| self.mechanism.parameters()[size.parameter].name;
         self.free.iter().filter(is_farthest).map(name).collect()
     }
@@ -119,13 +159,24 @@ mod tests {
             mechanism,
             values: vec![0.5],
             free: vec![size],
+            width: 1.0,
             correlation: 0.0,
             span: Span::ALL,
             log_prior: 0.0,
         };
         assert!(member.farthest().is_empty());
+        assert_eq!(member.widen(), 1.0);
+        // The bound of the mechanism is 1 m, whatever the prior.
+        let [_, high_m] = mechanism.bounds(&robot, 0);
         member.set(&robot, &[7.0]);
-        assert!((member.values[0] - 6.0 * 0.27).abs() < 1e-12);
+        let reached_m = high_m.min(7.0 * 0.27);
+        assert!((member.values[0] - reached_m).abs() < 1e-12);
+        assert_eq!(member.widen(), 4.0);
+        assert!((member.values[0] - reached_m).abs() < 1e-12 && (member.free[0].unit - 1.08).abs() < 1e-12);
+        assert!(member.log_prior() < -2.0 && member.log_density() < member.log_prior());
+        member.free[0].unit = high_m / 100.0;
+        member.set(&robot, &[30.0]);
+        assert!((member.values[0] - 0.12 * high_m).abs() < 1e-12);
         assert_eq!(member.farthest(), ["height_m"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use calibration::{
     Drives,
-    doubt::{CHANGES, Change, charged, circumstances, speeds},
+    doubt::{charged, circumstances, mends, speeds},
 };
 use model::Robot;
 use recording::{Channel, Recording, Run, Suspicion, SuspicionKind, suspicions};
@@ -12,14 +12,11 @@ use crate::{
     observe::{series::Series, turning::Line},
 };
 
-/// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
-const CLEARLY_BETTER: f64 = 0.5;
-/// And when predictions then follow the recording at least so well (r²).
-const FOLLOWS: f64 = 0.5;
 /// Ratios of recorded to predicted power beyond which the file may be another robot's: friction of any hard ground is within.
 const OTHER_ROBOT: [f64; 2] = [0.55, 1.8];
 /// The same beyond which it is, whatever is missing: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as much on loam.
 const NOT_THIS_ROBOT: [f64; 2] = [0.1, 3.0];
+
 /// What makes drives no drives of this robot as its file and its healthy drives have it, in sentences: sides swapped, signs turned round,
 /// units or robots mistaken. Nothing else is told of them before that is mended. `said` are their [`contradictions`].
 ///
@@ -36,31 +33,15 @@ pub(crate) fn mistakes(
     said.extend(odd.iter().map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     // Healthy drives tell what this robot takes better than its file.
     let known = if series.has_healthy() { of_healthy } else { robot };
-    let given = follows(known, series, true)?;
-    let mut mended = Vec::new();
-    let changes = CHANGES.iter().filter(|change| !told_by_turning(change, recording));
-    let changes = changes.filter_map(|change| Some(((change.mended)(recording)?, change.words)));
-    for (changed, words) in changes {
-        let other = follows(known, &Series::watched(robot, &changed, None, series.watch())?, true)?;
-        if other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2) {
-            mended.push((other.r2, words));
-        }
-    }
-    // Of several that would mend it the best is told.
-    if let Some((r2, words)) = mended.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
-        said.push(format!(
-            "{words}: with that mended the model would follow {:.0} % of the variation instead of {:.0} %",
-            100.0 * r2,
-            100.0 * given.r2
-        ));
-    }
+    let mended = mends(known, recording, series.watch())?;
+    said.extend(mended.map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     if said.is_empty() {
         let charged = charged(robot, recording, series.watch())?;
         said.extend(charged.map(|doubt| format!("{}; {}", doubt.statement, doubt.cure)));
     }
     let kinds = [(true, "recorded power"), (false, "recorded power of the healthy drives")];
     for (suspect, which) in kinds.into_iter().filter(|(suspect, _)| *suspect || series.has_healthy()) {
-        let ratio = follows(robot, series, suspect)?.ratio;
+        let ratio = ratio(robot, series, suspect)?;
         if said.is_empty() && !(NOT_THIS_ROBOT[0]..NOT_THIS_ROBOT[1]).contains(&ratio) {
             said.push(another(which, ratio));
         }
@@ -120,10 +101,10 @@ pub(crate) fn doubts(
     mistakes: &[String],
 ) -> Result<Vec<String>, Error> {
     let mut said = mistakes.to_vec();
-    let given = follows(robot, series, true)?;
+    let ratio = ratio(robot, series, true)?;
     let [least, most] = OTHER_ROBOT;
-    if mistakes.is_empty() && !(least..most).contains(&given.ratio) {
-        said.push(another("recorded power", given.ratio));
+    if mistakes.is_empty() && !(least..most).contains(&ratio) {
+        said.push(another("recorded power", ratio));
     }
     said.extend(stuck(robot, recording, series)?);
     said.extend(series.turning.as_ref().map(turning));
@@ -161,36 +142,11 @@ fn stuck(robot: &Robot, recording: &Recording, series: &Series) -> Result<Option
     }))
 }
 
-/// How predictions of a robot follow what was recorded.
-struct Follows {
-    /// Squared correlation with its sign.
-    r2: f64,
-    /// Recorded over predicted, at best.
-    ratio: f64,
-}
-
-/// How predictions of a robot follow what was recorded in drives under suspicion, or in the healthy ones.
-fn follows(robot: &Robot, series: &Series, suspect: bool) -> Result<Follows, Error> {
+/// Recorded over predicted power at best, in drives under suspicion or in the healthy ones.
+fn ratio(robot: &Robot, series: &Series, suspect: bool) -> Result<f64, Error> {
     let predicted = series.predict(robot, &[])?;
-    let pairs = || {
-        let all = series.averages.iter().zip(series.recorded.iter().zip(&predicted));
-        all.filter(|(a, _)| a.suspect == suspect).map(|(_, (r, p))| (*r, *p))
-    };
-    let count = pairs().count().max(1) as f64;
-    let (r0, p0) = pairs().fold((0.0, 0.0), |(r0, p0), (r, p)| (r0 + r / count, p0 + p / count));
-    let mut sums = [0.0; 5];
-    for (r, p) in pairs() {
-        let of = [(r - r0) * (p - p0), (r - r0).powi(2), (p - p0).powi(2), r * p, p * p];
-        sums.iter_mut().zip(of).for_each(|(sum, x)| *sum += x);
-    }
-    let r = sums[0] / (sums[1] * sums[2]).sqrt().max(1e-300);
-    Ok(Follows { r2: r * r.abs(), ratio: sums[3] / sums[4].max(1e-300) })
-}
-
-/// Whether how the robot turned tells already that sides of wheel speeds are not swapped.
-fn told_by_turning(change: &Change, recording: &Recording) -> bool {
-    let turns = [Channel::YawRate, Channel::Heading];
-    let is_told =
-        turns.iter().any(|turn| recording.channel(*turn).is_some()) && of_motion(recording).is_empty();
-    change.name == "sides_of_speeds" && is_told
+    let all = series.averages.iter().zip(series.recorded.iter().zip(&predicted));
+    let pairs = all.filter(|(a, _)| a.suspect == suspect).map(|(_, pair)| pair);
+    let [both, square] = pairs.fold([0.0, 0.0], |[both, square], (r, p)| [both + r * p, square + p * p]);
+    Ok(both / square.max(f64::MIN_POSITIVE))
 }

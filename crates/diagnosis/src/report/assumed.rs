@@ -3,6 +3,7 @@
 use model::{Robot, knowledge::Provenance};
 
 use crate::{
+    evidence::width::WIDTHS,
     fit::{
         held_out::{HeldOut, STRAY_SIGMAS},
         member::Member,
@@ -10,7 +11,7 @@ use crate::{
         temperature::UNTOLD,
     },
     observe::{observations::Observations, reach::Beyond},
-    search::engine::{AMPLITUDES, Found},
+    search::engine::Found,
 };
 
 /// Standard deviations from which a parameter is worth a note: among a dozen parameters one in seven robots has one by chance.
@@ -29,7 +30,7 @@ pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) 
     let share = 100.0 * found.model_error;
     let wider = match observed.series.has_healthy() {
         true => String::new(),
-        false => format!(" or, less probably, up to {:.0} times as much", AMPLITUDES[AMPLITUDES.len() - 1]),
+        false => format!(" or, less probably, up to {:.0} times as much", WIDTHS[WIDTHS.len() - 1]),
     };
     let mut notes =
         vec![format!("the model is taken to miss {share:.1} % of power smoothly{wider}, {source}")];

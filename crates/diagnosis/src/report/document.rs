@@ -15,7 +15,7 @@ use crate::{
             BaselineFit, CorrectedFit, Diagnosis, ExplanationFigures, FileReport, Finding, FindingFit, Trace,
             Verdict,
         },
-        finding::{Reading, UNKNOWN, members},
+        finding::{Reading, UNKNOWN, members, size_is_untold},
         next_drive::next_drive,
         place::places,
         predictions::{Corrected, file_error},
@@ -113,6 +113,7 @@ fn circumstances(observed: &Observations<'_>, found: &Found) -> Circumstances {
     Circumstances {
         held_out_ratio: found.held_out[0].over_noise,
         file_is_off: !observed.series.has_healthy() && is_beyond_uncertainty(&u.unwrap_or_default()),
+        size_is_untold: found.explanations.first().is_some_and(size_is_untold),
     }
 }
 

@@ -152,8 +152,25 @@ impl Reading<'_> {
     }
 }
 
+/// Whether an explanation has a mechanism of which every interval holds zero.
+pub(crate) fn size_is_untold(explanation: &Explanation) -> bool {
+    let Some(fitted) = &explanation.fitted else { return false };
+    let mut first = 0;
+    fitted.members.iter().any(|member| {
+        let own = first;
+        first += member.free.len();
+        let holds_zero = |(j, size): (usize, &Size)| {
+            let [low, high] =
+                interval(size, member.values[size.parameter], value_sigma(fitted, member, own, j));
+            low <= 0.0 && high >= 0.0
+        };
+        !member.free.is_empty() && member.free.iter().enumerate().all(holds_zero)
+    })
+}
+
 /// Standard deviation of one free value about the most probable one, of a member whose sizes begin at a column, in units of the size: where
-/// forms may be off, the mean of the posterior lies elsewhere.
+/// forms may be off, the mean of the posterior lies elsewhere. A form that is off by the same factor everywhere is another size, which no drive
+/// tells from it.
 fn value_sigma(fitted: &Fitted, member: &Member, first: usize, j: usize) -> f64 {
     let off = |i: usize| fitted.evidence.mean[i] - fitted.sizes[i];
     let about = |i: usize, k: usize| fitted.evidence.covariance[(i, k)] + off(i) * off(k);
@@ -166,7 +183,9 @@ fn value_sigma(fitted: &Fitted, member: &Member, first: usize, j: usize) -> f64 
     } else {
         own
     };
-    variance.max(0.0).sqrt()
+    let Size { parameter, unit, .. } = member.free[j];
+    let by_form = fitted.form_variance * (member.values[parameter] / unit).powi(2);
+    (variance.max(0.0) + by_form).sqrt()
 }
 
 /// 95 % interval of a value, cut where a sign is impossible.

@@ -27,6 +27,8 @@ pub(crate) struct Circumstances {
     pub(crate) held_out_ratio: f64,
     /// Whether the robot's parameters left what its file states, which only counts without healthy drives.
     pub(crate) file_is_off: bool,
+    /// Whether a mechanism of the likeliest explanation has no size of which zero is out of the question.
+    pub(crate) size_is_untold: bool,
 }
 
 /// Probabilities of nothing, of listed mechanisms alone, and of anything unlisted.
@@ -60,7 +62,7 @@ pub(crate) fn verdict(explanations: &[Explanation], circumstances: Circumstances
         .filter(|one| one.names == first.names && !one.unlisted)
         .map(|one| one.probability)
         .sum();
-    if of_first >= SURE { Verdict::Explained } else { Verdict::Ambiguous }
+    if of_first >= SURE && !circumstances.size_is_untold { Verdict::Explained } else { Verdict::Ambiguous }
 }
 
 /// Whether names are given: not where nothing is missing, nor where that is itself among the credible explanations, nor where it is as
@@ -86,7 +88,8 @@ pub(crate) fn is_beyond_uncertainty(u: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    const FITS: Circumstances = Circumstances { held_out_ratio: 1.05, file_is_off: false };
+    const FITS: Circumstances =
+        Circumstances { held_out_ratio: 1.05, file_is_off: false, size_is_untold: false };
 
     fn explanations(parts: &[(&[&'static str], bool, f64)]) -> Vec<Explanation> {
         let explanation = |(names, unlisted, probability): &(&[&'static str], bool, f64)| Explanation {
@@ -123,6 +126,8 @@ mod tests {
         let drag: &[&str] = &["drivetrain_drag"];
         assert_eq!(of(&[(payload, false, 0.98), (&[], false, 0.02)], FITS), Verdict::Consistent);
         assert_eq!(of(&[(payload, false, 0.995), (&[], false, 0.005)], FITS), Verdict::Explained);
+        let untold = Circumstances { size_is_untold: true, ..FITS };
+        assert_eq!(of(&[(payload, false, 0.995), (&[], false, 0.005)], untold), Verdict::Ambiguous);
         assert_eq!(of(&[(payload, false, 0.6), (drag, false, 0.4)], FITS), Verdict::Ambiguous);
         assert_eq!(of(&[(payload, true, 0.6), (drag, false, 0.4)], FITS), Verdict::Unexplained);
         let four: Vec<(&[&str], bool, f64)> = [&["payload"], &["wind"], &["inertia"], &["soft_soil"]]

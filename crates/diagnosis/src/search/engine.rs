@@ -9,7 +9,11 @@ use nalgebra::DMatrix;
 
 use crate::{
     Error,
-    evidence::{linear_model::Amplitudes, noise::Whitening},
+    evidence::{
+        linear_model::Amplitudes,
+        noise::Whitening,
+        width::{self, WIDTHS},
+    },
     fit::{
         amplitude::Healthy,
         baseline::Baseline,
@@ -35,9 +39,6 @@ const LARGE: f64 = 3.5;
 /// By how much wider the discrepancy is in the most flexible fit, from which weights are taken: with weights and scale of the base fit the
 /// unlisted class wins everything, since what is missing counts as stray there.
 const FLEXIBLE: f64 = 5.0;
-
-/// Factors of the discrepancy's amplitude that are summed over where no healthy drives tell it, each twice and half as likely as the one before.
-pub(crate) const AMPLITUDES: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// What the engine found.
 pub(crate) struct Found {
@@ -161,8 +162,7 @@ fn amplitudes(observed: &Observations<'_>) -> Vec<(f64, f64)> {
     if observed.series.has_healthy() {
         return vec![(1.0, 0.0)];
     }
-    let total: f64 = AMPLITUDES.iter().map(|by| AMPLITUDES[0] / by).sum();
-    AMPLITUDES.map(|by| (by, (AMPLITUDES[0] / by / total).ln())).into()
+    WIDTHS.into_iter().zip(width::log_priors()).collect()
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.

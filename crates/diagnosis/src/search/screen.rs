@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use crate::{
     evidence::{
         linear_model::matrix,
-        reduced::{Half, Reduced, log_sum},
+        reduced::{Evidence, Half, Reduced, log_sum},
+        width::{self, WIDTHS},
     },
     fit::{joint::Joint, member::Member},
     hypothesis::{
@@ -16,7 +17,7 @@ use crate::{
     },
 };
 
-/// Sizes from which refits begin, at most in prior standard deviations; refits may go twice as far.
+/// Sizes from which refits begin, at most in standard deviations of the prior of their width; refits may go farther.
 const MOST_SIGMAS: f64 = 3.0;
 
 /// One effect in one window.
@@ -139,15 +140,45 @@ impl<'a> Screen<'a> {
 
     /// Log evidence of a set.
     pub(crate) fn score(&self, set: &[usize]) -> Scored {
-        let (reduced, halves) = self.reduced(set);
+        let (evidence, _, of_widths) = self.at_widths(set);
         let priors: f64 = set.iter().map(|i| self.candidates[*i].log_prior).sum();
-        Scored { set: set.to_vec(), log: reduced.evidence(&halves).log + priors }
+        Scored { set: set.to_vec(), log: evidence.log + of_widths + priors }
+    }
+
+    /// Evidence of a set with the widths of its priors that its sizes ask for, these by column, and their log prior.
+    fn at_widths(&self, set: &[usize]) -> (Evidence, Vec<f64>, f64) {
+        let (reduced, halves) = self.reduced(set);
+        let mut widths = vec![WIDTHS[0]; halves.len()];
+        let mut log_prior = set.len() as f64 * width::log_priors()[0];
+        let mut evidence = reduced.evidence(&halves);
+        // A wider prior shrinks sizes less, which may ask for one that is wider still.
+        for _ in 1..WIDTHS.len() {
+            let sizes: Vec<f64> = evidence.mean.iter().zip(&widths).map(|(x, by)| x * by).collect();
+            let (next, of_next) = self.widths(set, &sizes);
+            if next == widths {
+                break;
+            }
+            (widths, log_prior) = (next, of_next);
+            evidence = reduced.scaled(&widths).evidence(&halves);
+        }
+        (evidence, widths, log_prior)
+    }
+
+    /// Likeliest widths of the sizes of a set, by column, and their log prior.
+    fn widths(&self, set: &[usize], sizes: &[f64]) -> (Vec<f64>, f64) {
+        let (mut widths, mut log_prior, mut next) = (Vec::new(), 0.0, 0);
+        for i in set {
+            let count = self.effects[self.candidates[*i].effect].free.len();
+            let (by, of_width, _) = width::likeliest(&sizes[next..next + count]);
+            widths.resize(next + count, by);
+            (log_prior, next) = (log_prior + of_width, next + count);
+        }
+        (widths, log_prior)
     }
 
     /// Members of a set at their posterior means.
     pub(crate) fn members(&self, set: &[usize]) -> Vec<Member> {
-        let (reduced, halves) = self.reduced(set);
-        let mean = reduced.evidence(&halves).mean;
+        let (evidence, widths, _) = self.at_widths(set);
         let mut next = 0;
         let member = |i: &usize| {
             let candidate = &self.candidates[*i];
@@ -157,13 +188,16 @@ impl<'a> Screen<'a> {
                 .free
                 .iter()
                 .enumerate()
-                .map(|(j, size)| mean[next + j].clamp(least(size.half), MOST_SIGMAS))
+                .map(|(j, size)| {
+                    widths[next + j] * evidence.mean[next + j].clamp(least(size.half), MOST_SIGMAS)
+                })
                 .collect();
             next += sizes.len();
             let mut member = Member {
                 mechanism: effect.mechanism,
                 values: effect.values.clone(),
                 free: effect.free.clone(),
+                width: WIDTHS[0],
                 correlation: effect.correlation,
                 span: self.grid.span(candidate.window),
                 log_prior: candidate.log_prior,
@@ -288,8 +322,9 @@ mod tests {
             let columns: Vec<_> = joint.whiten(&effects[1].columns).iter().map(masked).collect();
             let group = joint.model.group(DMatrix::from_columns(&columns));
             let residual = joint.model.group(DMatrix::from_columns(std::slice::from_ref(&joint.residual)));
-            let whole = joint.model.reduce(&[&group, &residual]).evidence(&[]).log;
-            let expected = whole + screen.candidates[place].log_prior;
+            let whole = joint.model.reduce(&[&group, &residual]).evidence(&[]);
+            assert!(width::likeliest(whole.mean.as_slice()).0 == WIDTHS[0], "{window:?}: {}", whole.mean);
+            let expected = whole.log + width::log_priors()[0] + screen.candidates[place].log_prior;
             let found = screen.score(&[place]).log;
             assert!((found - expected).abs() < 1e-6 * expected.abs(), "{window:?}: {found} for {expected}");
         }

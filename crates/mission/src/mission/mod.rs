@@ -324,7 +324,7 @@ impl Tour<'_> {
         let model: PowerModel = lattice.settings.power_model;
         let mut journey = Journey::new(model);
         for (route, node) in routes.iter().zip(&nodes[1..]) {
-            journey.drive(&lattice.robot, &route.steps, &surfaces).map_err(MissionError::Question)?;
+            journey.drive_route(lattice, route, &surfaces).map_err(MissionError::Question)?;
             self.network.node(*node).site.stops.iter().for_each(|stop| journey.stop(*stop));
         }
         let mut passages = Vec::new();

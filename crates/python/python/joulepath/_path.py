@@ -64,6 +64,11 @@ class Path(Answer):
             self._columns[refined] = None if found is None else Columns(found)
         return self._columns[refined]
 
+    def _followed(self) -> Columns:
+        """The refined poses where there are any, else those of the lattice: what is drawn."""
+        refined = self.refined_poses
+        return self.poses if refined is None else refined
+
     def to_dict(self) -> dict[str, Any]:
         """The document that the HTTP API answers with, poses included."""
         return json.loads(self._native.document())
@@ -85,9 +90,9 @@ class Path(Answer):
         return needed("xarray").Dataset(columns, attrs=dict(self._scalars()))
 
     def plot(self, ax: Any = None, *, color: str = "black", label: str | None = None) -> Any:
-        """Draws the path over its map by ``matplotlib`` and returns the axes; ``ax`` to draw over what is there."""
+        """Draws the path, refined where it was, over its map by ``matplotlib`` and returns the axes; ``ax`` to draw over what is there."""
         axes = self._map.plot() if ax is None else ax
-        poses = self.poses
+        poses = self._followed()
         axes.plot(poses["x_m"], poses["y_m"], color=color, label=label)
         axes.plot(poses["x_m"][:1], poses["y_m"][:1], "o", color=color)
         return axes
@@ -105,7 +110,7 @@ class Path(Answer):
         (west, south), (rows, columns), step_m = self._map.origin_m, self._map.shape, self._map.cell_size_m
         wide_m, high_m = columns * step_m, rows * step_m
         scale = DRAWN_PX / max(wide_m, high_m)
-        poses = self.poses
+        poses = self._followed()
         points = " ".join(f"{scale * (x - west):.1f},{scale * (south + high_m - y):.1f}" for x, y in zip(poses["x_m"], poses["y_m"]))
         size = f"width='{scale * wide_m:.0f}' height='{scale * high_m:.0f}'"
         title = html.escape(repr(self))

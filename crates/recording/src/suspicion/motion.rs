@@ -33,9 +33,10 @@ pub(super) fn degrees(recording: &Recording, run: &Run) -> Option<Suspicion> {
     (jumps > 0).then_some(Suspicion { channel: Channel::Heading, run, kind, statement })
 }
 
-/// Wheels that turn the robot: the difference of their speeds \[m/s\] and the rate at which it turns \[rad/s\], moment by moment.
+/// Wheels that turn the robot, moment by moment.
 struct Turns {
     by: Channel,
+    /// The difference of both speeds \[m/s\] and the rate at which the robot turns \[rad/s\].
     pairs: Vec<[f64; 2]>,
     /// The sum of both speeds beside the rate, which follows it where one side's sign is mirrored.
     sums: Vec<[f64; 2]>,
@@ -79,33 +80,46 @@ fn by_heading(t_s: &[f64], difference: &[f64], headings: &[f64]) -> Vec<[f64; 2]
     pairs
 }
 
+/// Least share of the yaw rate's variance that turning wheels explain on firm ground.
+const LEAST_R2: f64 = 0.5;
+
+/// A side whose sign is mirrored: the sum of the speeds turns the robot, to the side of the other. It is so in all drives of a recording: where
+/// wheels spin on snow and one of them takes hold, their sum tells how the robot turns as well.
+pub(super) fn mirrored(recording: &Recording) -> Option<Suspicion> {
+    let all: Vec<Turns> = recording.runs.iter().filter_map(|run| Turns::of(recording, run)).collect();
+    let together = |of: fn(&Turns) -> &Vec<[f64; 2]>| {
+        let moves = |turn: &Turns, i: usize| turns(turn.pairs[i][0]) || turns(turn.sums[i][0]);
+        let rows = all.iter().flat_map(|turn| {
+            of(turn).iter().enumerate().filter(|(i, _)| moves(turn, *i)).map(|(_, pair)| pair)
+        });
+        share_and_track(rows)
+    };
+    let [of_difference, _] = together(|turn| &turn.pairs)?;
+    let [of_sum, track_m] = together(|turn| &turn.sums)?;
+    if of_sum < LEAST_R2 || of_difference > LEAST_R2 {
+        return None;
+    }
+    let (channel, side) = match track_m > 0.0 {
+        true => (Channel::LeftSpeed, "left"),
+        false => (Channel::RightSpeed, "right"),
+    };
+    let statement = format!(
+        "the sign of the {side} side seems mirrored: the sum of both wheel speeds explains {:.0} % of how the robot turns, and their \
+         difference {:.0} %; give its source \"scale\": -1 in a map",
+        100.0 * of_sum,
+        100.0 * of_difference
+    );
+    Some(Suspicion { channel, run: None, kind: Kind::Opposed, statement })
+}
+
 /// Wheel speeds against yaw rate, or the change of heading: `ω = (v_right − v_left) / slip track`.
 pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     /// Slip tracks \[m\] between which a skid-steered robot of 5 kg to 5 t turns, from half a small robot's track to three
     /// times a large one's.
     const SLIP_TRACK_M: [f64; 2] = [0.1, 6.0];
-    /// Least share of the yaw rate's variance that turning wheels explain on firm ground.
-    const LEAST_R2: f64 = 0.5;
-    let Turns { by, pairs, sums } = Turns::of(recording, run)?;
-    let [r2, slip_track_m] = share_and_track(&pairs)?;
-    let dw = slip_track_m;
-    // Of a mirrored side the sum of the speeds turns the robot, to the side of the other.
-    if let Some([of_sum, track_m]) =
-        share_and_track(&sums).filter(|[of_sum, _]| *of_sum > LEAST_R2 && r2 < LEAST_R2)
-    {
-        let (channel, side) = match track_m > 0.0 {
-            true => (Channel::LeftSpeed, "left"),
-            false => (Channel::RightSpeed, "right"),
-        };
-        let statement = format!(
-            "the sign of the {side} side seems mirrored: the sum of both wheel speeds explains {:.0} % of how the robot turns, and their \
-             difference {:.0} %; give its source \"scale\": -1 in a map",
-            100.0 * of_sum,
-            100.0 * r2
-        );
-        return Some(Suspicion { channel, run: Some(run.name.clone()), kind: Kind::Opposed, statement });
-    }
-    let (kind, statement) = if dw < 0.0 && r2 > LEAST_R2 {
+    let Turns { by, pairs, .. } = Turns::of(recording, run)?;
+    let [r2, slip_track_m] = share_and_track(pairs.iter().filter(|pair| turns(pair[0])))?;
+    let (kind, statement) = if slip_track_m < 0.0 && r2 > LEAST_R2 {
         (Kind::Opposed, "it is opposed to the wheel speeds: left and right, or its sign, are swapped".into())
     } else if r2 < LEAST_R2 {
         // A compass beside motors wanders more than robots turn.
@@ -132,17 +146,19 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
     Some(Suspicion { channel: by, run: Some(run.name.clone()), kind, statement })
 }
 
+/// Whether a sum or difference of two rims is more than that of rims that stand, which only adds the sensor's noise.
+fn turns(speed_mps: f64) -> bool {
+    speed_mps.abs() > 2.0 * STANDSTILL_MPS
+}
+
 /// The share of the variance of rates that speeds explain, and the track that they mean \[m\].
-fn share_and_track(pairs: &[[f64; 2]]) -> Option<[f64; 2]> {
+fn share_and_track<'a>(pairs: impl Iterator<Item = &'a [f64; 2]>) -> Option<[f64; 2]> {
     let (mut n, mut dd, mut dw, mut ww) = (0usize, 0.0, 0.0, 0.0);
-    for [speed, rate] in pairs {
-        // Rows where the wheels do not turn the robot only add the sensor's noise.
-        if speed.abs() > 2.0 * STANDSTILL_MPS && !rate.is_nan() {
-            n += 1;
-            dd += speed * speed;
-            dw += speed * rate;
-            ww += rate * rate;
-        }
+    for [speed, rate] in pairs.filter(|[_, rate]| !rate.is_nan()) {
+        n += 1;
+        dd += speed * speed;
+        dw += speed * rate;
+        ww += rate * rate;
     }
     (n >= LEAST_ROWS && ww > 0.0).then(|| [dw * dw / (dd * ww), dd / dw])
 }

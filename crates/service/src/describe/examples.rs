@@ -47,7 +47,7 @@ pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
         ("createMap", "text/plain") => ASCII_MAP.into(),
         ("updateMap", _) => json!({ "row": 3, "column": 4, "elevation_m": [[0.3, 0.35]] }),
         ("createRobot", _) => robot(),
-        ("createRecording", "text/csv") => DRIVE_CSV.into(),
+        ("createRecording" | "recordingscolumns", "text/csv") => DRIVE_CSV.into(),
         ("calibrate" | "diagnose", _) => job(),
         _ => return None,
     })
@@ -56,7 +56,7 @@ pub(super) fn body(operation_id: &str, media_type: &str) -> Option<Value> {
 /// Returns the example of a parameter. Ids are those of the examples of bodies.
 pub(super) fn parameter(operation_id: &str, name: &str) -> Option<Value> {
     Some(match (operation_id, name) {
-        ("readRobot", "id") => ROBOT.into(),
+        ("readRobot" | "readRobotMechanisms", "id") => ROBOT.into(),
         (_, "id")
             if operation_id.ends_with("Map")
                 || ["readMapEarth", "readMapAreas", "mapareas"].contains(&operation_id) =>

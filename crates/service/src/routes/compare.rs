@@ -25,6 +25,9 @@ pub struct CompareAnswer {
     /// What the energy-minimal path saves, as a share of the size of the shortest path's energy: above 1 where the
     /// energy-minimal path returns energy and the shortest takes some, 0 between equal places.
     pub saving_fraction: f64,
+    /// The same of the refined paths; absent where one of both is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined_saving_fraction: Option<f64>,
 }
 
 /// Compare the energy-minimal, shortest and fastest paths. The request is that of `/v1/plan`; its objective is ignored.
@@ -74,6 +77,7 @@ pub fn answer(
     };
     Ok(CompareAnswer {
         saving_fraction: found.saving_fraction(),
+        refined_saving_fraction: found.refined_saving_fraction(),
         energy: path(&found.energy, ObjectiveName::Energy),
         distance: path(&found.distance, ObjectiveName::Distance),
         time: path(&found.time, ObjectiveName::Time),

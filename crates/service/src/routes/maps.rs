@@ -111,7 +111,7 @@ pub struct ReadingQuery {
     pub name: Option<String>,
 }
 
-/// Store a map under a name of one's own, if it has one: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), or
+/// Store a map under a name of one's own, if it has one: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), cells in bytes (application/octet-stream: see the guide), or
 /// the YAML and the image of a ROS map_server map (multipart/form-data with the parts `yaml` and `image`). What looks wrong with
 /// its elevations stands in the answer's warnings.
 #[utoipa::path(
@@ -121,6 +121,7 @@ pub struct ReadingQuery {
         (MapFile = "application/json"),
         (String = "text/plain"),
         (Vec<u8> = "image/tiff"),
+        (Vec<u8> = "application/octet-stream"),
         (RosMapForm = "multipart/form-data")
     )),
     responses(

@@ -12,7 +12,7 @@ use axum::{
     extract::{Query, Request, State},
     http::{StatusCode, Uri},
 };
-use recording::{Format, ReadingReport, Room};
+use recording::{BeginningColumn, Format, ReadingReport, Room};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
@@ -138,6 +138,68 @@ pub(crate) async fn create(
     Ok((if new { StatusCode::CREATED } else { StatusCode::OK }, Json(note.into())))
 }
 
+/// The beginning of a log.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct RecordingColumns {
+    /// Columns of a table, or fields of topics, that hold anything.
+    pub columns: Vec<BeginningColumn>,
+}
+
+/// Look into a log without storing it: the first values of each column of a CSV or Parquet file, or of each field of the topics of an
+/// MCAP file, a SQLite file of ROS 2, a ROS 1 bag or a PX4 log, so that a map can be made of what is there. Of logs other than Parquet and
+/// SQLite the first megabytes do.
+#[utoipa::path(
+    post, path = "/v1/recordings/columns", tag = "recordings",
+    request_body(content(
+        (String = "text/csv"),
+        (Vec<u8> = "application/vnd.apache.parquet"),
+        (Vec<u8> = "application/mcap"),
+        (Vec<u8> = "application/vnd.sqlite3"),
+        (Vec<u8> = "application/x-rosbag")
+    )),
+    responses(
+        (status = 200, description = "The columns", body = RecordingColumns),
+        (status = 400, body = Problem, content_type = "application/problem+json"),
+        (status = 413, body = Problem, content_type = "application/problem+json"),
+        (status = 415, body = Problem, content_type = "application/problem+json"),
+        (status = 507, body = Problem, content_type = "application/problem+json"),
+        (status = 503, description = "The store is out of reach", body = Problem, content_type = "application/problem+json")
+    )
+)]
+pub(crate) async fn columns(
+    State(engine): State<Engine>,
+    tenant: Tenant,
+    request: Request,
+) -> Result<Json<RecordingColumns>, Problem> {
+    let said = format_of(&content_type(&request))?;
+    let (parts, body) = request.into_parts();
+    let received = receive(&engine, &tenant, &parts.headers, body).await?;
+    let format = content_of(&received)?.unwrap_or(said);
+    let reading = Reading::of(&engine, format, received.bytes);
+    hold(Arc::new(engine.admission().reserve(reading.bytes)?));
+    let columns = engine.work(move |left| looked_into(&received, format, left)).await?;
+    Ok(Json(RecordingColumns { columns }))
+}
+
+fn looked_into(
+    received: &Received,
+    format: Format,
+    left: &Arc<AtomicBool>,
+) -> Result<Vec<BeginningColumn>, Problem> {
+    let file = received.file.reader().map_err(|error| cannot("read from", &error))?;
+    recording::beginning(file, format, &watch_of(left)).map_err(|error| Problem::invalid_recording(&error))
+}
+
+/// A watch that stops a reading that nobody waits for any more.
+fn watch_of(left: &Arc<AtomicBool>) -> recording::Watch {
+    let left = Arc::clone(left);
+    Arc::new(
+        move |_| {
+            if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        },
+    )
+}
+
 /// The map of a query: an object in full, or the name of a built-in one.
 fn map_choice(text: String) -> Result<Value, Problem> {
     if !text.trim_start().starts_with(['{', '[']) {
@@ -179,10 +241,7 @@ fn checked(
 ) -> Result<(Note, Spool), Problem> {
     let map = note.map.as_ref().map(map_from).transpose()?;
     let file = received.file.reader().map_err(|error| cannot("read from", &error))?;
-    let left = Arc::clone(left);
-    let watch: recording::Watch = Arc::new(move |_| {
-        if left.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    let watch = watch_of(left);
     let reading = recording::read_file(file, note.format, &note.name, map.as_ref(), &watch, room)
         .map_err(|error| Problem::invalid_recording(&error))?;
     note.report = serde_json::to_value(&reading.report).map_err(|error| {

@@ -154,15 +154,22 @@ pub(crate) async fn read(
     tenant: Tenant,
     Id(id): Id,
 ) -> Result<Json<Robot>, Problem> {
-    if let Some(robot) = engine.robots().get(&tenant, &id).await? {
-        return Ok(Json(robot));
+    known_robot(&engine, &tenant, &id).await.map(Json)
+}
+
+/// A stored or built-in robot that a path names.
+///
+/// # Errors
+/// A name that no robot has, or a store out of reach.
+pub(super) async fn known_robot(engine: &Engine, tenant: &Tenant, id: &str) -> Result<Robot, Problem> {
+    if let Some(robot) = engine.robots().get(tenant, id).await? {
+        return Ok(robot);
     }
-    let found = builtin::by_name(&id).map_err(|error| {
+    builtin::by_name(id).map_err(|error| {
         let mut problem = Problem::invalid_robot(&error, "");
         problem.errors.clear();
         problem
-    })?;
-    Ok(Json(found))
+    })
 }
 
 /// Forget a stored robot. Jobs that were started with it finish.

@@ -38,10 +38,10 @@ async function stored(page: Page, service: Service): Promise<{ features: { prope
 
 /** A wall across the sample's path from its start to its goal. */
 const WALL: [number, number][] = [
-  [0.3, 0.66],
-  [0.66, 0.3],
-  [0.7, 0.34],
-  [0.34, 0.7],
+  [0.2, 0.76],
+  [0.76, 0.2],
+  [0.8, 0.24],
+  [0.24, 0.8],
 ];
 
 const openTools = (page: Page) => page.getByRole("button", { name: "Areas", exact: true }).click();

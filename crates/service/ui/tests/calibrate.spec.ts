@@ -35,6 +35,58 @@ function oddly(path: string): string {
   return [HEADER.join(";"), ...lines].join("\n");
 }
 
+/** An MCAP file of one topic of a team's own: schema, channel and messages of three doubles, by the format's specification. */
+function bagOf(rows: { t_s: number; values: number[] }[]): Buffer {
+  const u16 = (value: number) => Buffer.from(Uint16Array.of(value).buffer);
+  const u32 = (value: number) => Buffer.from(Uint32Array.of(value).buffer);
+  const u64 = (value: bigint) => Buffer.from(BigUint64Array.of(value).buffer);
+  const text = (words: string) => Buffer.concat([u32(words.length), Buffer.from(words)]);
+  const record = (opcode: number, ...parts: Buffer[]) => {
+    const body = Buffer.concat(parts);
+    return Buffer.concat([Buffer.of(opcode), u64(BigInt(body.length)), body]);
+  };
+  const definition = "float64 links\nfloat64 rechts\nfloat64 leistung\n";
+  const messages = rows.map(({ t_s, values }, i) => {
+    const t_ns = u64(BigInt(Math.round(1e6 * (1.76e9 + t_s))) * 1000n);
+    return record(5, u16(1), u32(i), t_ns, t_ns, Buffer.of(0, 1, 0, 0), Buffer.from(Float64Array.from(values).buffer));
+  });
+  return Buffer.concat([
+    Buffer.from("\x89MCAP0\r\n", "latin1"),
+    record(3, u16(1), text("team_msgs/msg/Fahrt"), text("ros2msg"), text(definition)),
+    record(4, u16(1), u16(1), text("/fahrt"), text("cdr"), u32(0)),
+    ...messages,
+    record(15, Buffer.alloc(4)),
+    record(2, Buffer.alloc(20)),
+    Buffer.from("\x89MCAP0\r\n", "latin1"),
+  ]);
+}
+
+test("topics that no map knows are picked field by field, with a plot, and read", PHONE_TOO, async ({ page, service }, info) => {
+  const rows = Array.from({ length: 1500 }, (_, i) => ({
+    t_s: i / 10,
+    values: [0.5 + 0.1 * Math.sin(i / 40), 0.5, 60 + 5 * Math.sin(i / 30)],
+  }));
+  await page.goto(`${service.url}/#calibrate`);
+  await page
+    .locator(".recordings input[type=file]")
+    .setInputFiles({ name: "fahrt.mcap", mimeType: "application/octet-stream", buffer: bagOf(rows) });
+  const picker = page.getByRole("region", { name: "Columns of the log" });
+  // On a phone rows are cards, without a header.
+  if (info.project.name === "desktop") await expect(picker.getByRole("columnheader", { name: "Topic and field" })).toBeVisible();
+  await expect(picker.getByRole("rowheader")).toHaveText(["/fahrt links", "/fahrt rechts", "/fahrt leistung"]);
+  await expect(picker.getByRole("status")).toContainText("Say which column is the left wheel speed");
+  await expect(picker.getByLabel("/fahrt links is").getByRole("option", { name: "Time" }), "messages have their own").toHaveCount(0);
+  await picker.getByLabel("/fahrt links is").selectOption("Left wheel speed");
+  await picker.getByLabel("/fahrt rechts is").selectOption("Right wheel speed");
+  await picker.getByLabel("/fahrt leistung is").selectOption("Battery power");
+  await expect(picker.getByText(/^\/fahrt leistung, as it stands in the file, over the first 600 rows$/)).toBeVisible();
+  await picture(page, `topics-${info.project.name}`);
+  await checkAccessible(page, "topics");
+  await picker.getByRole("button", { name: "Read with these columns" }).click();
+  await expect(page.getByText("1,500")).toBeVisible();
+  await expect(page.getByRole("cell", { name: "/fahrt leistung [W]", includeHidden: true })).toHaveCount(1);
+});
+
 test(
   "from odd CSV files to a corrected plan: columns are picked once, the robot is fitted, and plans stand side by side",
   PHONE_TOO,

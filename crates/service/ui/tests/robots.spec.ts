@@ -47,6 +47,29 @@ test("a value outside its range is said at its field, before and by the service"
   await expect(page.getByText(/inside the wheels/).first()).toBeVisible();
 });
 
+test("a mechanism's numbers have the units and ranges that the service states for this robot", PHONE_TOO, async ({ page, service }) => {
+  const husky = (await (await page.request.get(`${service.url}/v1/robots/husky-a200`)).json()) as object;
+  const drag = { mechanism: "drivetrain_drag", parameters: { left_n: 21, right_n: 0 } };
+  const posted = await page.request.post(`${service.url}/v1/robots`, { data: { ...husky, name: "dragging", mechanisms: [drag] } });
+  expect(posted.status()).toBe(201);
+  await page.goto(`${service.url}/#robots`);
+  await page.getByRole("button", { name: /dragging.*stored/ }).click();
+  const group = page.getByRole("group", { name: "drivetrain drag" });
+  await expect(group.getByText("\u221210 to 300 N")).toHaveCount(2);
+  const left = group.getByLabel("left");
+  await left.fill("301");
+  await expect(group.getByText("Must lie between \u221210 and 300 N")).toBeVisible();
+  await expect(page.getByRole("button", { name: "Save as new" })).toBeDisabled();
+  await left.fill("250");
+  await expect(left).toHaveAttribute("aria-invalid", "false");
+  // Ten times the mass may drag ten times as much, which the service knows and the page does not say.
+  await page.getByLabel("Mass", { exact: true }).first().fill("900");
+  await left.fill("2500");
+  await checkAccessible(page, "a robot with a mechanism");
+  await page.getByRole("button", { name: "Save as new" }).click();
+  await expect(group.getByText("\u2212100 to 3000 N")).toHaveCount(2);
+});
+
 test("a robot's file is taken up, and a wrong one refused", async ({ page, service }) => {
   await page.goto(`${service.url}/#robots`);
   const robot = (await (await page.request.get(`${service.url}/v1/robots/husky-a200`)).json()) as object;

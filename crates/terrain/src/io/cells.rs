@@ -1,4 +1,4 @@
-//! A map as bytes, exactly as it is held: what a store keeps and reads back in milliseconds.
+//! A map as bytes, exactly as it is held: what a store keeps and reads back in milliseconds, and what large maps are sent as.
 //!
 //! Little-endian, southernmost row first:
 //!
@@ -16,10 +16,14 @@
 //! u32      length of the areas, then as many bytes of them as GeoJSON
 //! ```
 
+mod sent;
+
 use std::{
     io::{self, Read, Write},
     sync::Arc,
 };
+
+pub use sent::{claimed, read_sent};
 
 use crate::{Surfaces, Terrain, Warning, areas::Areas};
 
@@ -30,6 +34,10 @@ const CRS: u8 = 4;
 const FILLED: u8 = 8;
 const WARNINGS: u8 = 16;
 const AREAS: u8 = 32;
+/// All of them.
+const LAYERS: u8 = SURFACES | OBSTACLES | CRS | FILLED | WARNINGS | AREAS;
+/// Where the byte of layers stands.
+const LAYERS_AT: usize = 4 + 2 * 8 + 4 * 8;
 /// Cells that are converted at a time.
 const CHUNK_CELLS: usize = 16_384;
 /// Longest name of a surface or system that is read [bytes].

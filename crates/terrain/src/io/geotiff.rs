@@ -21,6 +21,8 @@ mod sidecars;
 mod system_keys;
 mod write;
 
+use rayon::prelude::*;
+
 pub(crate) use self::classes::ClassRaster;
 use self::{
     directory::TiffFile,
@@ -190,11 +192,11 @@ impl Reading<'_> {
         let band = Band { file: file.bytes, big_endian: file.big_endian, layout, band: self.band };
         let mut samples: Vec<T> = band.read(T::from_double(of_absent))?;
         if let Some(nodata) = self.nodata.filter(|nodata| !nodata.mark.is_nan()) {
-            for sample in &mut samples {
+            samples.par_iter_mut().with_min_len(layout.columns).for_each(|sample| {
                 if nodata.marks((*sample).into()) {
                     *sample = T::from_double(f64::NAN);
                 }
-            }
+            });
         }
         masks::apply(file, layout, self.mask, &mut samples)?;
         let grid = self.placement.grid;
@@ -209,7 +211,11 @@ impl Reading<'_> {
             }
         };
         let heights = self.heights;
-        let mut terrain = Terrain::from_samples(grid, samples, |sample| heights.height_m(sample))?;
+        let mut terrain = if heights.is_height() {
+            Terrain::from_samples(grid, samples, |sample| sample)?
+        } else {
+            Terrain::from_samples(grid, samples, |sample| heights.height_m(sample))?
+        };
         terrain.crs = self.placement.crs;
         Ok(terrain)
     }

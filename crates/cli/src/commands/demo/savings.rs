@@ -52,8 +52,8 @@ fn changed(robot: &Robot, ground: &Ground, hotel_power_w: f64) -> Robot {
 
 fn saving(question: &Question, robot: &Robot) -> anyhow::Result<f64> {
     let energy_j = |objective: &str| -> anyhow::Result<f64> {
-        let more = json!({ "objective": objective, "refine": false });
-        Ok(question.ask::<PlanAnswer>("plan", robot, more)?.energy_j)
+        let more = json!({ "objective": objective });
+        Ok(question.ask::<PlanAnswer>("plan", robot, more)?.followed_path().energy_j)
     };
     let (least_j, shortest_j) = (energy_j("energy")?, energy_j("distance")?);
     Ok((shortest_j - least_j) / shortest_j)

@@ -92,10 +92,13 @@ def _robot_and_cluster(command: argparse.ArgumentParser) -> None:
     command.add_argument("--address", help="address of the Ray cluster [default: RAY_ADDRESS, else a Ray of this machine for this call]")
     command.add_argument("--cores-per-task", type=int, default=1, metavar="N", help="[default: %(default)s]")
     command.add_argument("--retries", type=int, default=Ways.retries, metavar="N", help="how often a task is repeated whose machine died [default: %(default)s]")
+    command.add_argument(
+        "--task-timeout-s", type=float, default=Ways.task_timeout_s, metavar="S", help="most time of one task, counted as failed beyond it [default: %(default)s]"
+    )
 
 
 def _ways(arguments: argparse.Namespace) -> Ways:
-    return Ways(arguments.address, arguments.cores_per_task, arguments.retries)
+    return Ways(arguments.address, arguments.cores_per_task, arguments.retries, task_timeout_s=arguments.task_timeout_s)
 
 
 def _ask(arguments: argparse.Namespace) -> int:

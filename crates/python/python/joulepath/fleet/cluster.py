@@ -14,6 +14,7 @@ from typing import Any
 
 from .._optional import needed
 from .errors import FleetError
+from .time_limit import Lost, limited
 
 LOOPBACK = "127.0.0.2"
 """Address of a Ray that is started here for one call. Ray takes 127.0.0.1 for the machine's outside address; 127.0.0.2 is the machine's own as
@@ -36,6 +37,9 @@ class Ways:
     """How often a piece is repeated whose worker or machine died, or whose files were out of reach."""
     in_flight: int | None = None
     """Most pieces that Ray is given at a time. Default: twice what its cores can do at once."""
+    task_timeout_s: float | None = 3600.0
+    """Most time that a piece may take [s], so that one that hangs does not hold a core for ever: it is counted as failed and not repeated.
+    None: no limit."""
 
     def check(self) -> None:
         """Refuses ways that cannot be gone."""
@@ -45,10 +49,8 @@ class Ways:
                 f"cores_per_task and in_flight must be 1 or more and retries 0 or more, not {self.cores_per_task}, {self.in_flight} and "
                 f"{self.retries}",
             )
-
-
-class Lost(Exception):
-    """A piece of which nothing came, however often it was tried; says why."""
+        if self.task_timeout_s is not None and not 0.0 < self.task_timeout_s < float("inf"):
+            raise FleetError("invalid-request", f"task_timeout_s must be a number of seconds above 0, or None for no limit, not {self.task_timeout_s}")
 
 
 @contextlib.contextmanager
@@ -87,10 +89,10 @@ def _own_address(cluster: str | None) -> dict[str, Any]:
 def spread(ray: Any, ways: Ways, work: Callable[..., Any], shared: Any, pieces: Sequence[Any]) -> Iterator[tuple[int, Any]]:
     """Gives the outcome of `work(shared, piece)` for every piece, as they come, each with its piece's number.
 
-    The outcome is a [`Lost`] where a piece was tried as often as it may be. Nothing is handed to Ray before there is room for it. Whoever stops
+    The outcome is a [`Lost`] where a piece was tried as often as it may be, or took longer than it may. Nothing is handed to Ray before there is room for it. Whoever stops
     listening calls off what is still under way.
     """
-    remote = ray.remote(num_cpus=ways.cores_per_task, max_retries=ways.retries, retry_exceptions=[OSError])(work)
+    remote = ray.remote(num_cpus=ways.cores_per_task, max_retries=ways.retries, retry_exceptions=[OSError])(limited)
     shared = ray.put(shared)
     waiting = iter(enumerate(pieces))
     under_way: dict[Any, int] = {}
@@ -102,13 +104,13 @@ def spread(ray: Any, ways: Ways, work: Callable[..., Any], shared: Any, pieces: 
                 number, piece = next(waiting, (-1, None))
                 exhausted = number < 0
                 if not exhausted:
-                    under_way[remote.remote(shared, piece)] = number
+                    under_way[remote.remote(work, ways.task_timeout_s, shared, piece)] = number
                     room -= 1
             if not under_way:
                 return
             done, _ = ray.wait(list(under_way), num_returns=1, timeout=LOOK_AROUND_S)
             for reference in done:
-                yield under_way.pop(reference), _outcome(ray, reference)
+                yield under_way.pop(reference), _outcome(ray, ways, reference)
     finally:
         for reference in under_way:
             ray.cancel(reference, force=True)
@@ -122,11 +124,12 @@ def _room(ray: Any, ways: Ways) -> int:
     return max(1, QUEUED_PER_CORE * int(cores // ways.cores_per_task))
 
 
-def _outcome(ray: Any, reference: Any) -> Any:
+def _outcome(ray: Any, ways: Ways, reference: Any) -> Any:
     try:
         return ray.get(reference)
     except ray.exceptions.RayTaskError as error:
         cause = error.cause if isinstance(error.cause, Exception) else error
         return Lost(f"{type(cause).__name__}: {cause}")
     except ray.exceptions.RayError as error:
-        return Lost(f"the machine or its worker died every time that it was tried ({type(error).__name__})")
+        limit = f", or it took longer than {ways.task_timeout_s:g} s and did not heed it" if ways.task_timeout_s is not None else ""
+        return Lost(f"the machine or its worker died every time that it was tried ({type(error).__name__}){limit}")

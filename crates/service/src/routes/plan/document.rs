@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use planner::{Objective, Patience, Plan, Planner, Pose, Snap};
+use planner::{Objective, Patience, Plan, Planner, Pose, RefinedPath, Route, Snap};
 use serde::{Deserialize, Serialize};
 use terrain::{Terrain, Warning};
 use utoipa::ToSchema;
@@ -29,11 +29,11 @@ pub struct PlanAnswer {
     pub recovered_j: f64,
     /// The path, pose by pose.
     pub poses: Vec<PoseAnswer>,
-    /// Energy of the refined path; absent where none was asked for [J].
+    /// Energy of the refined path; absent where `refined` is [J].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refined_energy_j: Option<f64>,
     /// The same way between the same ends with shortcuts and freely placed arcs, driven by the same model within the same
-    /// limits, and never worse; absent where none was asked for.
+    /// limits, and never worse; absent where none was asked for or no time was left. It is what pictures, tables of tracks and the page show.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refined: Option<RefinedAnswer>,
     /// How far start and goal were moved to the lattice.
@@ -67,13 +67,33 @@ pub struct PlanAnswer {
     pub warnings: Vec<Warning>,
 }
 
-/// A path that leaves the lattice.
+/// A path that leaves the lattice, with the totals that the lattice's path has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct RefinedAnswer {
+    /// Energy drawn from the battery [J].
+    pub energy_j: f64,
+    /// Central 95 % interval of it, from the robot's parameter uncertainty [J].
+    #[schema(min_items = 2, max_items = 2)]
+    pub energy_interval_j: [f64; 2],
     /// Time [s].
     pub duration_s: f64,
     /// Length along the ground [m].
     pub distance_m: f64,
+    /// Height gained on the way up [m].
+    pub climb_m: f64,
+    /// Height lost on the way down [m].
+    pub descent_m: f64,
+    /// Energy that flowed back into the battery [J].
+    pub recovered_j: f64,
+    /// Energy that stops and changes of speed on the way take besides [J].
+    pub stops_j: f64,
+    /// Number of stops on the way.
+    pub stops: usize,
+    /// Least room on the way, as that of the lattice's path [m].
+    pub clearance_m: Option<f64>,
+    /// Whether it was refined to the end. False where the time for it, half of what the search left, was over first: the path is the
+    /// best until then.
+    pub finished: bool,
     /// The path, pose by pose.
     pub poses: Vec<PoseAnswer>,
 }
@@ -150,12 +170,8 @@ impl From<&Plan> for PlanAnswer {
             descent_m: total.descent_m,
             recovered_j: total.recovered_j,
             poses: plan.route.poses.iter().map(PoseAnswer::from).collect(),
-            refined_energy_j: plan.refined.as_ref().map(|route| route.total.energy_j),
-            refined: plan.refined.as_ref().map(|route| RefinedAnswer {
-                duration_s: route.total.duration_s,
-                distance_m: route.total.length_m,
-                poses: route.poses.iter().map(PoseAnswer::from).collect(),
-            }),
+            refined_energy_j: plan.refined.as_ref().map(|refined| refined.route.total.energy_j),
+            refined: plan.refined.as_ref().map(RefinedAnswer::from),
             snapped: Snapped { start: (&plan.start_snap).into(), goal: (&plan.goal_snap).into() },
             search: SearchAnswer {
                 expanded: plan.search.expanded,
@@ -177,6 +193,26 @@ impl From<&Plan> for PlanAnswer {
     }
 }
 
+impl From<&RefinedPath> for RefinedAnswer {
+    fn from(refined: &RefinedPath) -> Self {
+        let RefinedPath { route, energy_interval_j, finished } = refined;
+        RefinedAnswer {
+            energy_j: route.total.energy_j,
+            energy_interval_j: *energy_interval_j,
+            duration_s: route.total.duration_s,
+            distance_m: route.total.length_m,
+            climb_m: route.total.climb_m,
+            descent_m: route.total.descent_m,
+            recovered_j: route.total.recovered_j,
+            stops_j: 0.0,
+            stops: planner::stops(route),
+            clearance_m: None,
+            finished: *finished,
+            poses: route.poses.iter().map(PoseAnswer::from).collect(),
+        }
+    }
+}
+
 impl PlanAnswer {
     /// The answer to a request: a path with its place on earth, what lies beside it, and doubts about it and its map.
     pub(crate) fn of(plan: &Plan, planner: &Planner, request: &PlanRequest, patience: &Patience) -> Self {
@@ -184,9 +220,18 @@ impl PlanAnswer {
         let objective: Objective = request.objective.into();
         let total = &plan.route.total;
         let added = objective.compared(total) - objective.amount(total);
+        let beside = |route: &Route| {
+            (planner::stops_j(&lattice.robot, route), planner::least_room_m(lattice, route, patience))
+        };
+        let (stops_j, clearance_m) = beside(&plan.route);
+        let refined = plan.refined.as_ref().map(|refined| {
+            let (stops_j, clearance_m) = beside(&refined.route);
+            RefinedAnswer { stops_j, clearance_m, ..RefinedAnswer::from(refined) }
+        });
         let answer = PlanAnswer {
-            stops_j: planner::stops_j(&lattice.robot, &plan.route),
-            clearance_m: planner::least_room_m(lattice, &plan.route, patience),
+            stops_j,
+            clearance_m,
+            refined,
             preferences: lattice.has_preferences().then_some(added),
             reached_goal: request.goals.as_ref().map(|_| plan.goal),
             ..PlanAnswer::from(plan)

@@ -35,7 +35,7 @@ fn coarse_cells(lattice: &Lattice) -> Option<Warning> {
     is_coarse(lattice).then(|| {
         let (cell_size_m, wheelbase_m) = (lattice.terrain.grid.cell_size_m, lattice.robot.wheelbase_m);
         let detail = format!(
-            "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell, which only the upper end of the interval of a plan or comparison allows for, by how much the slopes of neighbouring cells differ; use a finer map"
+            "cells of {cell_size_m} m are far coarser than the robot, whose wheelbase is {wheelbase_m} m: the energy misses all ups, downs and turns within a cell, which only the upper end of the interval of a plan or comparison and the draws of a range or mission allow for, by how much the slopes of neighbouring cells differ; use a finer map"
         );
         Warning::new(WarningKind::CoarseCells, detail)
     })

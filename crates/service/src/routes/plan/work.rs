@@ -9,6 +9,7 @@ use super::PlanRequest;
 use crate::{
     Engine, Tenant,
     memory::estimated_bytes,
+    planners::KeyedMap,
     problem::{Problem, ProblemType},
     routes::{
         maps::{refuse_too_large, terrain_from},
@@ -40,14 +41,16 @@ pub(crate) async fn with_planner<T: Send + 'static>(
             let found = match (stored, inline) {
                 (Some(stored), _) => {
                     let map_id = request.map_id.as_deref().unwrap_or_default();
+                    let map = KeyedMap { id: map_id, terrain: &stored, is_stored: true };
                     large(&stored)
-                        .and_then(|()| request.planner_of(&own, (map_id, &stored), patience))
+                        .and_then(|()| request.planner_of(&own, map, patience))
                         .and_then(|planner| answer(&planner, &request, patience))
                 }
                 (None, Some(file)) => {
                     let terrain = terrain_from(file, &own.limits().map_options(), "/map")?;
+                    let map = KeyedMap { id: &terrain.content_id(), terrain: &terrain, is_stored: false };
                     large(&terrain)
-                        .and_then(|()| request.planner(&terrain, patience))
+                        .and_then(|()| request.planner_of(&own, map, patience))
                         .and_then(|planner| answer(&planner, &request, patience))
                 }
                 (None, None) => return Err(no_map()),

@@ -7,6 +7,8 @@ export interface Asking {
   method?: string;
   /** Sent as JSON. */
   json?: unknown;
+  /** Sent as they are. */
+  bytes?: Blob;
   accept?: string;
   /** More header fields. */
   headers?: Record<string, string>;
@@ -21,6 +23,10 @@ export async function send(path: string, asking: Asking = {}): Promise<Response>
   if (asking.json !== undefined) {
     headers["content-type"] = "application/json";
     init.body = JSON.stringify(asking.json);
+    init.method = asking.method ?? "POST";
+  }
+  if (asking.bytes !== undefined) {
+    init.body = asking.bytes;
     init.method = asking.method ?? "POST";
   }
   let response: Response;

@@ -1,6 +1,7 @@
 /** Recordings and what reading them found. */
 import type { RecordingMap } from "../columns/recording_map";
-import { ask } from "./ask";
+import type { Column } from "../columns/table";
+import { ask, send } from "./ask";
 import { recordingType, upload } from "./upload";
 
 export interface ReadingReport {
@@ -34,4 +35,10 @@ export function storeRecording(file: File, map: RecordingMap | undefined, tell: 
   const name = file.name.replace(/\.[^.]*$/, "");
   const query = new URLSearchParams({ name, ...(map && { map: JSON.stringify(map) }) });
   return upload<StoredRecording>(`/v1/recordings?${query}`, file, recordingType(file.name), tell);
+}
+
+/** The first values of the columns of a log, or of the fields of its topics; the service stores nothing of it. */
+export async function lookInto(name: string, beginning: Blob): Promise<Column[]> {
+  const response = await send("/v1/recordings/columns", { bytes: beginning, headers: { "content-type": recordingType(name) } });
+  return ((await response.json()) as { columns: Column[] }).columns;
 }

@@ -53,3 +53,23 @@ export async function storeRobot(robot: unknown): Promise<KnownRobot> {
 export async function deleteRobot(id: string): Promise<void> {
   await send(`/v1/robots/${id}`, { method: "DELETE" });
 }
+
+/** A parameter of a mechanism, with what it may be on a robot; its unit is `1` where it has none. */
+export interface ParameterRange {
+  name: string;
+  unit: string;
+  least: number;
+  greatest: number;
+  optional: boolean;
+}
+
+/** A mechanism that a robot's file may carry. */
+export interface MechanismRanges {
+  mechanism: string;
+  parameters: ParameterRange[];
+}
+
+/** The mechanisms that a robot may carry, with what they may be on it. */
+export async function listMechanisms(id: string): Promise<MechanismRanges[]> {
+  return (await ask<{ mechanisms: MechanismRanges[] }>(`/v1/robots/${encodeURIComponent(id)}/mechanisms`)).mechanisms;
+}

@@ -3,10 +3,10 @@ import { useState } from "preact/hooks";
 import { readNumber } from "../number";
 import * as plan from "../plan/state";
 import { Chart } from "../widgets/chart";
-import { CHANNELS, channelOf } from "./channels";
-import { guessAll, unitFor, type Pick } from "./guess";
+import { channelOf } from "./channels";
+import { guessAll, offered, unitFor, type Pick } from "./guess";
 import { mapOf, missing, needsRadius, picksOf, type RecordingMap } from "./recording_map";
-import { isDate, numberOf, type Column } from "./table";
+import { isDate, isOfTopics, numberOf, titleOf, type Column } from "./table";
 
 interface Props {
   columns: Column[];
@@ -35,14 +35,14 @@ export function ColumnPicker({ columns, isUnknown, before, others, robotId, take
   const radius_m = given_m !== null && given_m > 0 ? given_m : null;
   const time = picks.findIndex(({ channel }) => channel === "t_s");
   const isDated = columns[time]?.cells.some(isDate) ?? false;
-  const fault = missing(picks, radius_m);
+  const fault = missing(columns, picks, radius_m);
   const set = (at: number, change: Partial<Pick>) => {
     setPicks(picks.map((pick, i) => (i === at ? { ...pick, ...change } : pick)));
     look(at);
   };
   return (
     <section class="columns" aria-label="Columns of the log">
-      {isUnknown && <p role="alert">The names of these columns do not say what they are.</p>}
+      {isUnknown && <p role="alert">The names in this file do not say what its numbers are.</p>}
       <p>
         Say what each column is, and in which unit.
         {!before && picks.some(({ channel }) => channel !== null) && " What is filled in already is a guess by its name and numbers."}
@@ -51,7 +51,7 @@ export function ColumnPicker({ columns, isUnknown, before, others, robotId, take
         <table>
           <thead>
             <tr>
-              <th scope="col">Column</th>
+              <th scope="col">{isOfTopics(columns) ? "Topic and field" : "Column"}</th>
               <th scope="col">Begins with</th>
               <th scope="col">Is</th>
               <th scope="col">In</th>
@@ -60,7 +60,14 @@ export function ColumnPicker({ columns, isUnknown, before, others, robotId, take
           </thead>
           <tbody>
             {columns.map((column, i) => (
-              <Row key={column.name} column={column} pick={picks[i]!} isLooked={i === looked} look={() => look(i)} set={(c) => set(i, c)} />
+              <Row
+                key={titleOf(column)}
+                column={column}
+                pick={picks[i]!}
+                isLooked={i === looked}
+                look={() => look(i)}
+                set={(c) => set(i, c)}
+              />
             ))}
           </tbody>
         </table>
@@ -108,7 +115,8 @@ interface RowProps {
 }
 
 function Row({ column, pick, isLooked, look, set }: RowProps) {
-  const { name, cells } = column;
+  const { cells } = column;
+  const name = titleOf(column);
   const units = (pick.channel && channelOf(pick.channel)?.units) || [];
   const choose = (named: string) => {
     const channel = channelOf(named);
@@ -121,7 +129,7 @@ function Row({ column, pick, isLooked, look, set }: RowProps) {
       <td>
         <select aria-label={`${name} is`} value={pick.channel ?? ""} onFocus={look} onChange={(event) => choose(event.currentTarget.value)}>
           <option value="">left out</option>
-          {CHANNELS.map((channel) => (
+          {offered([column]).map((channel) => (
             <option key={channel.name} value={channel.name}>
               {channel.label}
             </option>
@@ -160,7 +168,8 @@ function Row({ column, pick, isLooked, look, set }: RowProps) {
 /** Points of the plot: more are not seen. */
 const POINTS = 600;
 
-function Preview({ column: { name, cells } }: { column: Column }) {
+function Preview({ column }: { column: Column }) {
+  const [name, { cells }] = [titleOf(column), column];
   const step = Math.ceil(cells.length / POINTS);
   const shown = cells.filter((_, i) => i % step === 0).map(numberOf);
   if (!shown.some((value) => Number.isFinite(value))) return <p class="bars-note">{name} holds no numbers to plot.</p>;

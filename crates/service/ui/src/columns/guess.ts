@@ -1,6 +1,6 @@
 /** What each column may hold, guessed from its name and the size of its numbers, as `joulepath inspect` does. */
-import { channelOf, type Channel } from "./channels";
-import { isDate, numberOf, type Column } from "./table";
+import { CHANNELS, channelOf, type Channel } from "./channels";
+import { isDate, isOfTopics, numberOf, titleOf, type Column } from "./table";
 
 /** What is said of a column; none where it is left out. */
 export interface Pick {
@@ -136,14 +136,21 @@ function channelFor(name: string): string | null {
   return words.length === 1 && (has(["run"]) || has(["surface"])) ? words[0]! : null;
 }
 
+/** The channels that columns may hold: numbers of topics are neither times nor names. */
+export const offered = (columns: Column[]) =>
+  isOfTopics(columns) ? CHANNELS.filter(({ name, units }) => name !== "t_s" && units.length > 0) : CHANNELS;
+
 export function guess(column: Column): Pick {
-  const name = channelFor(column.name);
+  const name = channelFor(column.topic === undefined ? column.name : fieldWords(column));
   const channel = name && channelOf(name);
-  if (!channel) return LEFT_OUT;
+  if (!channel || !offered([column]).includes(channel)) return LEFT_OUT;
   const isText = Number.isNaN(greatestOf(column)) && !column.cells.some(isDate);
   if (isText && channel.units.length > 0) return LEFT_OUT;
   return { channel: channel.name, unit: unitFor(column, channel), isTurned: false };
 }
+
+/** What tells of a field: its path, whose last words weigh most, behind the words of its topic. */
+const fieldWords = (column: Column) => titleOf(column).replace(/\[\d+\]/g, "");
 
 const LEFT_OUT: Pick = { channel: null, unit: "", isTurned: false };
 
@@ -176,7 +183,7 @@ export function guessAll(columns: Column[]): Pick[] {
   });
   const [first] = columns;
   const time = channelOf("t_s");
-  if (first && time && !seen.has("t_s") && picks[0]?.channel === null && rises(first))
+  if (first && time && !isOfTopics(columns) && !seen.has("t_s") && picks[0]?.channel === null && rises(first))
     picks[0] = { channel: "t_s", unit: unitFor(first, time), isTurned: false };
   return picks;
 }

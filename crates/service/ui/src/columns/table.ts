@@ -1,7 +1,9 @@
-/** The beginning of a CSV file as columns, to show what is in it. The service reads the whole file by its own rules. */
+/** The beginning of a log as columns, to show what is in it. The service reads the whole file by its own rules, and looks into what is no text. */
 
 export interface Column {
   name: string;
+  /** The topic, of a field of a bag's messages. */
+  topic?: string;
   /** As they stand in the file. */
   cells: string[];
 }
@@ -11,10 +13,22 @@ const LOOKED_AT = 400_000;
 /** Names of files that hold text in columns, compressed or not. */
 const TEXT = /\.(csv|tsv|txt)(\.gz)?$/i;
 
-export const isTable = (name: string) => TEXT.test(name);
+const isTable = (name: string) => TEXT.test(name);
+/** Logs that are read front to back: their beginning shows what is in them. Of others the end or all is needed. */
+const FRONT_TO_BACK = /\.(mcap|bag|ulg)$/i;
+const BINARY = /\.(parquet|mcap|bag|db3|ulg)$/i;
+/** So much of a log that is read front to back is sent to be looked into [bytes]. */
+const SENT = 16 << 20;
+
+/** Asks the service what is in a file by its beginning. */
+type LookInto = (name: string, beginning: Blob) => Promise<Column[]>;
 
 /** Reads the beginning of a file; null where it has no columns. */
-export async function beginningOf(file: File): Promise<Column[] | null> {
+export async function beginningOf(file: File, lookInto: LookInto): Promise<Column[] | null> {
+  if (BINARY.test(file.name)) {
+    const columns = await lookInto(file.name, FRONT_TO_BACK.test(file.name) ? file.slice(0, SENT) : file);
+    return columns.length > 0 ? columns : null;
+  }
   if (!isTable(file.name)) return null;
   const beginning = /\.gz$/i.test(file.name) ? await unpacked(file) : await file.slice(0, LOOKED_AT).text();
   return columnsOf(beginning, file.size > LOOKED_AT);
@@ -69,6 +83,12 @@ function cellsOf(line: string, separator: string): string[] {
   }
   return [...cells, cell.trim()];
 }
+
+/** What a column is called: of a field, with its topic. */
+export const titleOf = ({ name, topic }: Column) => (topic ? `${topic} ${name}` : name);
+
+/** Whether columns are fields of topics, of which each has its own times. */
+export const isOfTopics = (columns: Column[]) => columns.some(({ topic }) => topic !== undefined);
 
 /** A cell as a number; NaN where it is none. */
 export function numberOf(cell: string): number {

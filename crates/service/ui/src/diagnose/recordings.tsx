@@ -13,8 +13,8 @@ import { alike, job, leave, problem, readAs, robotId, take, taken, takeStored, u
 
 const ENDINGS = ".csv,.tsv,.txt,.gz,.zst,.parquet,.mcap,.db3,.bag,.ulg";
 
-/** The refusal of a file that has no column for what is needed. */
-const UNKNOWN_COLUMNS = /is missing; found:/;
+/** The refusal of a file that has no column or topic for what is needed. */
+const UNKNOWN_COLUMNS = /is missing; found:|reads none of them/;
 
 const POWER_FORMS: Record<string, string> = {
   sides: "both sides",

@@ -3,9 +3,9 @@ import { computed, signal } from "@preact/signals";
 import { announce } from "../announce";
 import { cancelJob, follow, startDiagnosis, type KnownJob } from "../api/jobs";
 import { problemOf, type Problem } from "../api/problem";
-import { storeRecording, type StoredRecording } from "../api/recordings";
+import { lookInto, storeRecording, type StoredRecording } from "../api/recordings";
 import type { RecordingMap } from "../columns/recording_map";
-import { beginningOf, type Column } from "../columns/table";
+import { beginningOf, titleOf, type Column } from "../columns/table";
 import * as plan from "../plan/state";
 import { accept as acceptRobot } from "./accept";
 import type { Report } from "./report";
@@ -23,7 +23,7 @@ export interface Taken {
   isUsed: boolean;
   /** What was dropped; none of a stored recording. */
   file?: File;
-  /** Its beginning, where it is text in columns. */
+  /** Its beginning as columns, or as fields of topics. */
   columns?: Column[];
   /** What was said of its columns on the page, where anything was. */
   map?: RecordingMap;
@@ -56,13 +56,13 @@ function change(key: number, with_: Partial<Taken>): void {
 /** Columns as they were picked before, by the header that they were picked for. */
 const picked = new Map<string, RecordingMap>();
 
-const headerOf = (columns: Column[]) => JSON.stringify(columns.map(({ name }) => name));
+const headerOf = (columns: Column[]) => JSON.stringify(columns.map(titleOf));
 
 export function take(files: File[], role: Role): void {
   for (const file of files) {
     const key = count++;
     taken.value = [...taken.value, { key, name: file.name, bytes: file.size, role, share: 0, isUsed: true, file }];
-    void beginningOf(file)
+    void beginningOf(file, lookInto)
       .catch(() => null)
       .then((columns) => {
         const map = columns ? picked.get(headerOf(columns)) : undefined;

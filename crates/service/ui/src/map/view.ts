@@ -28,10 +28,16 @@ export const extentOf = ({ origin_m: [x, y], columns, rows, cell_size_m }: Exten
   height_m: rows * cell_size_m,
 });
 
+/** Frames narrower than this are phones' [px]: controls and readings have rows of their own, above and below the map. */
+const PHONE_PX = 620;
+/** Height of such a row with its margins [px]. */
+const ROW_PX = 60;
+
 /** The whole map, with a margin. */
 export function fitted(map: Extent, size: Size): View {
   const { west_m, south_m, width_m, height_m } = extentOf(map);
-  const px_per_m = 0.96 * Math.min(size.width / width_m, size.height / height_m);
+  const rows_px = size.width < PHONE_PX ? Math.min(2 * ROW_PX, size.height / 3) : 0;
+  const px_per_m = Math.min((0.96 * size.width) / width_m, Math.min(0.96 * size.height, size.height - rows_px) / height_m);
   return { x_m: west_m + width_m / 2, y_m: south_m + height_m / 2, px_per_m };
 }
 

@@ -209,18 +209,23 @@ function Charge({ plan }: { plan: Plan }) {
   );
 }
 
-/** What is proven of the energy-minimal path. */
+/** What is proven of the energy-minimal path of the lattice, and what the shown one, which leaves the lattice, takes less. */
 function Proof() {
-  const search = state.comparison.value?.energy.search;
-  if (!search) return null;
-  const near = `Proven to be within ${percent((search.bound ?? 1) - 1)} of the least`;
+  const path = state.comparison.value?.energy;
+  if (!path) return null;
+  const search = path.search;
+  const lattice = energy(path.lattice_energy_j);
+  const near = `Proven: ${lattice} on the planner's lattice is within ${percent((search.bound ?? 1) - 1)} of the least`;
   const text =
     search.optimal || search.bound === null
-      ? "Proven: no path of the planner's lattice takes less."
+      ? `Proven: no path of the planner's lattice takes less than ${lattice}.`
       : state.isDragging.value
         ? `${near}, which follows.`
         : `${near}.`;
-  return <p class="proof">{search.timed_out ? `Time ran out. ${text}` : text}</p>;
+  const freed_j = path.lattice_energy_j - path.energy_j;
+  const freed = freed_j > 0 ? ` Freed from the lattice, the path shown takes ${energy(freed_j)} less.` : "";
+  const cut = path.finished === false ? " Time ran out while it was freed from the lattice." : "";
+  return <p class="proof">{`${search.timed_out ? "Time ran out. " : ""}${text}${freed}${cut}`}</p>;
 }
 
 /** The doubts about a path that are not of its map, which stand beside the map. */

@@ -8,8 +8,8 @@ import { percent, energy } from "../format";
 import { steeredGoal, steering } from "./steering";
 import * as state from "./state";
 
-/** While a slider moves, paths within 5 % of the least will do: they come at once. */
-const DRAGGED_BOUND = 1.05;
+/** While a slider or a marker moves, paths of the lattice within 5 % of the least will do: they come at once. */
+const WHILE_DRAGGED = { bound: 1.05, refine: false };
 
 /** The question that the page asks now, for a robot; null while something is missing. */
 export function question(known = state.robot.value): PlanQuestion | null {
@@ -21,7 +21,6 @@ export function question(known = state.robot.value): PlanQuestion | null {
     robot: state.loaded(known),
     start,
     goal: steeredGoal(goal),
-    refine: false,
     ...steering.value,
     ...(speed_mps !== null && { speed_mps: Math.min(speed_mps, known.robot.max_wheel_speed_mps) }),
   };
@@ -98,10 +97,10 @@ export function followQuestion(): void {
     const asked = question();
     const formerRobot = state.robots.value?.find(({ id }) => id === state.formerId.value);
     const former = formerRobot ? question(formerRobot) : null;
-    const bound = state.isDragging.value ? { bound: DRAGGED_BOUND } : {};
+    const rough = state.isDragging.value ? WHILE_DRAGGED : {};
     untracked(() => {
       if (asked) {
-        askSoon({ now: { ...asked, ...bound }, former: former && { ...former, ...bound } });
+        askSoon({ now: { ...asked, ...rough }, former: former && { ...former, ...rough } });
         return;
       }
       stop();

@@ -1,6 +1,7 @@
 /** The fields of a robot: what they mean, their units, and the ranges that the service keeps to (`robot/ranges.rs` of the model). */
 
-import { words } from "../format";
+import type { MechanismRanges } from "../api/robots";
+import { quantity, words } from "../format";
 import { escaped } from "./pointer";
 
 export interface Field {
@@ -116,13 +117,20 @@ interface Mechanism {
   parameters: Record<string, number>;
 }
 
-/** The numbers of the mechanisms under a pointer; their ranges are the service's to know. */
-export function mechanismGroups(mechanisms: unknown, at: string): FieldGroup[] {
+/** The numbers of the mechanisms under a pointer, with the ranges that the service states for them; open where it states none. */
+export function mechanismGroups(mechanisms: unknown, at: string, stated: MechanismRanges[]): FieldGroup[] {
   if (!Array.isArray(mechanisms)) return [];
-  return (mechanisms as Mechanism[]).map(({ mechanism, parameters }, i) => ({
-    name: words(mechanism),
-    fields: Object.keys(parameters).map((name) => field(`${at}/mechanisms/${i}/parameters/${name}`, words(name), "", -Infinity, Infinity)),
-  }));
+  return (mechanisms as Mechanism[]).map(({ mechanism, parameters }, i) => {
+    const ranges = stated.find((one) => one.mechanism === mechanism)?.parameters ?? [];
+    const fields = Object.keys(parameters).map((name) => {
+      const pointer = `${at}/mechanisms/${i}/parameters/${name}`;
+      const range = ranges.find((one) => one.name === name);
+      if (!range) return field(pointer, words(name), "", -Infinity, Infinity);
+      const { unit, least, greatest, optional } = range;
+      return field(pointer, quantity(name, unit), unit === "1" ? "" : unit, least, greatest, { isOptional: optional });
+    });
+    return { name: words(mechanism), fields };
+  });
 }
 
 /** What is wrong with a value, before the service is asked. */

@@ -13,7 +13,7 @@ import { complaint, GROUPS, mechanismGroups, surfaceFields, type FieldGroup } fr
 import { NumberField } from "./number_field";
 import { escaped, read } from "./pointer";
 import { Compare } from "./compare";
-import { choose, deletingId, edited, isSaving, knownShown, open, problem, remove, save, shown, use } from "./state";
+import { choose, deletingId, edited, isSaving, knownShown, mechanismRanges, open, problem, remove, save, shown, use } from "./state";
 
 export function RobotsTab() {
   if (loadProblem.value && !plan.robots.value) return <Unreachable />;
@@ -51,11 +51,11 @@ export function RobotsTab() {
 function Editor({ robot }: { robot: Robot }) {
   const surfaces = Object.keys(robot.surfaces ?? {});
   const grounds = surfaces.flatMap((name): FieldGroup[] => {
-    const own = mechanismGroups(robot.surfaces[name]?.mechanisms, `/surfaces/${escaped(name)}`);
+    const own = mechanismGroups(robot.surfaces[name]?.mechanisms, `/surfaces/${escaped(name)}`, mechanismRanges.value);
     const group = { name: `Ground: ${words(name)}`, fields: surfaceFields(name) };
     return [group, ...own.map((mechanism) => ({ ...mechanism, name: `${words(name)}: ${mechanism.name}` }))];
   });
-  const groups: FieldGroup[] = [...mechanismGroups(robot.mechanisms, ""), ...GROUPS, ...grounds];
+  const groups: FieldGroup[] = [...mechanismGroups(robot.mechanisms, "", mechanismRanges.value), ...GROUPS, ...grounds];
   const wrong = groups.flatMap(({ fields }) => fields).filter((field) => complaint(field, read(robot, field.pointer)));
   return (
     <form

@@ -1,8 +1,8 @@
 /** The robot that is being looked at and edited. */
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { announce } from "../announce";
 import { problemOf, type Problem } from "../api/problem";
-import { deleteRobot, storeRobot, type Robot } from "../api/robots";
+import { deleteRobot, listMechanisms, storeRobot, type MechanismRanges, type Robot } from "../api/robots";
 import { loadRobots } from "../plan/load";
 import * as plan from "../plan/state";
 import { tab } from "../tab";
@@ -17,6 +17,28 @@ export const isSaving = signal(false);
 const known = computed(() => plan.robots.value?.find(({ id }) => id === (shownId.value ?? plan.robotId.value)) ?? null);
 export const shown = computed<Robot | null>(() => edited.value ?? known.value?.robot ?? null);
 export const knownShown = known;
+
+/** What mechanisms may be on a robot, by its id. */
+const ranges = signal<{ id: string; mechanisms: MechanismRanges[] } | null>(null);
+
+/** What mechanisms may be on the robot shown. Loads and forces grow with its mass: while that is edited, only the service knows. */
+export const mechanismRanges = computed<MechanismRanges[]>(() => {
+  const [stored, stated] = [known.value, ranges.value];
+  return stored && stated?.id === stored.id && shown.value?.mass_kg === stored.robot.mass_kg ? stated.mechanisms : [];
+});
+
+const carriesMechanisms = ({ mechanisms, surfaces }: Robot) =>
+  [mechanisms, ...Object.values(surfaces).map((surface) => surface.mechanisms)].some((list) => Array.isArray(list) && list.length > 0);
+
+/** Asks for the ranges of a robot that carries mechanisms. Without an answer they are open: the service refuses what cannot be. */
+effect(() => {
+  const stored = known.value;
+  if (!stored || !carriesMechanisms(stored.robot) || ranges.peek()?.id === stored.id) return;
+  listMechanisms(stored.id).then(
+    (mechanisms) => (ranges.value = { id: stored.id, mechanisms }),
+    () => undefined,
+  );
+});
 
 export function choose(id: string): void {
   shownId.value = id;

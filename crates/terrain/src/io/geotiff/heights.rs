@@ -50,6 +50,11 @@ impl Heights {
         Ok(Heights { scale, offset, unit_m: unit.metres, is_height })
     }
 
+    /// Whether samples are heights in metres as they stand.
+    pub(super) fn is_height(&self) -> bool {
+        self.is_height
+    }
+
     /// Height of a sample [m]. Fill values that nothing marks stay as they are, unless a scale makes heights of all numbers.
     pub(super) fn height_m(&self, sample: f64) -> f64 {
         if self.is_height {

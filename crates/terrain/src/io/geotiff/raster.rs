@@ -90,7 +90,7 @@ impl Band<'_> {
         &self,
         block: (u64, u64),
         scratch: &mut Scratch,
-        rows: impl Iterator<Item = &'s mut [T]>,
+        mut rows: impl ExactSizeIterator<Item = &'s mut [T]>,
     ) -> Result<(), Error> {
         let layout = self.layout;
         let step = layout.samples_per_pixel();
@@ -101,19 +101,27 @@ impl Band<'_> {
             big_endian: self.big_endian,
             step,
         };
-        for row in rows {
-            scratch.row.resize(layout.row_bytes(), 0);
-            reader.read_exact(&mut scratch.row).map_err(|why| Error::TiffBlock { why: why.to_string() })?;
-            restore(&mut scratch.row, &mut scratch.spare, layout.predictor, order);
-            convert(layout.sample, &scratch.row, self.first(), step, row);
+        let row_bytes = layout.row_bytes();
+        while rows.len() > 0 {
+            let rows_at_once = (PORTION_BYTES / row_bytes.max(1)).clamp(1, rows.len());
+            scratch.rows.resize(rows_at_once * row_bytes, 0);
+            reader.read_exact(&mut scratch.rows).map_err(|why| Error::TiffBlock { why: why.to_string() })?;
+            for (from, to) in scratch.rows.chunks_exact_mut(row_bytes).zip(&mut rows) {
+                let samples = restore(from, &mut scratch.spare, layout.predictor, order);
+                convert(layout.sample, samples, self.first(), step, to);
+            }
         }
         Ok(())
     }
 }
 
-/// Room for a row of a block, used again for the next.
+/// Bytes decompressed at once, at least one row. A decompressor that ends within one call keeps no window of what it wrote, and
+/// blocks of the usual sizes (tiles of 256 doubles) fit; a single strip as large as the image takes no more memory than this.
+const PORTION_BYTES: usize = 1 << 19;
+
+/// Room for rows of a block, used again for the next.
 #[derive(Default)]
 struct Scratch {
-    row: Vec<u8>,
+    rows: Vec<u8>,
     spare: Vec<u8>,
 }

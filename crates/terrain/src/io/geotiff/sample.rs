@@ -106,20 +106,29 @@ impl Predictor {
     }
 }
 
-/// Takes a predictor off a row of samples of so many bytes; `step` samples lie between neighbours of a band. The row's bytes are
-/// in the file's order before, in the machine's order after.
-pub(super) fn restore(row: &mut Vec<u8>, spare: &mut Vec<u8>, predictor: Predictor, order: RowOrder) {
+/// Takes a predictor off a row of samples in the file's byte order. Returns them in the machine's order, in the row itself or in `spare`.
+pub(super) fn restore<'a>(
+    row: &'a mut [u8],
+    spare: &'a mut Vec<u8>,
+    predictor: Predictor,
+    order: RowOrder,
+) -> &'a [u8] {
     if predictor != Predictor::Float {
         order.to_native(row);
     }
     match (predictor, order.sample_bytes) {
         (Predictor::None, _) => {}
+        (Predictor::Float, 4) if order.step == 1 => {
+            spare.resize(row.len(), 0);
+            restore_single(row, spare);
+            return spare;
+        }
         (Predictor::Float, bytes) => {
             add_up_bytes(row, order.step);
             spare.resize(row.len(), 0);
             let count = row.len() / bytes;
             gather_bytes(row, spare, count, bytes);
-            std::mem::swap(row, spare);
+            return spare;
         }
         (Predictor::Horizontal, 1) => add_up::<1>(row, order.step, |a, b| [a[0].wrapping_add(b[0])]),
         (Predictor::Horizontal, 2) => add_up::<2>(row, order.step, |a, b| {
@@ -132,19 +141,30 @@ pub(super) fn restore(row: &mut Vec<u8>, spare: &mut Vec<u8>, predictor: Predict
             u64::from_ne_bytes(a).wrapping_add(u64::from_ne_bytes(b)).to_ne_bytes()
         }),
     }
+    row
+}
+
+/// Single-precision samples of one band, which nearly all such files hold: differences added up and planes gathered in one pass. The sums
+/// of the four planes go side by side, each from where the planes before it end.
+fn restore_single(planes: &[u8], samples: &mut [u8]) {
+    let count = planes.len() / 4;
+    let [a, b, c, d] = [0, 1, 2, 3].map(|plane| &planes[plane * count..(plane + 1) * count]);
+    let total = |plane: &[u8]| plane.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte));
+    let mut sums = [0, total(a), total(b), total(c)];
+    for plane in 1..sums.len() {
+        sums[plane] = sums[plane].wrapping_add(sums[plane - 1]);
+    }
+    let quarters = a.iter().zip(b).zip(c.iter().zip(d));
+    for (sample, ((a, b), (c, d))) in samples.as_chunks_mut::<4>().0.iter_mut().zip(quarters) {
+        for (sum, byte) in sums.iter_mut().zip([a, b, c, d]) {
+            *sum = sum.wrapping_add(*byte);
+        }
+        *sample = u32::from_be_bytes(sums).to_ne_bytes();
+    }
 }
 
 /// Samples out of planes of their bytes, the most significant plane first.
 fn gather_bytes(planes: &[u8], samples: &mut [u8], count: usize, bytes: usize) {
-    if let (4, Some((high, low))) = (bytes, planes.split_at_checked(2 * count)) {
-        // Single precision, which nearly all such files hold, in one pass.
-        let ((a, b), (c, d)) = (high.split_at(count), low.split_at(count.min(low.len())));
-        let quarters = a.iter().zip(b).zip(c.iter().zip(d));
-        for (sample, ((a, b), (c, d))) in samples.as_chunks_mut::<4>().0.iter_mut().zip(quarters) {
-            *sample = u32::from_be_bytes([*a, *b, *c, *d]).to_ne_bytes();
-        }
-        return;
-    }
     for (significance, plane) in planes.chunks_exact(count.max(1)).take(bytes).enumerate() {
         let at = if cfg!(target_endian = "little") { bytes - 1 - significance } else { significance };
         for (sample, byte) in samples.chunks_exact_mut(bytes).zip(plane) {
