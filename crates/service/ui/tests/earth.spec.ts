@@ -1,4 +1,4 @@
-import { checkAccessible, expect, paths, picture, repositoryFile, Service, test, PHONE_TOO } from "./service";
+import { checkAccessible, expect, fittedWidth, paths, picture, repositoryFile, Service, test, PHONE_TOO } from "./service";
 import { serveTiles } from "./tile_server";
 
 /** Places of the sample map, 12 m from its corners: x and y of EPSG:26915, and longitude and latitude by pyproj 3.7. */
@@ -130,15 +130,16 @@ test(
         }, visibility);
       await show("hidden");
       const canvas = page.locator(".map-tiles");
-      const box = (await canvas.boundingBox())!;
-      const px_per_m = (0.96 * Math.min(box.width, box.height)) / EDGE_M;
-      const expected = CORNERS.map(({ m: [x_m, y_m] }) => ({
-        x: box.width / 2 + (x_m - MIDDLE_M[0]) * px_per_m,
-        y: box.height / 2 - (y_m - MIDDLE_M[1]) * px_per_m,
-      }));
       // The page may not read pixels of others, but a picture of it shows them.
       const reader = await context.newPage();
       const dots = async () => {
+        // The frame may still find its place while the bar above it fills.
+        const box = (await canvas.boundingBox())!;
+        const px_per_m = fittedWidth(box) / EDGE_M;
+        const expected = CORNERS.map(({ m: [x_m, y_m] }) => ({
+          x: box.width / 2 + (x_m - MIDDLE_M[0]) * px_per_m,
+          y: box.height / 2 - (y_m - MIDDLE_M[1]) * px_per_m,
+        }));
         const shot = (await page.screenshot({ scale: "css", clip: box })).toString("base64");
         return reader.evaluate(
           async ([data, near]) => {

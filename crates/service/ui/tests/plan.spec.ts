@@ -1,4 +1,18 @@
-import { answered, colors, energyOf, expect, ground, openSample, paths, picture, press, repositoryFile, test, PHONE_TOO } from "./service";
+import {
+  answered,
+  colors,
+  energyOf,
+  expect,
+  fittedWidth,
+  ground,
+  openSample,
+  paths,
+  picture,
+  press,
+  repositoryFile,
+  test,
+  PHONE_TOO,
+} from "./service";
 
 test("the sample map is drawn and its three paths are compared at once", PHONE_TOO, async ({ page, service }, info) => {
   const outside: string[] = [];
@@ -27,13 +41,16 @@ test("the sample map is drawn and its three paths are compared at once", PHONE_T
 test("on a phone no control and no reading lies over the map, and so over none of its ends", PHONE_TOO, async ({ page, service }, info) => {
   test.skip(info.project.name !== "phone", "wider screens have room beside the map");
   await openSample(page, service, "husky-a200-field");
+  await page.getByRole("button", { name: "Goal", exact: true }).click();
+  await press(page, 0.6, 0.6);
+  await expect(page.locator(".map-steps")).toBeVisible();
   const frame = (await page.locator(".map-frame").boundingBox())!;
   await page.mouse.move(frame.x + frame.width / 2, frame.y + frame.height / 2);
   await expect(page.locator(".map-coordinates")).toBeVisible();
   // The sample is square and fills what the rows above and below it leave.
-  const side = Math.min(0.96 * frame.width, frame.height - 120);
+  const side = fittedWidth(frame);
   const map = { top: frame.y + (frame.height - side) / 2, bottom: frame.y + (frame.height + side) / 2 };
-  for (const name of [".map-coordinates", ".north-arrow", ".map-zoom", ".map-legends", ".scale-bar"]) {
+  for (const name of [".map-coordinates", ".north-arrow", ".map-zoom", ".map-legends", ".map-steps", ".scale-bar"]) {
     const box = (await page.locator(name).boundingBox())!;
     expect(box.y + box.height <= map.top + 1 || box.y >= map.bottom - 1, `${name} is beside the map`).toBe(true);
     expect(box.x >= frame.x && box.x + box.width <= frame.x + frame.width, `${name} is within the frame`).toBe(true);
@@ -105,7 +122,7 @@ test("pointing at a chart moves the robot on the map, and pointing at the path m
   expect((await paths(page).screenshot()).equals(before)).toBe(false);
   const power = await page.locator(".chart-card b").nth(2).innerText();
   const box = (await paths(page).boundingBox())!;
-  const side = Math.min(box.width, box.height) * 0.96;
+  const side = fittedWidth(box);
   // Close to the goal, where the path ends.
   await page.mouse.move(box.x + box.width / 2 + (0.9 - 0.5) * side - 16, box.y + box.height / 2 - (0.88 - 0.5) * side);
   await expect(page.locator(".chart-card b").nth(2)).not.toHaveText(power);

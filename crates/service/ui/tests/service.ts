@@ -120,7 +120,17 @@ export async function energyOf(page: Page, path: string): Promise<number> {
   return Number(await row.locator("td b").innerText());
 }
 
-/** Presses a place of the map, by shares of its width and height from the lower left. */
+/** Height that the rows above and below the map take on a phone [px]. */
+const ROWS_PX = 120;
+
+/** The width of a map that fills its frame [px], by the ratio of the map's width to its height. */
+export function fittedWidth(frame: { width: number; height: number }, aspect = 1): number {
+  const isPhone = frame.width < 620;
+  const height = Math.min(0.96 * frame.height, frame.height - (isPhone ? Math.min(ROWS_PX, frame.height / 3) : 0));
+  return Math.min(0.96 * frame.width, height * aspect);
+}
+
+/** Presses a place of the map's frame, by shares of its width and height from the lower left. */
 export async function press(page: Page, right: number, up: number): Promise<void> {
   const box = (await paths(page).boundingBox())!;
   await page.mouse.click(box.x + right * box.width, box.y + (1 - up) * box.height);
