@@ -5,8 +5,7 @@ RUN python3 -m venv /maturin && /maturin/bin/pip install --quiet 'maturin>=1.16,
 WORKDIR /source
 COPY . .
 RUN --mount=type=cache,target=/usr/local/cargo/registry --mount=type=cache,target=/source/target \
-    cargo build --release --locked --bin joulepath && cp target/release/joulepath /joulepath \
-    && /maturin/bin/maturin build --release --locked --manifest-path crates/python/Cargo.toml --out /wheels
+    /maturin/bin/maturin build --profile dist --locked --manifest-path crates/python/Cargo.toml --out /wheels
 
 FROM python:3.11-slim-bookworm
 # What KubeRay starts Ray and asks for its health with.
@@ -14,9 +13,6 @@ RUN apt-get update -qq && apt-get install -y -qq --no-install-recommends wget &&
 RUN --mount=type=bind,from=build,source=/wheels,target=/wheels \
     --mount=type=bind,source=tests/fleet/requirements.txt,target=/requirements.txt \
     pip install --quiet --no-cache-dir -r /requirements.txt /wheels/*.whl
-COPY --from=build /joulepath /usr/local/bin/joulepath
 RUN useradd --uid 65532 --create-home joulepath
 USER 65532:65532
 WORKDIR /home/joulepath
-# Fleets ask the program itself for trials.
-ENV JOULEPATH=/usr/local/bin/joulepath

@@ -39,8 +39,8 @@ fn arrows_only_point_up_the_list_of_crates() {
         "joulepath-prove",
         "joulepath-report",
         "joulepath-service",
-        "joulepath-python",
         "joulepath",
+        "joulepath-python",
     ];
     for (package, needs) in arrows() {
         if package == "joulepath-tests" {

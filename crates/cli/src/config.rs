@@ -11,10 +11,11 @@ use crate::{Arguments, failure::BadInput};
 const NOT_IN_FILE: [&str; 2] = ["check", "config"];
 
 /// Reads the command line, and for `serve` the file that `--config` names.
-pub(crate) fn parse() -> anyhow::Result<Arguments> {
-    let words: Vec<OsString> = std::env::args_os().collect();
-    // clap ends the process itself: 2 on wrong arguments, 0 after help.
-    let given = Arguments::command().get_matches_from(&words);
+///
+/// # Errors
+/// clap's own, which knows its exit status, and settings of a file that cannot be.
+pub(crate) fn parse(words: Vec<OsString>) -> anyhow::Result<Arguments> {
+    let given = Arguments::command().try_get_matches_from(&words)?;
     let Some((words, path)) = with_file(&given, words)? else {
         return Ok(Arguments::from_arg_matches(&given)?);
     };

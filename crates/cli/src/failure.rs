@@ -1,6 +1,6 @@
 //! Exit status of a failed command.
 
-use std::{fmt, process::ExitCode};
+use std::fmt;
 
 use service::{Problem, ProblemType};
 
@@ -40,20 +40,22 @@ impl fmt::Display for OutOfCharge {
 
 impl std::error::Error for OutOfCharge {}
 
+/// Exit status after wrong input.
+pub(crate) const BAD_INPUT: u8 = 2;
+
 /// 2 for wrong input, 3 for no path, none within limits or out of charge, 1 for anything else.
-pub(crate) fn exit_code(error: &anyhow::Error) -> ExitCode {
-    let code = if error.downcast_ref::<BadInput>().is_some() {
-        2
+pub(crate) fn exit_code(error: &anyhow::Error) -> u8 {
+    if error.downcast_ref::<BadInput>().is_some() {
+        BAD_INPUT
     } else if error.downcast_ref::<OutOfCharge>().is_some() {
         3
     } else if let Some(Refused(problem)) = error.downcast_ref::<Refused>() {
         match problem.kind {
             ProblemType::NoPath | ProblemType::LimitsContradict => 3,
             ProblemType::Timeout | ProblemType::Internal => 1,
-            _ => 2,
+            _ => BAD_INPUT,
         }
     } else {
         1
-    };
-    ExitCode::from(code)
+    }
 }

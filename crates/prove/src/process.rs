@@ -1,6 +1,7 @@
 //! A diagnosis as a separate process, which sees the files of one case and nothing else.
 
 use std::{
+    ffi::OsString,
     path::{Path, PathBuf},
     process::{Command, Stdio},
 };
@@ -18,9 +19,9 @@ const MOST_CHARACTERS: usize = 300;
 /// How to diagnose.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {
-    /// The program; it is called with `diagnose --robot .. --recording .. [--reference ..] --out ..`, and, for a calibrated
-    /// file, with `calibrate --robot .. --recording .. --out ..` before.
-    pub program: PathBuf,
+    /// The program, and words that stand before all others; it is called with `diagnose --robot .. --recording .. [--reference ..] --out ..`,
+    /// and, for a calibrated file, with `calibrate --robot .. --recording .. --out ..` before.
+    pub program: (PathBuf, Vec<OsString>),
     /// Threads that each process may use.
     pub threads: usize,
     /// Which of the robot's files stands beside the healthy drives.
@@ -103,8 +104,10 @@ impl Diagnosis {
         for (file, name) in given {
             files::copy(file, &room.path().join(name))?;
         }
-        let mut command = Command::new(&self.program);
+        let (program, first) = &self.program;
+        let mut command = Command::new(program);
         command
+            .args(first)
             .args(words)
             .env_clear()
             .env("RAYON_NUM_THREADS", self.threads.to_string())

@@ -46,7 +46,7 @@ fn run(out: &Path, program: &Path, progress: &(dyn Fn(Stage, usize, usize) + Syn
         share: None,
         robot_json: &robot_json,
         out,
-        diagnosis: Diagnosis { program: program.to_owned(), threads: 1, beside: FileBeside::Raw },
+        diagnosis: Diagnosis { program: (program.to_owned(), Vec::new()), threads: 1, beside: FileBeside::Raw },
         ways: &Way::ALL,
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
@@ -138,7 +138,7 @@ fn failing_programs_and_reports_that_are_none_are_errors_on_the_board() {
         for name in [prove::ROBOT, prove::RECORDING, prove::REFERENCE] {
             fs::write(case.join(name), "").unwrap();
         }
-        let outcome = Diagnosis { program, threads: 1, beside: FileBeside::Raw }
+        let outcome = Diagnosis { program: (program, Vec::new()), threads: 1, beside: FileBeside::Raw }
             .run(&case, Way::HealthyDrives)
             .unwrap();
         assert!(matches!(&outcome, prove::Outcome::Failed(why) if why.contains(said)), "{outcome:?}");

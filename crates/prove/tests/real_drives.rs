@@ -50,7 +50,7 @@ fn run(
         strengths_z: &[16.0, 32.0],
         robot: &builtin::husky_a200(),
         out,
-        diagnosis: Diagnosis { program, threads: 1, beside: FileBeside::Calibrated },
+        diagnosis: Diagnosis { program: (program, Vec::new()), threads: 1, beside: FileBeside::Calibrated },
         ways: &Way::ALL,
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,

@@ -6,6 +6,7 @@
 // Arguments come out of Python by value.
 #![allow(clippy::needless_pass_by_value)]
 
+mod command;
 mod computation;
 mod data_sheet;
 mod diagnosis;
@@ -23,6 +24,7 @@ mod table;
 mod _native {
     #[pymodule_export]
     use crate::{
+        command::command,
         data_sheet::robot_of_data_sheet,
         diagnosis::{Diagnosed, Predicted, calibrate, diagnose, predict},
         map::Map,

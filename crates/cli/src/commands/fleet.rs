@@ -3,6 +3,7 @@
 use std::{
     env,
     ffi::OsString,
+    path::PathBuf,
     process::{Command, Stdio},
 };
 
@@ -27,7 +28,7 @@ pub(crate) struct Arguments {
 }
 
 /// Goes on as `python3 -m joulepath.fleet`, or says how to install it.
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(crate) fn run(arguments: &Arguments, itself: &(PathBuf, Vec<OsString>)) -> anyhow::Result<()> {
     let python = env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
     let named = python.to_string_lossy().into_owned();
     let looked = Command::new(&python).args(["-c", IS_INSTALLED]).stdin(Stdio::null()).output();
@@ -52,8 +53,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let mut command = Command::new(&python);
     command.args(["-m", "joulepath.fleet"]).args(&arguments.words);
-    if env::var_os(PROGRAM).is_none() {
-        command.env(PROGRAM, env::current_exe()?);
+    // Where the package itself was called, it finds itself.
+    if let (program, []) = (&itself.0, &itself.1[..])
+        && env::var_os(PROGRAM).is_none()
+    {
+        command.env(PROGRAM, program);
     }
     go_on_as(command, &named)
 }

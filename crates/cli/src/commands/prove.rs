@@ -3,11 +3,11 @@
 mod real;
 
 use std::{
+    ffi::OsString,
     path::{Path, PathBuf},
     thread::available_parallelism,
 };
 
-use anyhow::Context;
 use clap::{Args, ValueEnum};
 use diagnosis::{Plain, Series};
 use model::Robot;
@@ -103,13 +103,13 @@ impl From<Only> for Kind {
     }
 }
 
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(crate) fn run(arguments: &Arguments, itself: &(PathBuf, Vec<OsString>)) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else {
         output::line(summary(&[("", &prove::together(&arguments.together)?)]))?;
         return Ok(());
     };
     if !arguments.real.is_empty() {
-        return real::run(arguments, out);
+        return real::run(arguments, out, itself);
     }
     check(arguments, out)?;
     let robot_json = serde_json::to_string_pretty(&robot(&arguments.robot)?)? + "\n";
@@ -122,7 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         robot_json: &robot_json,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program: program()?, threads: 1, beside: FileBeside::Raw },
+        diagnosis: Diagnosis { program: itself.clone(), threads: 1, beside: FileBeside::Raw },
         ways: &ways(arguments),
         peers: &peers,
         at_once: at_once(),
@@ -154,11 +154,6 @@ fn check(arguments: &Arguments, out: &Path) -> Result<(), BadInput> {
     let is_new = !out.exists() || out.read_dir().is_ok_and(|mut entries| entries.next().is_none());
     let fault = "it exists and is not an empty folder; name one that is new";
     if is_new { Ok(()) } else { Err(BadInput(format!("--out {}: {fault}", out.display()))) }
-}
-
-/// The program that diagnoses: this one.
-fn program() -> anyhow::Result<PathBuf> {
-    std::env::current_exe().context("cannot tell where joulepath itself lies")
 }
 
 /// What a diagnosis is given: all, or what was asked for.

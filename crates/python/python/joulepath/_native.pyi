@@ -14,6 +14,7 @@ __all__ = [
     "Recording",
     "Robot",
     "calibrate",
+    "command",
     "diagnose",
     "power",
     "predict",
@@ -110,6 +111,7 @@ class Diagnosed:
 def robot_of_data_sheet(sheet: str) -> Robot: ...
 def predict(robot: Robot, recording: Recording) -> Predicted: ...
 def calibrate(robot: Robot, recording: Recording, options: str, progress: _Progress) -> str: ...
+def command(words: list[str], itself: list[str]) -> int: ...
 def diagnose(
     robot: Robot,
     recording: Recording,

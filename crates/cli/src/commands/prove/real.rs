@@ -1,19 +1,26 @@
 //! `joulepath prove --real`.
 
-use std::path::Path;
+use std::{
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
 
 use prove::{
     CALIBRATED, Diagnosis, FileBeside, PeerAnswer, ROBOT,
     real::{Ground, RealTrial, STRENGTHS_Z},
 };
 
-use super::{Arguments, at_once, check, peers_by, program, ways};
+use super::{Arguments, at_once, check, peers_by, ways};
 use crate::{failure::BadInput, files, output, progress::Cases, real_scored::summary, recorded::robot};
 
 /// Strengths that changes can be given: below, no detector sees them; above, none of a robot's size is as strong.
 const RANGE_Z: [f64; 2] = [1.0, 1000.0];
 
-pub(super) fn run(arguments: &Arguments, out: &Path) -> anyhow::Result<()> {
+pub(super) fn run(
+    arguments: &Arguments,
+    out: &Path,
+    itself: &(PathBuf, Vec<OsString>),
+) -> anyhow::Result<()> {
     check(arguments, out)?;
     let strengths_z = if arguments.z.is_empty() { STRENGTHS_Z.to_vec() } else { arguments.z.clone() };
     let [low, high] = RANGE_Z;
@@ -32,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, out: &Path) -> anyhow::Result<()> {
         robot: &robot,
         out,
         // Cases side by side use the cores better than threads within one.
-        diagnosis: Diagnosis { program: program()?, threads: 1, beside: FileBeside::Calibrated },
+        diagnosis: Diagnosis { program: itself.clone(), threads: 1, beside: FileBeside::Calibrated },
         ways: &ways(arguments),
         peers: &peers,
         at_once: at_once(),

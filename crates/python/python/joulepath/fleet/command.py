@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,18 @@ AT_FAULT = (2, 3)
 
 
 def joulepath_command() -> list[str]:
-    """Returns the command line that begins every call of the `joulepath` command: that of the variable `JOULEPATH`, or the one on the path.
+    """Returns the command line that begins every call of the `joulepath` command: that of the variable `JOULEPATH`, or this package's own.
 
-    Raises a `FleetError` of type `no-command` where there is none.
+    Raises a `FleetError` of type `no-command` where the variable names no program.
     """
     named = os.environ.get("JOULEPATH")
-    found = shutil.which(named or "joulepath")
+    if named is None:
+        return [sys.executable, "-m", "joulepath"]
+    found = shutil.which(named)
     if found is None:
-        where = f"JOULEPATH names `{named}`, which is no program" if named else "there is no `joulepath` on the PATH"
-        raise FleetError("no-command", f"{where}: install it, or let JOULEPATH name it, on every machine of the cluster")
+        raise FleetError(
+            "no-command", f"JOULEPATH names `{named}`, which is no program: install it on every machine of the cluster, or unset JOULEPATH"
+        )
     return [found]
 
 
