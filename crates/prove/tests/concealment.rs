@@ -46,7 +46,11 @@ fn run(out: &Path, program: &Path, progress: &(dyn Fn(Stage, usize, usize) + Syn
         share: None,
         robot_json: &robot_json,
         out,
-        diagnosis: Diagnosis { program: (program.to_owned(), Vec::new()), threads: 1, beside: FileBeside::Raw },
+        diagnosis: Diagnosis {
+            program: (program.to_owned(), Vec::new()),
+            threads: 1,
+            beside: FileBeside::Raw,
+        },
         ways: &Way::ALL,
         peers: &|_| vec![PeerAnswer { peer: "says payload", names: Ok(vec!["payload".into()]) }],
         at_once: 2,
