@@ -16,8 +16,13 @@ fn contradiction(fit: &Fit, i: usize) -> Option<String> {
     let (parameter, value) = (&fit.parameters[i], fit.values[i]);
     let [low, high] = parameter.bounds;
     let name = &parameter.name;
-    // Nothing is the natural end of what cannot be negative, and Coulomb's law that of a slip angle's scale.
-    let is_natural = |limit: f64| limit == 0.0 || (limit == low && name.ends_with("slip_angle_scale_rad"));
+    // Nothing is the natural end of what cannot be negative, Coulomb's law that of a slip angle's scale, and all that braking gives that of
+    // what is recovered of it.
+    let is_natural = |limit: f64| {
+        limit == 0.0
+            || (limit == low && name.ends_with("slip_angle_scale_rad"))
+            || (limit == high && name.ends_with("regeneration"))
+    };
     let limit = [low, high]
         .into_iter()
         .find(|limit| !is_natural(*limit) && (value - limit).abs() < AT_LIMIT * (high - low));
@@ -68,8 +73,12 @@ mod tests {
     use crate::fit::{NORMAL_975, Parameter};
 
     fn said(value: f64, prior: [f64; 2], bounds: [f64; 2]) -> Vec<String> {
+        said_of("motors.left.k2", value, prior, bounds)
+    }
+
+    fn said_of(name: &str, value: f64, prior: [f64; 2], bounds: [f64; 2]) -> Vec<String> {
         let parameter = Parameter {
-            name: "motors.left.k2".into(),
+            name: name.into(),
             unit: "1",
             start: prior[0],
             bounds,
@@ -83,6 +92,11 @@ mod tests {
             student: vec![NORMAL_975],
             cost: 0.0,
         })
+    }
+
+    #[test]
+    fn all_that_braking_gives_can_be_recovered() {
+        assert_eq!(said_of("motors.regeneration", 1.0, [0.5, 0.5], [0.0, 1.0]), Vec::<String>::new());
     }
 
     #[test]

@@ -31,9 +31,9 @@ def test_it_is_there_by_its_name_and_as_a_module(program):
 
 def test_it_plans_what_the_package_plans(tmp_path):
     out = tmp_path / "path.json"
-    told = said("plan", "--map", MAPS / "minnesota.tif", "--start", "100,60", "--goal", "420,400", "--robot", "husky-a200", "--out", out)
+    told = said("plan", "--map", MAPS / "minnesota.tif", "--start", "429300,5150560", "--goal", "429600,5150800", "--robot", "husky-a200", "--out", out)
     assert told.returncode == 0, told.stderr
-    start, goal = (100, 60), (420, 400)
+    start, goal = (429300, 5150560), (429600, 5150800)
     path = joulepath.Planner(joulepath.Map.open(MAPS / "minnesota.tif"), "husky-a200").plan(start, goal)
     assert json.loads(out.read_text())["energy_j"] == pytest.approx(path.energy_j, rel=1e-12)
 
@@ -46,7 +46,7 @@ def test_its_exit_statuses_are_the_commands(tmp_path):
 
 
 def test_a_trial_calls_the_package_again(tmp_path):
-    told = said("prove", "--cases", 1, "--way", "file", "--seed", 3, "--out", tmp_path / "trial")
+    told = said("prove", "--cases", 1, "--way", "file-alone", "--seed", 3, "--out", tmp_path / "trial")
     assert told.returncode == 0, told.stderr
     boards = list((tmp_path / "trial").rglob("scoreboard.json"))
     assert boards and all("it did not start" not in board.read_text() for board in boards)
