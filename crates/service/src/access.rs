@@ -53,6 +53,12 @@ pub enum TokenError {
         /// What names there can be.
         source: InvalidTenant,
     },
+    /// A name and a token with an equals sign between them, which would be taken as one token that nobody sends.
+    #[error("token {number} has `=` within it: write NAME:TOKEN, with a colon")]
+    Equals {
+        /// Which of them.
+        number: usize,
+    },
     /// The same token under two names.
     #[error("token {number} is also given to another name: make one for each")]
     Shared {
@@ -78,6 +84,10 @@ impl Tokens {
             let number = i + 1;
             let (name, token) =
                 word.split_once(':').map_or((None, word), |(name, token)| (Some(name), token));
+            // Base64 ends in such signs, and has none before.
+            if name.is_none() && token.trim_end_matches('=').contains('=') {
+                return Err(TokenError::Equals { number });
+            }
             let named = name.map(Tenant::named).transpose();
             let tenant = named.map_err(|source| TokenError::Name { number, source })?.unwrap_or_default();
             if token.len() < LEAST_CHARACTERS || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
@@ -170,6 +180,8 @@ mod tests {
             let text = format!("{name}:0123456789abcdef");
             assert_eq!(refused(&text), TokenError::Name { number: 1, source: InvalidTenant });
         }
+        assert_eq!(refused("a:0123456789abcdef alice=0123456789abcdef"), TokenError::Equals { number: 2 });
+        assert!(!Tokens::parse("bWFkZSBieSBiYXNlNjQ==").unwrap().is_empty());
         let twice = "a:0123456789abcdef a:0123456789abcdef b:0123456789abcdef";
         assert_eq!(refused(twice), TokenError::Shared { number: 3 });
         assert!(Tokens::parse("# none\n").unwrap().is_empty());
