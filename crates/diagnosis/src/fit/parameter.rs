@@ -206,6 +206,21 @@ impl Parameter {
         (self.file > 0.0).then_some(sigma)
     }
 
+    /// Its width in words: relative to its value in the file, or in its unit where that may be nothing.
+    pub(crate) fn width(&self) -> String {
+        match (self.prior, &self.field) {
+            (Prior::Log(sigma), _) => format!("{:.0} %", 100.0 * sigma),
+            (Prior::Linear(sigma), Field::LeftIdle | Field::RightIdle) => format!("{sigma:.1} A"),
+            (Prior::Linear(sigma), _) => format!("{sigma:.1} W"),
+        }
+    }
+
+    /// Whether its width is that of any robot, of which no file tells.
+    pub(crate) fn is_as_usual(&self) -> bool {
+        use Field::{Electronics, Hotel, LeftIdle, RightIdle, SlipScale, SlipTrack};
+        matches!(self.field, Electronics | Hotel | LeftIdle | RightIdle | SlipScale(_) | SlipTrack)
+    }
+
     /// Its width on the scale of z times one: relative for positive numbers, else in its unit.
     pub(crate) fn sigma(&self) -> f64 {
         match self.prior {

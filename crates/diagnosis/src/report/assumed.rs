@@ -69,15 +69,16 @@ fn known_to(file: &Robot, parameters: &[Parameter]) -> String {
         let is_fitted = file.posterior.as_ref().is_some_and(|posterior| posterior.parameters.contains(name));
         let source = match file.provenance_of(name) {
             _ if is_fitted => "fitted",
+            _ if parameter.is_as_usual() => "as usual",
             Some(Provenance::Measured) => "measured",
             Some(Provenance::Fitted) => "fitted",
             Some(Provenance::DataSheet) => "data sheet",
             Some(Provenance::Borrowed) => "borrowed",
             None => "`uncertainty`",
         };
-        parameter.relative_sigma().map(|sigma| format!("{name} {:.0} % ({source})", 100.0 * sigma))
+        format!("{name} {} ({source})", parameter.width())
     };
-    let all: Vec<String> = parameters.iter().filter_map(one).collect();
+    let all: Vec<String> = parameters.iter().map(one).collect();
     format!("the file's constants are taken to be known, one standard deviation, to: {}", all.join(", "))
 }
 

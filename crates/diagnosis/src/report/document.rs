@@ -87,7 +87,7 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
         verdict: said,
         sentence: match subject.mistakes.first() {
             Some(mistake) => mistaken(mistake),
-            None => sentence(subject.predicted_by, said, &error, &findings),
+            None => sentence(subject.predicted_by, said, &error, &findings, &found.explanations),
         },
         file: Some(FileReport { error, findings: subject.shared.to_vec() }),
         probability: Some(probability(&found.explanations)),

@@ -2,10 +2,17 @@
 
 use model::mechanism;
 
-use crate::report::{
-    diagnosis::{FileError, Finding, Verdict},
-    finding::UNKNOWN,
+use crate::{
+    report::{
+        diagnosis::{FileError, Finding, Verdict},
+        finding::UNKNOWN,
+        verdict::probability,
+    },
+    search::explanation::{Explanation, credible},
 };
+
+/// Probability from which something is likelier than not.
+const LIKELIER_THAN_NOT: f64 = 0.5;
 
 /// The sentence.
 pub(crate) fn sentence(
@@ -13,6 +20,7 @@ pub(crate) fn sentence(
     verdict: Verdict,
     file: &FileError,
     findings: &[Finding],
+    explanations: &[Explanation],
 ) -> String {
     let way = if file.bias_w >= 0.0 { "low" } else { "high" };
     let about = format!(
@@ -21,14 +29,14 @@ pub(crate) fn sentence(
         file.rmse_w,
         file.noise_w
     );
-    format!("{about} {}", found(verdict, findings))
+    format!("{about} {}", found(verdict, findings, explanations))
 }
 
-fn found(verdict: Verdict, findings: &[Finding]) -> String {
+fn found(verdict: Verdict, findings: &[Finding], explanations: &[Explanation]) -> String {
     let named: Vec<&Finding> = findings.iter().filter(|finding| finding.mechanism != UNKNOWN).collect();
     let statements: Vec<String> = named.iter().map(|finding| stated(finding)).collect();
     match verdict {
-        Verdict::Consistent => "Within its uncertainty nothing is missing.".to_owned(),
+        Verdict::Consistent => consistent(explanations),
         Verdict::Ambiguous if statements.is_empty() => {
             "These drives do not tell whether something is missing: the model describes them poorly, and with nothing missing about as well as with \
              the likeliest explanation."
@@ -47,6 +55,28 @@ fn found(verdict: Verdict, findings: &[Finding]) -> String {
             format!("Several explanations are about as likely, among them: {}.", statements.join("; "))
         }
     }
+}
+
+/// That nothing is missing, or what is likelier than that.
+fn consistent(explanations: &[Explanation]) -> String {
+    let nothing = probability(explanations).nothing;
+    if nothing >= LIKELIER_THAN_NOT {
+        return "Within its uncertainty nothing is missing.".to_owned();
+    }
+    let likelier = credible(explanations).iter().filter(|one| !one.names.is_empty() || one.unlisted);
+    let likelier: Vec<String> = likelier
+        .map(|one| {
+            let names: Vec<&str> = one.names.iter().map(|name| label(name)).collect();
+            let names =
+                if names.is_empty() { "something outside the list".to_owned() } else { names.join(" with ") };
+            format!("{names} ({:.0} %)", 100.0 * one.probability)
+        })
+        .collect();
+    format!(
+        "That nothing is missing is possible ({:.0} %), but something is likelier: {}. These drives do not settle it.",
+        100.0 * nothing,
+        listed(&likelier)
+    )
 }
 
 /// That drives are not what they seem.
@@ -89,8 +119,30 @@ mod tests {
 
     #[test]
     fn an_answer_without_names_says_that_the_drives_do_not_tell() {
-        let said = found(Verdict::Ambiguous, &[]);
+        let said = found(Verdict::Ambiguous, &[], &[]);
         assert!(said.starts_with("These drives do not tell whether something is missing"), "{said}");
+    }
+
+    #[test]
+    fn what_is_likelier_than_nothing_is_told_where_nothing_is_not_ruled_out() {
+        let parts: [(&[&'static str], f64); 3] =
+            [(&["power_scale"], 0.53), (&["payload"], 0.40), (&[], 0.07)];
+        let explanations = parts.map(|(names, probability)| Explanation {
+            names: names.to_vec(),
+            unlisted: false,
+            log: probability.ln(),
+            fitted: None,
+            block: None,
+            probability,
+        });
+        let said = found(Verdict::Consistent, &[], &explanations);
+        assert!(
+            said.contains("is possible (7 %)") && said.contains("(53 %) or a load on board (40 %)"),
+            "{said}"
+        );
+        let likely =
+            found(Verdict::Consistent, &[], &[Explanation { probability: 0.9, ..explanations[2].clone() }]);
+        assert_eq!(likely, "Within its uncertainty nothing is missing.");
     }
 
     #[test]
