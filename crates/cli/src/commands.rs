@@ -1,10 +1,13 @@
 //! One file for each command: its arguments and what it does with them.
 
+#[cfg(not(feature = "server"))]
+pub(crate) mod absent;
 pub(crate) mod alternatives;
 pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod compare;
 pub(crate) mod completions;
+#[cfg(feature = "server")]
 pub(crate) mod demo;
 pub(crate) mod diagnose;
 pub(crate) mod fleet;
@@ -12,6 +15,7 @@ pub(crate) mod inspect;
 pub(crate) mod man;
 pub(crate) mod matrix;
 pub(crate) mod mission;
+#[cfg(feature = "server")]
 pub(crate) mod open;
 pub(crate) mod plan;
 pub(crate) mod predict;
@@ -20,5 +24,6 @@ pub(crate) mod range;
 pub(crate) mod reachable;
 pub(crate) mod robot;
 pub(crate) mod schema;
+#[cfg(feature = "server")]
 pub(crate) mod serve;
 pub(crate) mod simulate;

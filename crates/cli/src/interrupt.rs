@@ -3,10 +3,7 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::{
-        Mutex, PoisonError,
-        mpsc::{Receiver, channel},
-    },
+    sync::{Mutex, PoisonError},
 };
 
 use crate::output;
@@ -35,8 +32,9 @@ pub(crate) fn end_on_interrupt() {
 ///
 /// # Errors
 /// No handler can be set.
-pub(crate) fn awaited() -> anyhow::Result<Receiver<()>> {
-    let (sender, receiver) = channel();
+#[cfg(feature = "server")]
+pub(crate) fn awaited() -> anyhow::Result<std::sync::mpsc::Receiver<()>> {
+    let (sender, receiver) = std::sync::mpsc::channel();
     ctrlc::set_handler(move || {
         // Nobody waits any longer once the first has been heard.
         let _ = sender.send(());

@@ -3,14 +3,17 @@
 // Everything is printed by `output`, which does not panic where nobody reads.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+#[cfg(feature = "server")]
 mod allocator;
 mod areas_file;
 mod arguments;
 mod commands;
+#[cfg(feature = "server")]
 mod config;
 mod failure;
 mod files;
 mod interrupt;
+#[cfg(feature = "server")]
 mod limit_arguments;
 mod out_file;
 mod output;
@@ -82,11 +85,18 @@ enum Command {
     /// Print the JSON Schema of a robot, map, recording map or world file
     Schema(commands::schema::Arguments),
     /// Open the page with maps, robots and recordings
+    #[cfg(feature = "server")]
     Open(commands::open::Arguments),
     /// Serve the HTTP API
+    #[cfg(feature = "server")]
     Serve(Box<commands::serve::Arguments>),
     /// Start the service, compare paths over real terrain, and draw them
+    #[cfg(feature = "server")]
     Demo(commands::demo::Arguments),
+    /// What starts a server is part of the program alone
+    #[cfg(not(feature = "server"))]
+    #[command(hide = true, name = "serve", aliases = ["open", "demo"], disable_help_flag = true)]
+    Absent(commands::absent::Arguments),
     /// Print what completes commands in a shell
     Completions(commands::completions::Arguments),
     /// Print the manual page
@@ -113,7 +123,7 @@ pub struct Call {
 /// ```
 pub fn run(call: Call) -> u8 {
     let Call { words, itself } = call;
-    let outcome = config::parse(words).and_then(|arguments| obey(&arguments.command, &itself));
+    let outcome = parse(words).and_then(|arguments| obey(&arguments.command, &itself));
     // Where the process goes on, as Python does, nobody else empties the buffer.
     let _ = io::stdout().flush();
     match outcome {
@@ -133,9 +143,29 @@ pub fn run(call: Call) -> u8 {
     }
 }
 
+#[cfg(feature = "server")]
+fn parse(words: Vec<OsString>) -> anyhow::Result<Arguments> {
+    config::parse(words)
+}
+
+#[cfg(not(feature = "server"))]
+fn parse(words: Vec<OsString>) -> anyhow::Result<Arguments> {
+    Ok(Arguments::try_parse_from(words)?)
+}
+
+/// Whether it ends by itself at an interrupt, as what serves.
+#[cfg(feature = "server")]
+fn has_its_own_end(command: &Command) -> bool {
+    matches!(command, Command::Serve(_) | Command::Open(_))
+}
+
+#[cfg(not(feature = "server"))]
+fn has_its_own_end(_: &Command) -> bool {
+    false
+}
+
 fn obey(command: &Command, itself: &(PathBuf, Vec<OsString>)) -> anyhow::Result<()> {
-    // What serves has its own way to end.
-    if !matches!(command, Command::Serve(_) | Command::Open(_)) {
+    if !has_its_own_end(command) {
         interrupt::end_on_interrupt();
     }
     match command {
@@ -156,9 +186,14 @@ fn obey(command: &Command, itself: &(PathBuf, Vec<OsString>)) -> anyhow::Result<
         Command::Bench(arguments) => commands::bench::run(arguments),
         Command::Robot(arguments) => commands::robot::run(arguments),
         Command::Schema(arguments) => commands::schema::run(arguments),
+        #[cfg(feature = "server")]
         Command::Open(arguments) => commands::open::run(arguments),
+        #[cfg(feature = "server")]
         Command::Serve(arguments) => commands::serve::run(arguments),
+        #[cfg(feature = "server")]
         Command::Demo(arguments) => commands::demo::run(arguments),
+        #[cfg(not(feature = "server"))]
+        Command::Absent(arguments) => commands::absent::run(arguments),
         Command::Completions(arguments) => commands::completions::run(arguments),
         Command::Man(arguments) => commands::man::run(arguments),
     }

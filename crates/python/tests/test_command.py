@@ -45,6 +45,12 @@ def test_its_exit_statuses_are_the_commands(tmp_path):
         assert told.stdout == "" and told.stderr
 
 
+def test_what_starts_a_server_is_said_to_be_elsewhere():
+    for words in [("serve", "--help"), ("open", "map.tif"), ("demo",)]:
+        told = said(*words)
+        assert told.returncode == 2 and "has no server" in told.stderr and told.stderr.count("\n") == 1
+
+
 def test_a_trial_calls_the_package_again(tmp_path):
     told = said("prove", "--cases", 1, "--way", "file-alone", "--seed", 3, "--out", tmp_path / "trial")
     assert told.returncode == 0, told.stderr
