@@ -83,6 +83,25 @@ fn a_robot_without_rolling_resistance_drives_ten_metres_straight_for_nothing() {
     }
 }
 
+/// A path that the wind pays for may lead farther and gain more: costs of the table are never negative, so that it cannot tell.
+#[test]
+fn before_a_wind_that_pushes_for_nothing_no_path_is_called_the_best() {
+    for (east_mps, is_told) in [(20.0, false), (-20.0, true), (2.0, true)] {
+        let wind = serde_json::json!({
+            "mechanism": "wind",
+            "parameters": { "drag_area_m2": 1.1, "east_mps": east_mps, "north_mps": 0.0 },
+        });
+        let mut robot = builtin::husky_a200();
+        robot.mechanisms = vec![serde_json::from_value(wind).unwrap()];
+        let planner = Planner::new(&level(40), &robot, Settings::of(&robot)).unwrap();
+        let query = between(&robot, [5.5, 20.5], [35.5, 20.5], Some(0.0));
+        let plan = planner.plan(&query, Objective::Energy).unwrap();
+        let (energy_j, search) = (plan.route.total.energy_j, &plan.search);
+        assert_eq!(search.is_optimal(), is_told, "{east_mps} m/s: {energy_j} J, {search:?}");
+        assert!(is_told || search.excess > 0.05 * energy_j.abs());
+    }
+}
+
 #[test]
 fn the_shortest_path_does_not_depend_on_friction() {
     for (goal, heading_rad) in [([15.5, 12.5], None), ([12.5, 15.5], Some(0.0)), ([3.5, 5.5], Some(0.0))] {
