@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use model::{Robot, builtin};
+use model::{KnownMechanism, Robot, builtin, mechanism};
 use petgraph::{algo::dijkstra, graph::NodeIndex};
 use planner::{
     CostTable, Error, Goal, HEADINGS, Lattice, Objective, Patience, Plan, Planner, Query, Settings, Start,
@@ -87,12 +87,9 @@ fn a_robot_without_rolling_resistance_drives_ten_metres_straight_for_nothing() {
 #[test]
 fn before_a_wind_that_pushes_for_nothing_no_path_is_called_the_best() {
     for (east_mps, is_told) in [(20.0, false), (-20.0, true), (2.0, true)] {
-        let wind = serde_json::json!({
-            "mechanism": "wind",
-            "parameters": { "drag_area_m2": 1.1, "east_mps": east_mps, "north_mps": 0.0 },
-        });
         let mut robot = builtin::husky_a200();
-        robot.mechanisms = vec![serde_json::from_value(wind).unwrap()];
+        let wind = mechanism::by_name("wind").unwrap();
+        robot.mechanisms.push(KnownMechanism::new(wind, vec![1.1, east_mps, 0.0]));
         let planner = Planner::new(&level(40), &robot, Settings::of(&robot)).unwrap();
         let query = between(&robot, [5.5, 20.5], [35.5, 20.5], Some(0.0));
         let plan = planner.plan(&query, Objective::Energy).unwrap();
