@@ -106,16 +106,26 @@ pub struct SearchReport {
     pub bound: Option<f64>,
     /// By how much the answer may exceed the least, in the objective's unit, rounding included.
     pub excess: f64,
-    /// Whether no path of the lattice costs less, to the rounding of the table.
+    /// Whether no path of the lattice costs less, to the rounding of the table. False where its costs do not tell, as of a wind that pushes
+    /// for nothing: [`SearchReport::excess`] then says how much less one may take.
     pub optimal: bool,
     /// Whether patience ended before the bound asked for was proven.
     pub timed_out: bool,
 }
 
+/// Share of the energy that flows, either way, up to which rounding keeps the best path of the table from being proven the best: a thousandth
+/// as a rule, and some hundredths where most motions take next to nothing. More is what the table's costs, which are never negative, leave out.
+const UNTOLD_SHARE: f64 = 0.05;
+/// The same where hardly any flows [J].
+const UNTOLD_J: f64 = 1.0;
+
 impl SearchReport {
     /// What is proven of a path that takes `amount` of the objective, where none takes less than `least`.
     pub(crate) fn proven(found: &Found, objective: Objective, total: &Edge, duration: Duration) -> Self {
         let amount = objective.compared(total);
+        let excess = (amount - found.least).max(0.0);
+        let drawn_j = total.energy_j + 2.0 * total.recovered_j;
+        let is_told = objective != Objective::Energy || excess <= (UNTOLD_SHARE * drawn_j).max(UNTOLD_J);
         SearchReport {
             expanded: found.expanded,
             duration,
@@ -123,8 +133,8 @@ impl SearchReport {
                 least if amount <= least => Some(1.0),
                 least => (least > 0.0).then(|| amount / least),
             },
-            excess: (amount - found.least).max(0.0),
-            optimal: found.optimal,
+            excess,
+            optimal: found.optimal && is_told,
             timed_out: found.late,
         }
     }

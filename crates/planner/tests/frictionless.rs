@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use model::{Robot, builtin};
+use model::{KnownMechanism, Robot, builtin, mechanism};
 use petgraph::{algo::dijkstra, graph::NodeIndex};
 use planner::{
     CostTable, Error, Goal, HEADINGS, Lattice, Objective, Patience, Plan, Planner, Query, Settings, Start,
@@ -80,6 +80,22 @@ fn a_robot_without_rolling_resistance_drives_ten_metres_straight_for_nothing() {
                 assert!(plan.search.optimal);
             }
         }
+    }
+}
+
+/// A path that the wind pays for may lead farther and gain more: costs of the table are never negative, so that it cannot tell.
+#[test]
+fn before_a_wind_that_pushes_for_nothing_no_path_is_called_the_best() {
+    for (east_mps, is_told) in [(20.0, false), (-20.0, true), (2.0, true)] {
+        let mut robot = builtin::husky_a200();
+        let wind = mechanism::by_name("wind").unwrap();
+        robot.mechanisms.push(KnownMechanism::new(wind, vec![1.1, east_mps, 0.0]));
+        let planner = Planner::new(&level(40), &robot, Settings::of(&robot)).unwrap();
+        let query = between(&robot, [5.5, 20.5], [35.5, 20.5], Some(0.0));
+        let plan = planner.plan(&query, Objective::Energy).unwrap();
+        let (energy_j, search) = (plan.route.total.energy_j, &plan.search);
+        assert_eq!(search.is_optimal(), is_told, "{east_mps} m/s: {energy_j} J, {search:?}");
+        assert!(is_told || search.excess > 0.05 * energy_j.abs());
     }
 }
 

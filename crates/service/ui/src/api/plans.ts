@@ -60,7 +60,7 @@ export interface Plan {
   finished?: boolean;
   poses: Pose[];
   snapped: { start: { distance_m: number }; goal: { distance_m: number } };
-  search: { bound: number | null; optimal: boolean; timed_out: boolean };
+  search: { bound: number | null; excess_at_most: number; optimal: boolean; timed_out: boolean };
   warnings: Warning[];
 }
 

@@ -215,13 +215,13 @@ function Proof() {
   if (!path) return null;
   const search = path.search;
   const lattice = energy(path.lattice_energy_j);
-  const near = `Proven: ${lattice} on the planner's lattice is within ${percent((search.bound ?? 1) - 1)} of the least`;
-  const text =
-    search.optimal || search.bound === null
-      ? `Proven: no path of the planner's lattice takes less than ${lattice}.`
-      : state.isDragging.value
-        ? `${near}, which follows.`
-        : `${near}.`;
+  const within = search.bound === null ? `at most ${energy(search.excess_at_most)} above` : `within ${percent(search.bound - 1)} of`;
+  const near = `Proven: ${lattice} on the planner's lattice is ${within} the least`;
+  const text = search.optimal
+    ? `Proven: no path of the planner's lattice takes less than ${lattice}.`
+    : state.isDragging.value
+      ? `${near}, which follows.`
+      : `${near}.`;
   const freed_j = path.lattice_energy_j - path.energy_j;
   const freed = freed_j > 0 ? ` Freed from the lattice, the path shown takes ${energy(freed_j)} less.` : "";
   const cut = path.finished === false ? " Time ran out while it was freed from the lattice." : "";
