@@ -53,6 +53,9 @@ pub struct CostTable {
 
 /// A small part of the time that a tile takes.
 const WAIT_FOR_A_TURN: Duration = Duration::from_micros(50);
+/// Waits for a turn, several times as long as a tile takes. Who has it may be waiting for this very thread: while its rows are evaluated side by
+/// side a thread takes up other work, which may ask for the same turn.
+const MOST_WAITS: usize = 400;
 
 /// Tiles that can be evaluated at the same time; more than any machine has cores.
 const TURNS: usize = 256;
@@ -281,16 +284,17 @@ impl CostTable {
         Some(())
     }
 
-    /// The turn to evaluate a tile; `None` when patience ends before another thread has given it back.
-    fn turn(&self, tile: usize, patience: &Patience) -> Option<MutexGuard<'_, ()>> {
-        loop {
+    /// The turn to evaluate a tile, or leave to do so without one after [`MOST_WAITS`]; `None` when patience ends before.
+    fn turn(&self, tile: usize, patience: &Patience) -> Option<Option<MutexGuard<'_, ()>>> {
+        for _ in 0..MOST_WAITS {
             match self.turns[tile % TURNS].try_lock() {
-                Ok(turn) => return Some(turn),
-                Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+                Ok(turn) => return Some(Some(turn)),
+                Err(TryLockError::Poisoned(poisoned)) => return Some(Some(poisoned.into_inner())),
                 Err(TryLockError::WouldBlock) if patience.is_over() => return None,
                 Err(TryLockError::WouldBlock) => std::thread::sleep(WAIT_FOR_A_TURN),
             }
         }
+        Some(None)
     }
 
     /// Steps between cells that motions make.
@@ -354,3 +358,29 @@ const DEAREST: f64 = 4.0;
 /// Rows and columns of a map from which on units grow coarser. Costs stay below 2^31 units, 32 768 steps on level ground
 /// where units are finest, so a path may then cost four times as much as level steps along two sides of the map.
 const LONGEST_ACROSS: f64 = 8192.0;
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use model::builtin;
+    use terrain::{Grid, Terrain};
+
+    use super::*;
+    use crate::lattice::Settings;
+
+    /// As where the thread that evaluates a tile takes up another search, which asks for the same tile. It waited for itself until its
+    /// deadline.
+    #[test]
+    fn a_thread_that_has_a_turn_and_asks_for_it_again_gets_its_tile() {
+        let grid = Grid { rows: 8, columns: 8, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+        let terrain = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
+        let robot = builtin::husky_a200();
+        let deadline = Patience::until(Instant::now() + Duration::from_secs(60));
+        let lattice = Lattice::prepare(&terrain, &robot, Settings::of(&robot), &deadline).unwrap();
+        let table = CostTable::lazy(&lattice, Objective::Energy);
+        let held = table.turns[0].lock().unwrap();
+        assert!(table.codes_alone(0, &deadline).is_some());
+        drop(held);
+    }
+}
