@@ -86,11 +86,14 @@ fn a_robot_without_rolling_resistance_drives_ten_metres_straight_for_nothing() {
 /// A path that the wind pays for may lead farther and gain more: costs of the table are never negative, so that it cannot tell.
 #[test]
 fn before_a_wind_that_pushes_for_nothing_no_path_is_called_the_best() {
-    for (east_mps, is_told) in [(20.0, false), (-20.0, true), (2.0, true)] {
+    let grid = Grid { rows: 40, columns: 40, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let waves = |i: usize| 1.5 * (std::f64::consts::TAU * grid.cell(i).column as f64 / 20.0).sin();
+    let waves = Terrain::new(grid, &(0..grid.cells()).map(waves).collect::<Vec<_>>()).unwrap();
+    for (east_mps, is_told) in [(20.0, false), (2.0, true)] {
         let mut robot = builtin::husky_a200();
         let wind = mechanism::by_name("wind").unwrap();
         robot.mechanisms.push(KnownMechanism::new(wind, vec![1.1, east_mps, 0.0]));
-        let planner = Planner::new(&level(40), &robot, Settings::of(&robot)).unwrap();
+        let planner = Planner::new(&waves, &robot, Settings::of(&robot)).unwrap();
         let query = between(&robot, [5.5, 20.5], [35.5, 20.5], Some(0.0));
         let plan = planner.plan(&query, Objective::Energy).unwrap();
         let (energy_j, search) = (plan.route.total.energy_j, &plan.search);
