@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -55,6 +56,18 @@ def test_a_trial_calls_the_package_again(tmp_path):
     assert told.returncode == 0, told.stderr
     boards = list((tmp_path / "trial").rglob("scoreboard.json"))
     assert boards and all("it did not start" not in board.read_text() for board in boards)
+
+
+def test_ctrl_c_ends_it(tmp_path):
+    words = [str(SCRIPT), "prove", "--cases", "2", "--out", str(tmp_path / "trial")]
+    # Whoever runs the tests in the background may have it ignored.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    running = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, preexec_fn=heard)
+    # Keys are committed to once all cases are drawn, and before any is diagnosed.
+    assert running.stdout is not None and "committed" in running.stdout.readline()
+    running.send_signal(signal.SIGINT)
+    _, complaint = running.communicate(timeout=60)
+    assert running.returncode == 130 and "interrupted" in complaint
 
 
 def test_fleets_are_asked_in_the_same_interpreter():

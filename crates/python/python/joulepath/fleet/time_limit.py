@@ -12,6 +12,8 @@ from typing import Any
 MOST_GRACE_S = 10.0
 """How long a piece may go on at most after its time is over before its worker is ended [s]. Computations of joulepath end within 0.1 s; what
 is stuck in a call of the system may never."""
+LEAST_GRACE_S = 1.0
+"""The same however short its time is [s]: ten times what computations need on a machine that is not busy."""
 
 
 class Lost(Exception):
@@ -36,7 +38,7 @@ def limited(work: Callable[..., Any], limit_s: float | None, shared: Any, piece:
 @contextlib.contextmanager
 def _time_limit(limit_s: float) -> Iterator[None]:
     """Raises [`_OutOfTime`] in the main thread after the limit, and ends the process where that does not help."""
-    last_resort = threading.Timer(limit_s + min(limit_s, MOST_GRACE_S), os._exit, [1])
+    last_resort = threading.Timer(limit_s + max(LEAST_GRACE_S, min(limit_s, MOST_GRACE_S)), os._exit, [1])
     last_resort.daemon = True
     last_resort.start()
     try:
