@@ -4,14 +4,15 @@ use std::collections::HashMap;
 
 use crate::{
     cost::{FORBIDDEN, decode},
-    field::{GoalField, UNREACHED},
+    field::GoalField,
     heading::HEADINGS,
-    labels::Workspace,
-    lattice::{Lattice, State},
+    labels::{UNREACHED, Workspace},
+    lattice::Lattice,
     layout::{Layout, Shift},
     patience::{Patience, work},
     prefetch::prefetch,
     queue::BUCKET_SHIFT,
+    state::State,
     table::CostTable,
     tile_builder::{QUAD, code_place},
     walk_back::{Walked, walk_back},

@@ -7,11 +7,11 @@ use crate::{
     error::{Error, Place},
     field::{FieldEnds, GoalField},
     fields::{FieldKey, Towards},
-    lattice::State,
     objective::Objective,
     planner::Planner,
     query::Query,
     snap::{Candidates, Snapped},
+    state::State,
     step_costs::StepCosts,
 };
 

@@ -7,8 +7,8 @@ use crate::{
     edge::Edge,
     free::FreeGround,
     heading::{Heading, turn_rad},
-    lattice::State,
     route::{Pose, Route},
+    state::State,
     step::Step,
 };
 

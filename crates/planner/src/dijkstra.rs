@@ -2,13 +2,12 @@
 
 use crate::{
     cost::{FORBIDDEN, decode},
-    field::UNREACHED,
     heading::HEADINGS,
-    labels::Labels,
-    lattice::State,
+    labels::{Labels, UNREACHED},
     layout::{Layout, Shift},
     patience::{Patience, work},
     queue::{BUCKET_SHIFT, BucketQueue},
+    state::State,
     table::CostTable,
     tile_builder::{QUAD, code_place},
 };

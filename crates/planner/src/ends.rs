@@ -3,12 +3,13 @@
 use crate::{
     error::{Error, Place},
     heading::Heading,
-    lattice::{Lattice, State},
+    lattice::Lattice,
     objective::Objective,
     patience::Patience,
     query::{Goal, Query},
     rings::{farthest_ring, ring},
     snap::{Asked, STANDING_IN_A_CELL, Snapped, snap},
+    state::State,
 };
 
 /// Both ends on the lattice.

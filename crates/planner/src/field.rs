@@ -7,10 +7,11 @@ use terrain::Cell;
 use crate::{
     growth::Home,
     heading::{HEADINGS, Heading},
-    lattice::State,
+    labels::UNREACHED,
     layout::{HEADING_BITS, Layout, TILE, TILE_CELLS},
     near::Near,
     patience::{Patience, work},
+    state::State,
     step_costs::StepCosts,
     table::CostTable,
 };
@@ -53,8 +54,6 @@ enum Beyond {
     /// distance times the least cost per metre; none costs less than `least`, the rim about the goal.
     Towards { floor: u32, home: Home, least: u32 },
 }
-
-pub(crate) const UNREACHED: u32 = u32::MAX;
 
 impl GoalField {
     /// Backward search from the goal cells, towards the start if there is one; `None` when patience ends first.

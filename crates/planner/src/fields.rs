@@ -7,9 +7,9 @@ use terrain::Cell;
 use crate::{
     exact::ExactField,
     field::{FieldEnds, GoalField},
-    lattice::State,
     objective::Objective,
     patience::Patience,
+    state::State,
     step_costs::StepCosts,
     table::CostTable,
 };

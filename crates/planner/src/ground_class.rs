@@ -8,7 +8,7 @@ use terrain::{
 
 use crate::{
     error::Error,
-    lattice::Settings,
+    lattice::{Lattice, Settings},
     objective::{Surcharge, Weights},
     step::PreparedStep,
 };
@@ -211,4 +211,11 @@ fn surface_at(terrain: &Terrain, index: usize) -> usize {
             class => usize::from(class),
         },
     }
+}
+
+/// Names of the surfaces that steps index: the map's, then the robot's default.
+pub fn surface_names(lattice: &Lattice) -> Vec<String> {
+    let mut names = lattice.terrain.surfaces().map_or(Vec::new(), |s| s.names.clone());
+    names.push(lattice.robot.default_surface.clone());
+    names
 }

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use crate::{
     cost::ENDLESS,
-    field::{GoalField, UNREACHED},
+    field::GoalField,
     front::Front,
+    labels::UNREACHED,
     layout::{HEADING_BITS, TILE, TILE_CELLS},
     patience::{Patience, work},
     stencil::Stencil,

@@ -4,6 +4,9 @@ use crate::{
     layout::Layout, patience::Patience, prefetch::prefetch, queue::BucketQueue, tile_builder::TILE_STATES,
 };
 
+/// Cost of what was not reached.
+pub(crate) const UNREACHED: u32 = u32::MAX;
+
 /// What a search works with; keep it for the next search over the same lattice, which then starts at once.
 pub struct Workspace {
     pub(crate) labels: Labels,

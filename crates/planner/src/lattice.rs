@@ -23,6 +23,7 @@ use crate::{
     primitive::{LONGEST_LEAD, Motion, Piece, motions},
     spans::{Span, first_blocked, shifted},
     stance::Stance,
+    state::State,
     step::{Limits, Step},
     swept::Rectangle,
 };
@@ -74,15 +75,6 @@ impl Settings {
     pub(crate) fn tightest_m(&self, robot: &Robot) -> f64 {
         robot.half_slip_track_m().max(self.least_radius_m)
     }
-}
-
-/// A pose of the lattice: a cell centre and a heading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct State {
-    /// The cell.
-    pub cell: Cell,
-    /// The heading.
-    pub heading: Heading,
 }
 
 /// A robot on a terrain: its motions, their costs, and where it may stand.

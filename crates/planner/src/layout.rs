@@ -4,7 +4,7 @@ use terrain::{Cell, Grid};
 
 use crate::{
     heading::{HEADINGS, Heading},
-    lattice::State,
+    state::State,
 };
 
 /// Edge of a tile in cells, as a power of two.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::{
     dijkstra::{Dijkstra, Direction},
-    field::UNREACHED,
     heading::HEADINGS,
-    lattice::State,
+    labels::UNREACHED,
     layout::Layout,
     patience::{Patience, work},
+    state::State,
     table::CostTable,
 };
 

@@ -5,11 +5,11 @@ use terrain::Cell;
 use crate::{
     error::Error,
     exact::ExactField,
-    lattice::State,
     objective::Objective,
     patience::work,
     planner::Planner,
     query::{Goal, Plan, Query},
+    state::State,
 };
 
 impl Planner {

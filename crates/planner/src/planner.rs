@@ -22,13 +22,14 @@ use crate::{
     heading::Heading,
     hindrance::Hindrance,
     labels::Workspace,
-    lattice::{Lattice, Settings, State},
+    lattice::{Lattice, Settings},
     objective::Objective,
     patience::{Patience, work},
     query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
     refine::RefinedPath,
     rings::{farthest_ring, ring},
     route::{Pose, Route},
+    state::State,
     step_costs::StepCosts,
     table::CostTable,
     uncertainty::energy_interval_j,
@@ -414,11 +415,4 @@ fn goal_snap(route: &Route, ends: &Ends, goal: &Goal) -> Snap {
 fn state_of(lattice: &Lattice, pose: &Pose) -> Option<State> {
     let cell = lattice.terrain.grid.cell_at(pose.x_m, pose.y_m)?;
     Some(State { cell, heading: Heading::nearest(pose.heading_rad) })
-}
-
-/// Names of the surfaces that steps index: the map's, then the robot's default.
-pub fn surface_names(lattice: &Lattice) -> Vec<String> {
-    let mut names = lattice.terrain.surfaces().map_or(Vec::new(), |s| s.names.clone());
-    names.push(lattice.robot.default_surface.clone());
-    names
 }

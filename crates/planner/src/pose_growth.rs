@@ -11,13 +11,13 @@ use rayon::prelude::*;
 use crate::{
     dijkstra::{Dijkstra, Direction},
     heading::HEADINGS,
-    lattice::State,
     layout::{Layout, TILE},
     patience::{Patience, work},
     pose_codes::CodesAround,
     pose_costs::PoseCosts,
     pose_stencil::PoseStencil,
     pose_sweep::PoseSweep,
+    state::State,
     table::CostTable,
 };
 

@@ -3,9 +3,10 @@
 use crate::{
     edge::Edge,
     error::Error,
-    lattice::{Lattice, State},
+    lattice::Lattice,
     objective::Objective,
     patience::{Patience, work},
+    state::State,
     step::Step,
     unlimited::{cheapest, drive_unlimited},
 };

@@ -7,9 +7,10 @@ use terrain::Cell;
 use crate::{
     error::{Blocked, Error, Place},
     heading::{HEADINGS, Heading, MAX_HEADING_RAD, turn_rad},
-    lattice::{Lattice, State},
+    lattice::Lattice,
     patience::{Pacer, Patience, work},
     rings::{farthest_ring, ring},
+    state::State,
 };
 
 /// A place that a request names.

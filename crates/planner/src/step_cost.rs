@@ -5,9 +5,9 @@ use terrain::Cell;
 use crate::{
     cost::{FORBIDDEN, decode},
     heading::Heading,
-    lattice::State,
     layout::{HEADING_BITS, Layout, TILE_CELLS},
     patience::Patience,
+    state::State,
     table::CostTable,
     tile_builder::LANES,
 };

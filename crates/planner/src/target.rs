@@ -5,12 +5,12 @@ use crate::{
     ends::goals_with_potential,
     error::{Error, Place},
     field::{FieldEnds, GoalField},
-    lattice::State,
     objective::Objective,
     patience::Patience,
     planner::{Planner, joins, nearest_connected},
     route::Route,
     snap::{Asked, snap},
+    state::State,
 };
 
 /// Goal poses, any of which will do, with the field that leads there from everywhere.

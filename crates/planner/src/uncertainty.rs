@@ -9,9 +9,9 @@ use model::{
 
 use crate::{
     coarse::{HiddenRelief, hidden_relief},
+    ground_class::surface_names,
     lattice::Lattice,
     patience::{Patience, work},
-    planner::surface_names,
     route::Route,
 };
 

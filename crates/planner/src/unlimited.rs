@@ -8,9 +8,10 @@ use terrain::Cell;
 
 use crate::{
     edge::{Chain, Edge},
-    lattice::{Lattice, State},
+    lattice::Lattice,
     objective::Weights,
     spans::{first_blocked, shifted},
+    state::State,
     step::{Limits, Step},
 };
 

@@ -2,13 +2,13 @@
 
 use crate::{
     cost::{FORBIDDEN, decode},
-    field::UNREACHED,
     heading::Heading,
-    labels::Labels,
-    lattice::{Lattice, State},
+    labels::{Labels, UNREACHED},
+    lattice::Lattice,
     layout::Layout,
     patience::{Patience, work},
     spans::shifted,
+    state::State,
     table::CostTable,
     tile_builder::{QUAD, code_place},
 };
