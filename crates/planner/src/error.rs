@@ -213,7 +213,7 @@ pub enum Error {
     /// A heading beyond a full turn, most often in degrees.
     #[error(
         "the heading of the {place} is {heading_rad} rad, but must lie in -{0} to {0} rad, a full turn: give radians, 1.571 for 90 degrees",
-        crate::heading::MAX_HEADING_RAD
+        crate::grid::heading::MAX_HEADING_RAD
     )]
     Heading {
         /// Which place.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::cost::SINGLE_PRECISION;
+use crate::grid::cost::SINGLE_PRECISION;
 
 /// A limit of the robot that can forbid a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,119 +6,73 @@
 //! makes every cost non-negative without changing the best path, so the search stays exact.
 //!
 //! Deterministic for any number of threads. No I/O, no async.
+//!
+//! Each uses only those above it:
+//!
+//! ```text
+//! grid         headings, cells; states and costs packed into bits
+//! error        why there is no path: errors and what hinders a robot (`hindrance`)
+//! patience     how long a question may take
+//! ground       height, attitude and clearance under the robot, outline, blocked cells
+//! lattice      motions of a robot, what each takes on the ground, objectives
+//! table        costs of all motions from every state, lower bounds of them
+//! frontier     labels and queue of a search, Dijkstra's search
+//! pose_field   least costs over poses: exact fields
+//! field        least costs over cells to a goal, which lead A*
+//! path         the path found: poses, totals, interval of its energy
+//! search       A* over poses
+//! refinement   the path freed from the lattice
+//! question     ends, planner, plans, why there is none
+//! ```
 
-mod along;
-mod astar;
-
-mod blocked;
-mod changes;
-mod changing;
-mod clearance;
-mod coarse;
-mod connected;
-mod connection;
-mod cost;
-mod course;
-mod dijkstra;
-mod displacement;
-mod edge;
-mod ends;
 mod error;
-mod exact;
-mod exact_ends;
-mod explanation;
 mod field;
-mod fields;
-mod footprint;
-mod free;
-mod front;
+mod frontier;
+mod grid;
 mod ground;
-mod ground_class;
-mod growth;
-mod heading;
-mod heights;
 mod hindrance;
-mod labels;
 mod lattice;
-mod layout;
-mod least;
-mod near;
-mod noise;
-mod objective;
-mod partial;
+mod path;
 mod patience;
-mod piece_bound;
-mod plan;
-mod planner;
-mod polish;
-mod pose_codes;
-mod pose_costs;
-mod pose_growth;
-mod pose_stencil;
-mod pose_sweep;
-mod prefetch;
-mod preparation;
-mod prices;
-mod primitive;
-mod proof;
-mod query;
-mod queue;
-mod rates;
-mod refine;
-mod rings;
-mod roll_bound;
-mod room;
-mod route;
-mod row_step;
-mod shortcut;
-mod snap;
-mod spans;
-mod stance;
-mod state;
-mod stencil;
-mod step;
-mod step_cost;
-mod step_costs;
-mod stops;
-mod sweep;
-mod swept;
+mod pose_field;
+mod question;
+mod refinement;
+mod search;
 mod table;
-mod target;
-mod tile;
-mod tile_bound;
-mod tile_builder;
-mod uncertainty;
-mod unlimited;
-mod walk_back;
-mod window;
 
-pub use astar::{Found, Outcome, Search, search};
-pub use clearance::Clearance;
-pub use coarse::{HiddenRelief, hidden_relief, is_coarse};
-pub use edge::Edge;
-pub use ends::Ends;
 pub use error::{Blocked, Error, Place};
-pub use exact::ExactField;
-pub use field::{FieldEnds, GoalField};
-pub use footprint::Footprint;
-pub use ground_class::surface_names;
-pub use heading::{HEADINGS, Heading};
+pub use field::goal_field::{FieldEnds, GoalField};
+pub use frontier::labels::Workspace;
+pub use grid::{
+    heading::{HEADINGS, Heading},
+    state::State,
+};
+pub use ground::{clearance::Clearance, footprint::Footprint};
 pub use hindrance::{Hindrance, Limit};
-pub use labels::Workspace;
-pub use lattice::{Lattice, Settings, body_motion};
-pub use objective::{Objective, Surcharge, Weights};
+pub use lattice::{
+    edge::Edge,
+    graph::{Lattice, Settings, body_motion},
+    ground_class::surface_names,
+    objective::{Objective, Surcharge, Weights},
+    prices::Prices,
+    primitive::{Kind, Motion, Piece, motions},
+    step::Step,
+};
+pub use path::{
+    coarse::{HiddenRelief, hidden_relief, is_coarse},
+    room::least_room_m,
+    route::{Pose, Route},
+    stops::{stops, stops_j},
+};
 pub use patience::{Meter, Pacer, Patience, work};
-pub use plan::{compare, plan};
-pub use planner::Planner;
-pub use prices::Prices;
-pub use primitive::{Kind, Motion, Piece, motions};
-pub use query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start};
-pub use refine::{Refined, RefinedPath, refine};
-pub use room::least_room_m;
-pub use route::{Pose, Route};
-pub use state::State;
-pub use step::Step;
-pub use step_cost::StepCost;
-pub use stops::{stops, stops_j};
-pub use table::CostTable;
-pub use target::Target;
+pub use pose_field::exact::ExactField;
+pub use question::{
+    ends::Ends,
+    plan::{compare, plan},
+    planner::Planner,
+    query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
+    target::Target,
+};
+pub use refinement::refine::{Refined, RefinedPath, refine};
+pub use search::astar::{Found, Outcome, Search, search};
+pub use table::{cost_table::CostTable, step_cost::StepCost};

@@ -1,0 +1,96 @@
+//! From a goal that was reached back to the start, by the labels alone.
+
+use crate::{
+    frontier::labels::{Labels, UNREACHED},
+    grid::{
+        cost::{FORBIDDEN, decode},
+        heading::Heading,
+        layout::Layout,
+        state::State,
+    },
+    ground::spans::shifted,
+    lattice::graph::Lattice,
+    patience::{Patience, work},
+    table::{
+        cost_table::CostTable,
+        tile_builder::{QUAD, code_place},
+    },
+};
+
+/// States that are looked at to find the one before, which lie all over memory.
+const PREDECESSORS: u64 = 8 * work::STATE;
+
+/// How a walk ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Walked {
+    /// At a start, with the motions from there.
+    Start(State, Vec<usize>),
+    /// At a state that is no start and has no predecessor; costs that rise along every motion rule it out.
+    Astray,
+    /// On the way, because patience did.
+    Late,
+}
+
+/// The start and the motions that led to a state: at each state the predecessor with the least cost through it.
+///
+/// Every motion costs at least one unit, so each predecessor costs less than the state: the walk takes as many steps as
+/// the goal costs units at most, and comes to a state that costs nothing, which only starts do.
+pub(crate) fn walk_back(
+    table: &CostTable,
+    labels: &Labels,
+    (starts, goal): (&[State], u32),
+    patience: &Patience,
+) -> Walked {
+    let lattice = table.lattice();
+    let mut motions = Vec::new();
+    let mut state = lattice.layout.unpack(goal);
+    let mut cost = labels.cost(goal);
+    let mut pacer = patience.pacer();
+    while cost > 0 {
+        // Memory is asked for the labels of all predecessors.
+        if pacer.after(PREDECESSORS).is_none() {
+            return Walked::Late;
+        }
+        // The cost of each state came from one of its predecessors, whose own can only have fallen since.
+        let Some((before, motion, known)) = predecessor(table, labels, state).filter(|found| found.2 < cost)
+        else {
+            return Walked::Astray;
+        };
+        motions.push(motion);
+        (state, cost) = (before, known);
+    }
+    if !starts.contains(&state) {
+        return Walked::Astray;
+    }
+    motions.reverse();
+    Walked::Start(state, motions)
+}
+
+/// The state through which another costs least, the motion between them and the cost of the former.
+fn predecessor(table: &CostTable, labels: &Labels, state: State) -> Option<(State, usize, u32)> {
+    let lattice = table.lattice();
+    let through = predecessors(lattice, state).filter_map(|(before, motion)| {
+        let packed = lattice.layout.pack(before);
+        let known = labels.cost(packed);
+        if known == UNREACHED {
+            return None;
+        }
+        // A state whose codes are not at hand was not expanded, so no cost came from it.
+        let codes = table.codes_at_hand(Layout::tile(packed))?;
+        let code = *codes.get(code_place(Layout::within(packed), table.stride()) + motion * QUAD)?;
+        (code != FORBIDDEN).then(|| (known.saturating_add(decode(code)), (before, motion, known)))
+    });
+    through.min_by_key(|(total, _)| *total).map(|(_, found)| found)
+}
+
+/// States from which a motion leads to a state.
+fn predecessors(lattice: &Lattice, end: State) -> impl Iterator<Item = (State, usize)> + '_ {
+    Heading::all().flat_map(move |from| {
+        lattice.motions[from.index()].iter().enumerate().filter(move |(_, m)| m.to == end.heading).filter_map(
+            move |(index, m)| {
+                let cell = shifted(&lattice.terrain, end.cell, (-m.columns, -m.rows))?;
+                Some((State { cell, heading: from }, index))
+            },
+        )
+    })
+}
