@@ -69,6 +69,18 @@ impl Member {
         Applied { mechanism: self.mechanism, values: self.values.clone(), span: self.span }
     }
 
+    /// Whether another is the same mechanism in the same form and span, whatever its sizes.
+    pub(crate) fn differs_in_size_only(&self, other: &Member) -> bool {
+        let is_free = |i: usize| self.free.iter().any(|size| size.parameter == i);
+        let mut values = self.values.iter().zip(&other.values).enumerate();
+        self.mechanism.name() == other.mechanism.name()
+            && self.span == other.span
+            && self.log_prior == other.log_prior
+            && self.free.len() == other.free.len()
+            && self.free.iter().zip(&other.free).all(|(a, b)| (a.parameter, a.half) == (b.parameter, b.half))
+            && values.all(|(i, (a, b))| is_free(i) || a == b)
+    }
+
     /// Its free sizes, independent in their prior.
     pub(crate) fn sizes(&self) -> Vec<f64> {
         let mut sizes: Vec<f64> =

@@ -109,19 +109,27 @@ impl Search<'_> {
         Ok(self.screen.by_names(&all))
     }
 
-    /// Fits the subsets of every leading set from where it ended: a good pair must not beat a single that is stuck elsewhere.
+    /// Fits the subsets of every leading set from where it ended: a good pair must not beat a single that is stuck elsewhere. Subsets that
+    /// differ in where their sizes begin end at the same ones, and are fitted once.
     fn fit_subsets(&self, fits: &mut Fits) -> Result<(), Error> {
         for size in [3, 2] {
-            let leading = fits.leading(size, BEHIND);
-            let parts: Vec<(usize, usize)> =
-                (0..leading.len()).flat_map(|i| (0..size).map(move |without| (i, without))).collect();
-            let fit = |(i, without): &(usize, usize)| {
-                let mut members = leading[*i].fitted.members.clone();
-                members.remove(*without);
-                Ok((
-                    names(&members),
-                    Kept { fitted: self.joint.fit(&members)?.into(), spread: leading[*i].spread },
-                ))
+            let mut parts: Vec<(Vec<Member>, f64)> = Vec::new();
+            for kept in fits.leading(size, BEHIND) {
+                for without in 0..size {
+                    let mut members = kept.fitted.members.clone();
+                    members.remove(without);
+                    members.sort_by_key(|member| member.mechanism.name());
+                    let alike = |part: &&mut (Vec<Member>, f64)| {
+                        part.0.iter().zip(&members).all(|(a, b)| a.differs_in_size_only(b))
+                    };
+                    match parts.iter_mut().find(alike) {
+                        Some((_, spread)) => *spread = spread.max(kept.spread),
+                        None => parts.push((members, kept.spread)),
+                    }
+                }
+            }
+            let fit = |(members, spread): &(Vec<Member>, f64)| {
+                Ok((names(members), Kept { fitted: self.joint.fit(members)?.into(), spread: *spread }))
             };
             let fitted: Vec<(Names, Kept)> = parts.par_iter().map(fit).collect::<Result<_, Error>>()?;
             fitted.into_iter().for_each(|(names, kept)| fits.keep(names, kept));
