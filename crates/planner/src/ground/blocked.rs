@@ -45,6 +45,11 @@ impl Blocked {
         blocked
     }
 
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.runs.iter().map(|words| size_of_val(&words[..])).sum::<usize>() + self.near.len()
+    }
+
     /// Whether anything is blocked within reach of a row of the tile's cells.
     pub(crate) fn is_near(&self, row: usize) -> bool {
         self.near[row]

@@ -18,10 +18,7 @@ use crate::{
     lattice::graph::Lattice,
     patience::{Patience, work},
     search::walk_back::{Walked, walk_back},
-    table::{
-        cost_table::CostTable,
-        tile_builder::{QUAD, code_place},
-    },
+    table::{cost_table::CostTable, tile_builder::code_place},
 };
 
 /// What to search for.
@@ -292,18 +289,17 @@ impl Passes<'_> {
                 }
                 labels.prefetch(soon);
             }
-            let Some(codes) = table.codes_alone(Layout::tile(state), patience) else {
+            let Some(codes) = table.state_codes(state, patience) else {
                 queue.push(key, state);
                 return (best, Ended::Late);
             };
-            let codes = &codes[code_place(Layout::within(state), stride)..];
             let moves = &self.moves[(state as usize & (HEADINGS - 1)) * stride..][..stride];
-            for (code, step) in codes.iter().step_by(QUAD).zip(moves) {
-                if *code == FORBIDDEN {
+            for (code, step) in codes.iter().zip(moves) {
+                if code == FORBIDDEN {
                     continue;
                 }
                 let next = layout.shift(state, step.shift) | step.heading;
-                let total = cost.saturating_add(decode(*code));
+                let total = cost.saturating_add(decode(code));
                 if labels.lower(next, total) {
                     let ahead = field.units_at(next);
                     // What cannot beat the best path need not be looked at; nor can what does not lead to the goal.

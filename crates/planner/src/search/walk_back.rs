@@ -5,16 +5,12 @@ use crate::{
     grid::{
         cost::{FORBIDDEN, decode},
         heading::Heading,
-        layout::Layout,
         state::State,
     },
     ground::spans::shifted,
     lattice::graph::Lattice,
     patience::{Patience, work},
-    table::{
-        cost_table::CostTable,
-        tile_builder::{QUAD, code_place},
-    },
+    table::cost_table::CostTable,
 };
 
 /// States that are looked at to find the one before, which lie all over memory.
@@ -75,9 +71,8 @@ fn predecessor(table: &CostTable, labels: &Labels, state: State) -> Option<(Stat
         if known == UNREACHED {
             return None;
         }
-        // A state whose codes are not at hand was not expanded, so no cost came from it.
-        let codes = table.codes_at_hand(Layout::tile(packed))?;
-        let code = *codes.get(code_place(Layout::within(packed), table.stride()) + motion * QUAD)?;
+        // Also of states that were reached and not expanded: some lead there for less.
+        let code = table.state_codes(packed, &Patience::default())?.of(motion)?;
         (code != FORBIDDEN).then(|| (known.saturating_add(decode(code)), (before, motion, known)))
     });
     through.min_by_key(|(total, _)| *total).map(|(_, found)| found)

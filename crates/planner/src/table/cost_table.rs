@@ -28,9 +28,10 @@ use crate::{
     table::{
         least::least_cost_per_m,
         proof::{Proof, cancellation},
+        strips::{StateCodes, Strips},
         tile::TileKernel,
         tile_bound::{BoundKernel, Bounds},
-        tile_builder::{Codes, Lanes, Least, QUAD, code_place},
+        tile_builder::{Codes, Lanes, Least},
     },
 };
 
@@ -49,6 +50,8 @@ pub struct CostTable {
     codes: Vec<OnceLock<Codes>>,
     /// Least codes of each tile's cells, by row, group of lanes, displacement and lane, over headings and motions.
     least: Vec<OnceLock<Least>>,
+    /// Tiles of which a search has looked at little.
+    strips: Vec<OnceLock<Box<Strips>>>,
     /// Tiles whose codes are held.
     held: AtomicUsize,
     /// Held while a tile is evaluated, so that two threads that need it do not both do the work.
@@ -92,6 +95,7 @@ impl CostTable {
             units,
             codes: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             least: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
+            strips: (0..lattice.layout.tiles()).map(|_| OnceLock::new()).collect(),
             held: AtomicUsize::new(0),
             turns: [const { Mutex::new(()) }; TURNS],
             displacements: Displacement::of(lattice),
@@ -159,7 +163,8 @@ impl CostTable {
     pub fn bytes(&self) -> usize {
         let least = self.least.iter().filter_map(OnceLock::get).map(|least| size_of_val(&least[..]));
         let codes = self.codes.iter().filter_map(OnceLock::get).map(|codes| size_of_val(&codes[..]));
-        least.chain(codes).sum()
+        let strips = self.strips.iter().filter_map(OnceLock::get).map(|strips| strips.bytes());
+        least.chain(codes).chain(strips).sum()
     }
 
     /// Units per joule, metre or second.
@@ -200,13 +205,34 @@ impl CostTable {
         }
     }
 
-    /// The same for a search that looks at few tiles: those around are not evaluated with it.
+    /// Codes of all motions from a packed state, for a search that looks at few of a tile's: evaluated with those of its row and heading, and
+    /// with the whole tile once it has looked at many; `None` when patience ends first.
     #[inline(always)]
-    pub(crate) fn codes_alone(&self, tile: usize, patience: &Patience) -> Option<&[u16]> {
-        if self.codes[tile].get().is_none() {
-            self.evaluate(tile, true, patience)?;
+    pub(crate) fn state_codes(&self, state: u32, patience: &Patience) -> Option<StateCodes<'_>> {
+        match self.codes[Layout::tile(state)].get() {
+            Some(codes) => Some(StateCodes::of_tile(codes, state, self.stride())),
+            None => self.strip_codes(state, patience),
         }
-        self.codes[tile].get().map(|codes| &codes[..])
+    }
+
+    fn strip_codes(&self, state: u32, patience: &Patience) -> Option<StateCodes<'_>> {
+        let tile = Layout::tile(state);
+        let strips = self.strips[tile].get_or_init(|| Strips::new(&self.kernel, &self.lattice, tile).into());
+        if !strips.are_many() {
+            return strips.codes(&self.kernel, state, patience);
+        }
+        self.evaluate(tile, true, patience)?;
+        self.state_codes_at_hand(state)
+    }
+
+    /// The same if they have been evaluated.
+    #[inline(always)]
+    pub(crate) fn state_codes_at_hand(&self, state: u32) -> Option<StateCodes<'_>> {
+        let tile = Layout::tile(state);
+        match self.codes.get(tile)?.get() {
+            Some(codes) => Some(StateCodes::of_tile(codes, state, self.stride())),
+            None => self.strips[tile].get()?.codes_at_hand(state),
+        }
     }
 
     /// The least codes of a tile, evaluated when first asked for; `None` when patience ends first.
@@ -312,8 +338,9 @@ impl CostTable {
     /// Code of a motion from a packed state, whatever it takes to know it.
     pub(crate) fn code(&self, state: u32, motion: usize) -> u16 {
         let codes = self.codes(Layout::tile(state), &Patience::default());
-        let place = code_place(Layout::within(state), self.stride()) + motion * QUAD;
-        codes.and_then(|codes| codes.get(place).copied()).unwrap_or(FORBIDDEN)
+        codes
+            .and_then(|codes| StateCodes::of_tile(codes, state, self.stride()).of(motion))
+            .unwrap_or(FORBIDDEN)
     }
 
     /// Where the motions from a state lead and what they cost in the table's units, for other searches over the same graph.
@@ -387,7 +414,7 @@ mod tests {
         let lattice = Lattice::prepare(&terrain, &robot, Settings::of(&robot), &deadline).unwrap();
         let table = CostTable::lazy(&lattice, Objective::Energy);
         let held = table.turns[0].lock().unwrap();
-        assert!(table.codes_alone(0, &deadline).is_some());
+        assert!(table.codes(0, &deadline).is_some());
         drop(held);
     }
 }

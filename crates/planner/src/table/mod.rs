@@ -10,6 +10,7 @@ pub(crate) mod roll_bound;
 pub(crate) mod row_step;
 pub(crate) mod step_cost;
 pub(crate) mod step_costs;
+pub(crate) mod strips;
 pub(crate) mod tile;
 pub(crate) mod tile_bound;
 pub(crate) mod tile_builder;

@@ -28,7 +28,10 @@ use crate::{
 
 /// Everything about the lattice that the evaluation of a tile needs, prepared once for all tiles.
 pub(crate) struct TileKernel {
+    /// By heading, motion and variant.
     chains: Vec<RowChain>,
+    /// Those of each heading.
+    of_heading: [Range<usize>; HEADINGS],
     /// Slots per state.
     pub(crate) stride: usize,
     halo: usize,
@@ -64,7 +67,9 @@ struct RowChain {
 impl TileKernel {
     pub(crate) fn new(lattice: &Lattice, weights: Weights, units: f64) -> Self {
         let mut chains = Vec::new();
+        let mut of_heading = [const { 0..0 }; HEADINGS];
         for (heading, motions) in lattice.chains.iter().enumerate() {
+            of_heading[heading].start = chains.len();
             for (motion, variants) in motions.iter().enumerate() {
                 for chain in variants {
                     let (offset, end) = chain.end();
@@ -72,6 +77,7 @@ impl TileKernel {
                     chains.push(RowChain::new((heading, motion), chain, end, (lattice, &weights)));
                 }
             }
+            of_heading[heading].end = chains.len();
         }
         let beside = lattice.ground.reach();
         let reads = chains.iter().flat_map(|c| &c.steps).flat_map(RowStep::reads);
@@ -85,6 +91,7 @@ impl TileKernel {
             groups: groups(&chains),
             longest_span,
             chains,
+            of_heading,
             stride: lattice.motions_per_state(),
             halo,
             swept,
@@ -132,6 +139,25 @@ impl TileKernel {
     /// Cells of a row, bit by bit, from which a chain would touch blocked ground.
     fn touched(&self, blocked: &Blocked, row: usize, chain: usize) -> u64 {
         if blocked.is_near(row) { blocked.touched(row, &self.chains[chain].sweep) } else { 0 }
+    }
+
+    /// Codes of all motions from a row of cells under one heading, motion by motion; `None` when patience ends first.
+    pub(crate) fn strip_codes(
+        &self,
+        (window, blocked): (&Window, &Blocked),
+        (row, heading): (usize, usize),
+        columns: usize,
+        patience: &Patience,
+    ) -> Option<Box<[RowCodes]>> {
+        let mut codes = vec![[FORBIDDEN; TILE]; self.stride];
+        let mut pacer = patience.pacer();
+        for at in self.of_heading[heading].clone() {
+            let chain = &self.chains[at];
+            pacer.after((chain.steps.len() * window.present.len()) as u64 * STEP_OF_A_ROW)?;
+            lower(&mut codes[chain.motion], &self.chain_codes((window, blocked), row, at));
+        }
+        codes.iter_mut().for_each(|codes| codes[columns..].fill(FORBIDDEN));
+        Some(codes.into_boxed_slice())
     }
 
     /// Costs of all motions from all states of a tile; `None` when patience ends first.

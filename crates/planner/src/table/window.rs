@@ -73,6 +73,13 @@ impl Window {
         is_only.then_some(first)
     }
 
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        let gradients =
+            self.gradients.iter().flatten().chain([&self.height_m]).map(|values| size_of_val(&values[..]));
+        gradients.sum::<usize>() + self.class.len() + self.present.len()
+    }
+
     /// The values under a row of the tile's cells, moved by an offset (columns, rows).
     #[inline(always)]
     pub(crate) fn lanes<'w, T>(
