@@ -1,12 +1,12 @@
 //! What a change of speed, payload, standing load or surface takes on a map that was planned over before, as JSON.
 //!
-//!     cargo run --release -p joulepath-bench --example slider -- maps/minnesota.tif 1000 1.05
+//!     cargo run --release -p joulepath-bench --example slider -- maps/minnesota.tif 1000 1.05 [1]
 //!
-//! The map is a GeoTIFF mirrored to a side in cells; the last argument is the bound. Each change is a planner of its own, as the
-//! service keeps it. CPU time is that of all threads, from Linux; elsewhere it is null. Bytes are what the planner holds of costs,
+//! The map is a GeoTIFF mirrored to a side in cells; then comes the bound, and that of the plan before the change, 1 where it is not
+//! given. Each change is a planner of its own that knows of the first one, as the service keeps it. CPU time is that of all threads, from Linux; elsewhere it is null. Bytes are what the planner holds of costs,
 //! fields and memory to search in.
 
-use std::{error::Error, fs, time::Instant};
+use std::{error::Error, fs, sync::Arc, time::Instant};
 
 use model::{Robot, builtin};
 use planner::{Goal, Objective, Patience, Planner, Query, Settings, Start};
@@ -15,16 +15,20 @@ use terrain::{Terrain, io, synthetic};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [map, side, bound] = &arguments[..] else {
-        return Err("three arguments are needed: a GeoTIFF, a side in cells, a bound such as 1.05".into());
+    let (map, side, bound, before) = match &arguments[..] {
+        [map, side, bound] => (map, side, bound, "1"),
+        [map, side, bound, before] => (map, side, bound, before.as_str()),
+        _ => {
+            return Err("arguments: a GeoTIFF, a side in cells, a bound such as 1.05, the bound before".into());
+        }
     };
-    let (side, bound): (usize, f64) = (side.parse()?, bound.parse()?);
+    let (side, bound, before): (usize, f64, f64) = (side.parse()?, bound.parse()?, before.parse()?);
     let tile = io::geotiff::read(&fs::read(map)?, Terrain::MAX_CELLS)?;
     let terrain = synthetic::mirrored(&tile, side, side)?;
     let robot = builtin::by_name("husky-a200-field")?;
     let usual = Settings::of(&robot);
-    let first = Planner::new(&terrain, &robot, usual)?;
-    first.plan(&across(&terrain, usual, bound), Objective::Energy)?;
+    let first = Arc::new(Planner::new(&terrain, &robot, usual)?);
+    first.plan(&across(&terrain, usual, before), Objective::Energy)?;
     let faster = Settings { speed_mps: 1.1 * usual.speed_mps, ..usual };
     let changes: [(&str, Robot, Settings); 4] = [
         ("speed", robot.clone(), faster),
@@ -34,7 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     for (change, robot, settings) in changes {
         let (wall, before_s) = (Instant::now(), cpu_s());
-        let planner = Planner::new(&terrain, &robot, settings)?;
+        let planner = Arc::new(Planner::new(&terrain, &robot, settings)?);
+        planner.relate(&first);
         let prepared_ms = wall.elapsed().as_secs_f64() * 1e3;
         let found = planner.plan(&across(&terrain, settings, bound), Objective::Energy)?;
         println!(
@@ -47,6 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 "mb": planner.bytes() as f64 / 1e6,
                 "expanded": found.search.expanded,
                 "energy_j": found.route.total.energy_j,
+                "bound": found.search.bound,
             })
         );
     }

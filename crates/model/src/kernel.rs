@@ -227,6 +227,23 @@ impl PowerKernel<f64> {
         Self::of_sides(motors.map(|m| m.k1_w_per_n2), per_force_mps)
     }
 
+    /// A force that no side exceeds either way on slopes of up to a grade along the way and across it [N].
+    ///
+    /// Every term of [`PowerKernel`] at its largest: `N ≤ 1`, `sin γ ≤ 1`, `sin γ sin β` no more than the grade along, `tan φ` than that across.
+    pub fn largest_force_n(&self, steepest: [f64; 2]) -> f64 {
+        let [along, across] = steepest.map(f64::abs);
+        let [least, most] = self.pull.range_left();
+        let skid_n = self.skid_n.abs() * least.abs().max(most.abs());
+        let side = |added: f64, rolling: f64, shifting: f64, lifting: f64| {
+            let loaded_n = rolling.abs() * (1.0 + self.steepening.abs()) + shifting.abs() * across;
+            added.abs() + loaded_n + (lifting.abs() + self.leaning_n.abs() * across) * along
+        };
+        let left = side(self.added_n.left, self.rolling_n.left, self.shifting_n.left, self.lifting_n.left);
+        let right =
+            side(self.added_n.right, self.rolling_n.right, self.shifting_n.right, self.lifting_n.right);
+        left.max(right) + skid_n
+    }
+
     /// The same kernel in single precision.
     pub fn single(&self) -> PowerKernel<f32> {
         let both = |sides: Sides<f64>| sides.map(|x| x as f32);
@@ -271,6 +288,19 @@ mod tests {
         ) {
             let side = kernel(speed, 0.0, r).side_w(Sides::both(force));
             prop_assert!(side.left >= force * speed - 1e-9 && side.right >= force * speed - 1e-9);
+        }
+
+        #[test]
+        fn no_slope_asks_a_side_for_more_than_its_largest_force(
+            v in -1.0f64..1.0, w in -1.5f64..1.5, limits in [0.0f64..1.0, 0.0f64..1.0],
+            along in -1.0f64..=1.0, across in -1.0f64..=1.0,
+        ) {
+            let kernel = kernel(v, w, 0.5);
+            let (along, across) = (along * limits[0], across * limits[1]);
+            let normal = 1.0 / (1.0 + along * along + across * across).sqrt();
+            let force_n = kernel.forces_n(Grade { normal, along: along * normal, tilt: across });
+            let most_n = force_n.left.abs().max(force_n.right.abs());
+            prop_assert!(most_n <= kernel.largest_force_n(limits), "{most_n} N");
         }
 
         #[test]

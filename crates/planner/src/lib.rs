@@ -75,4 +75,4 @@ pub use question::{
 };
 pub use refinement::refine::{Refined, RefinedPath, refine};
 pub use search::astar::{Found, Outcome, Search, search};
-pub use table::{cost_table::CostTable, step_cost::StepCost};
+pub use table::{cost_table::CostTable, relation::Relation, step_cost::StepCost};

@@ -77,7 +77,13 @@ impl Planners {
         drop(kept);
         let planner = Arc::new(Planner::prepare(terrain, robot, settings, patience)?);
         let ground_bytes = if is_stored { 0 } else { terrain.grid.cells() * OWN_GROUND_BYTES_PER_CELL };
-        self.lock().push(Kept { key, planner: Arc::clone(&planner), ground_bytes });
+        let mut kept = self.lock();
+        // Of a robot that drives faster or carries more, what was worked out before may serve.
+        kept.iter()
+            .filter(|other| other.key.map_id == key.map_id)
+            .for_each(|other| planner.relate(&other.planner));
+        kept.push(Kept { key, planner: Arc::clone(&planner), ground_bytes });
+        drop(kept);
         Ok((planner, false))
     }
 

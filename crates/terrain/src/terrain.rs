@@ -164,6 +164,19 @@ impl Terrain {
         self
     }
 
+    /// Whether another has the same cells, elevations to the last bit, surfaces, obstacles and rules.
+    pub fn is_same_ground(&self, other: &Self) -> bool {
+        let elevations = || self.relative_m.iter().zip(other.relative_m.iter());
+        self.grid == other.grid
+            && self.base_m == other.base_m
+            && self.surfaces == other.surfaces
+            && self.obstacle == other.obstacle
+            && self.unknown_ground == other.unknown_ground
+            && self.zones == other.zones
+            && (Arc::ptr_eq(&self.relative_m, &other.relative_m)
+                || elevations().all(|(a, b)| a.to_bits() == b.to_bits()))
+    }
+
     /// Elevation of a cell, if it is known [m].
     pub fn elevation_m(&self, cell: Cell) -> Option<f64> {
         let relative_m = self.relative_m[self.grid.index(cell)];

@@ -32,12 +32,19 @@ struct Entry {
     /// The start towards which the field grew, if it does not cover the map.
     towards: Option<Cell>,
     field: Option<Arc<GoalField>>,
+    /// What a field of another planner proves towards a start.
+    related: Option<(Cell, Arc<GoalField>)>,
     exact: Option<Arc<ExactField>>,
 }
 
 impl Entry {
+    fn own(&self, start: Cell) -> Option<Arc<GoalField>> {
+        self.field.as_ref().filter(|_| self.towards.is_none_or(|cell| cell == start)).map(Arc::clone)
+    }
+
     fn bytes(&self) -> usize {
         self.field.as_ref().map_or(0, |field| field.bytes())
+            + self.related.as_ref().map_or(0, |(_, field)| field.bytes())
             + self.exact.as_ref().map_or(0, |exact| exact.bytes())
     }
 }
@@ -100,8 +107,27 @@ impl FieldCache {
         // The lock is not held meanwhile: others may want other goals.
         let ends = FieldEnds { goals, start: towards };
         let field = Arc::new(GoalField::over(table, costs, ends, patience)?);
-        self.keep(key, |entry| (entry.field, entry.towards) = (Some(Arc::clone(&field)), towards));
+        self.keep(key, |entry| {
+            (entry.field, entry.towards, entry.related) = (Some(Arc::clone(&field)), towards, None);
+        });
         Some(field)
+    }
+
+    /// The field of a goal towards a start, or all over the map, that was worked out from the planner's own costs.
+    pub(crate) fn own(&self, key: &FieldKey, start: Cell) -> Option<Arc<GoalField>> {
+        self.latest(key)?.own(start)
+    }
+
+    /// The same, or else what a field of another planner proves.
+    pub(crate) fn at_hand(&self, key: &FieldKey, start: Cell) -> Option<Arc<GoalField>> {
+        let entry = self.latest(key)?;
+        let related = || entry.related.as_ref().filter(|(towards, _)| *towards == start);
+        entry.own(start).or_else(|| related().map(|(_, field)| Arc::clone(field)))
+    }
+
+    /// Keeps what a field of another planner proves towards a start.
+    pub(crate) fn keep_related(&self, key: FieldKey, start: Cell, field: &Arc<GoalField>) {
+        self.keep(key, |entry| entry.related = Some((start, Arc::clone(field))));
     }
 
     /// The exact field of a goal that is held.
@@ -126,6 +152,7 @@ impl FieldCache {
             key: entry.key.clone(),
             towards: entry.towards,
             field: entry.field.clone(),
+            related: None,
             exact: None,
         });
         FieldCache { entries: Mutex::new(entries.collect()) }
@@ -145,6 +172,7 @@ impl FieldCache {
             key: key.clone(),
             towards: entry.towards,
             field: entry.field.clone(),
+            related: entry.related.clone(),
             exact: entry.exact.clone(),
         };
         entries.push(entry);
@@ -154,7 +182,8 @@ impl FieldCache {
     fn keep(&self, key: FieldKey, change: impl FnOnce(&mut Entry)) {
         let mut entries = self.lock();
         let known = entries.iter().position(|entry| entry.key == key).map(|at| entries.remove(at));
-        let mut entry = known.unwrap_or(Entry { key, towards: None, field: None, exact: None });
+        let mut entry =
+            known.unwrap_or(Entry { key, towards: None, field: None, related: None, exact: None });
         change(&mut entry);
         entries.push(entry);
         let mut held: usize = entries.iter().map(Entry::bytes).sum();

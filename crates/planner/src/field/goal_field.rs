@@ -28,13 +28,13 @@ pub struct GoalField {
     /// did not come or no chain of motions leads to the goal. Memory that the field does not reach is never touched.
     pub(crate) complement: Vec<u32>,
     /// Bounds by heading of cells about the goal, whose complements are 0.
-    near: BTreeMap<u32, [u32; HEADINGS]>,
-    beyond: Beyond,
-    units: f64,
-    costs: StepCosts,
+    pub(super) near: BTreeMap<u32, [u32; HEADINGS]>,
+    pub(super) beyond: Beyond,
+    pub(super) units: f64,
+    pub(super) costs: StepCosts,
     pub(crate) layout: Layout,
     /// Tiles whose costs it was worked out from.
-    touched: Vec<bool>,
+    pub(super) touched: Vec<bool>,
 }
 
 /// Where a field begins and how far it has to reach.
@@ -48,7 +48,7 @@ pub struct FieldEnds<'a> {
 
 /// What is known of cells that a field does not hold.
 #[derive(Clone, Copy, Debug)]
-enum Beyond {
+pub(super) enum Beyond {
     /// No motions lead from there to the goal.
     Unreachable,
     /// Any way from the start to the goal by such a cell costs `floor` at least, of which reaching it takes at least its

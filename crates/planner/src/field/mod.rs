@@ -6,5 +6,6 @@ pub(crate) mod fields;
 pub(crate) mod front;
 pub(crate) mod goal_field;
 pub(crate) mod growth;
+pub(crate) mod related;
 pub(crate) mod stencil;
 pub(crate) mod sweep;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::{
     error::{Error, Place},
     field::{
-        fields::{FieldKey, Towards},
+        fields::FieldKey,
         goal_field::{FieldEnds, GoalField},
     },
     grid::state::State,
@@ -61,10 +61,7 @@ impl Planner {
         if let Some(exact) = self.fields().exact(&key) {
             return Ok(ends.starts.iter().any(|start| exact.cost(*start).is_some()));
         }
-        let goals = ends.goals_with_potential(self.lattice(), objective);
-        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
-        let field = self.fields().field(key, self.table(objective), &goals, towards, &query.patience);
-        let field = field.ok_or(Error::Timeout { expanded: 0 })?;
+        let field = self.guide(ends, (query, objective), costs)?;
         Ok(ends.starts.iter().any(|start| field.leads_from_pose(*start)))
     }
 

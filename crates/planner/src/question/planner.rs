@@ -8,17 +8,13 @@ use std::{
 
 use model::Robot;
 use rayon::prelude::*;
-use terrain::{Cell, CellRange, Terrain};
+use terrain::{CellRange, Terrain};
 
 use crate::{
     error::Error,
-    field::{
-        fields::{FieldCache, FieldKey, Towards},
-        goal_field::GoalField,
-    },
+    field::fields::{FieldCache, FieldKey},
     frontier::labels::Workspace,
     grid::{heading::Heading, state::State},
-    hindrance::Hindrance,
     lattice::{
         graph::{Lattice, Settings},
         objective::Objective,
@@ -27,19 +23,15 @@ use crate::{
         route::{Pose, Route},
         uncertainty::energy_interval_j,
     },
-    patience::{Patience, work},
+    patience::Patience,
     pose_field::exact::ExactField,
     question::{
         ends::Ends,
         query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
-        rings::{farthest_ring, ring},
+        relatives::Relatives,
     },
     refinement::refine::RefinedPath,
-    search::{
-        astar::{Found, Outcome, Search, search},
-        changes::Changes,
-        changing::search_changing,
-    },
+    search::{astar::Found, changes::Changes},
     table::{cost_table::CostTable, step_costs::StepCosts},
 };
 
@@ -49,6 +41,7 @@ pub struct Planner {
     lattice: Arc<Lattice>,
     tables: [OnceLock<CostTable>; 3],
     fields: FieldCache,
+    relatives: Relatives,
     workspaces: Mutex<Vec<Workspace>>,
 }
 
@@ -79,6 +72,7 @@ impl Planner {
             lattice,
             tables: [const { OnceLock::new() }; 3],
             fields: FieldCache::default(),
+            relatives: Relatives::default(),
             workspaces: Mutex::default(),
         }
     }
@@ -137,7 +131,7 @@ impl Planner {
     /// Ends off the map or where the robot cannot stand, no path, or patience that ended before there was one.
     pub fn plan(&self, query: &Query, objective: Objective) -> Result<Plan, Error> {
         let began = Instant::now();
-        over_bounds_first(query.bound, |costs| {
+        self.over_bounds_first(query.bound, |costs| {
             let ends = self.ends_over(query, objective, costs)?;
             let found = self.plan_between(&ends, (query, objective), costs, began);
             self.explained_at_last(found, &ends, (query, objective), costs)
@@ -150,7 +144,7 @@ impl Planner {
     /// As [`Planner::plan`].
     pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
         let began = Instant::now();
-        over_bounds_first(query.bound, |costs| {
+        self.over_bounds_first(query.bound, |costs| {
             let ends = self.ends_over(query, Objective::Energy, costs)?;
             let one = |objective| self.plan_between(&ends, (query, objective), costs, began);
             let (energy, (distance, time)) = rayon::join(
@@ -158,20 +152,21 @@ impl Planner {
                 || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
             );
             let energy = self.explained_at_last(energy, &ends, (query, Objective::Energy), costs)?;
-            Ok(Comparison { energy, distance: distance?, time: time? })
+            let all = energy.zip(distance?).zip(time?);
+            Ok(all.map(|((energy, distance), time)| Comparison { energy, distance, time }))
         })
     }
 
     /// Explains why there is no path where bounds of costs have not led astray.
     fn explained_at_last(
         &self,
-        found: Result<Plan, Error>,
+        found: Result<Option<Plan>, Error>,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
-    ) -> Result<Plan, Error> {
+    ) -> Result<Option<Plan>, Error> {
         match costs {
-            StepCosts::Bounds => found,
+            StepCosts::Related | StepCosts::Bounds => found,
             StepCosts::Least => found.map_err(|error| self.explained(error, ends, query, objective)),
         }
     }
@@ -196,20 +191,22 @@ impl Planner {
         Ok(())
     }
 
+    /// `None` where the costs did not prove the bound asked for.
     fn plan_between(
         &self,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
         began: Instant,
-    ) -> Result<Plan, Error> {
+    ) -> Result<Option<Plan>, Error> {
         let changes = Changes::of(&self.lattice, objective);
         // A goal that is held knows nothing of changes.
         let walked = if changes.is_none() { self.walk(ends, objective, &query.patience)? } else { None };
         let found = match walked {
-            Some(found) => found,
+            Some(found) => Some(found),
             None => self.search(ends, (query, objective), costs)?,
         };
+        let Some(found) = found else { return Ok(None) };
         if !joins(&self.lattice, &found, &ends.starts, |end| ends.goals.contains(end)) {
             return Err(Error::Untraceable);
         }
@@ -225,18 +222,7 @@ impl Planner {
         if query.refine {
             plan.refined = RefinedPath::of(&self.lattice, objective, &plan.route, &query.patience);
         }
-        Ok(plan)
-    }
-
-    /// The best path between given ends, not refined.
-    pub(crate) fn best_between(
-        &self,
-        ends: &Ends,
-        query: &Query,
-        objective: Objective,
-    ) -> Result<Route, Error> {
-        let found = self.search(ends, (query, objective), StepCosts::Least)?;
-        Route::drive(&self.lattice, objective, (found.start, &found.motions), &query.patience)
+        Ok(Some(plan))
     }
 
     /// Fields of goals that were asked for.
@@ -301,38 +287,14 @@ impl Planner {
         Ok(Some(Found { least, ..Found::along(start, motions) }))
     }
 
-    fn search(
-        &self,
-        ends: &Ends,
-        (query, objective): (&Query, Objective),
-        costs: StepCosts,
-    ) -> Result<Found, Error> {
-        let table = self.table(objective);
-        let goals = ends.goals_with_potential(&self.lattice, objective);
-        let key = FieldKey::new(objective, &ends.goals);
-        let late = Error::Timeout { expanded: 0 };
-        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
-        let field = self.fields.field(key, table, &goals, towards, &query.patience).ok_or(late)?;
-        let question = Search {
-            starts: &ends.starts,
-            goals: &goals,
-            besides: ends.besides(&self.lattice, objective),
-            bound: query.bound,
-            patience: &query.patience,
-        };
-        let outcome = match Changes::of(&self.lattice, objective) {
-            Some(changes) => search_changing(table, &field, &question, &changes),
-            None => self.with_workspace(|workspace| search(table, &field, &question, workspace)),
-        };
-        match outcome {
-            Outcome::Found(found) => Ok(found),
-            Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
-            Outcome::Untraceable => Err(Error::Untraceable),
-            Outcome::Unreachable => {
-                let cells = [ends.start.cell, ends.goal.cell];
-                Err(nearest_connected(&self.lattice, &field, cells, &query.patience))
-            }
-        }
+    /// Planners of the same ground whose fields may serve.
+    pub(crate) fn relatives(&self) -> &Relatives {
+        &self.relatives
+    }
+
+    /// The table of an objective if anything was asked under it.
+    pub(crate) fn table_at_hand(&self, objective: Objective) -> Option<&CostTable> {
+        self.tables[objective as usize].get()
     }
 
     /// Lends memory to search in, which is kept for the next search.
@@ -345,14 +307,6 @@ impl Planner {
     }
 }
 
-/// Plans over what proves a bound, and over the costs of what can be driven where there is no path: they alone know where ways end.
-fn over_bounds_first<T>(bound: f64, plan: impl Fn(StepCosts) -> Result<T, Error>) -> Result<T, Error> {
-    match (plan(StepCosts::that_prove(bound)), StepCosts::that_prove(bound)) {
-        (Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }), StepCosts::Bounds) => plan(StepCosts::Least),
-        (found, _) => found,
-    }
-}
-
 /// Whether a path begins at one of the starts and its motions lead to a goal.
 pub(crate) fn joins(
     lattice: &Lattice,
@@ -362,40 +316,6 @@ pub(crate) fn joins(
 ) -> bool {
     let end = found.motions.iter().try_fold(found.start, |state, &motion| lattice.successor(state, motion));
     starts.contains(&found.start) && end.is_some_and(|end| is_goal(&end))
-}
-
-/// Where the ground that leads to the goal comes nearest to the start, as an error, or that patience ended first.
-pub(crate) fn nearest_connected(
-    lattice: &Lattice,
-    field: &GoalField,
-    [start, goal]: [Cell; 2],
-    patience: &Patience,
-) -> Error {
-    let grid = &lattice.terrain.grid;
-    let [sx, sy] = grid.center_m(start);
-    let [gx, gy] = grid.center_m(goal);
-    let mut nearest = ((gx - sx).hypot(gy - sy), gx, gy);
-    let mut pacer = patience.pacer();
-    for distance in 0..=farthest_ring(grid, start) {
-        if distance as f64 * grid.cell_size_m > nearest.0 {
-            break;
-        }
-        for cell in ring(grid, start, distance) {
-            if pacer.after(work::CELL).is_none() {
-                return Error::Timeout { expanded: 0 };
-            }
-            let [x, y] = grid.center_m(cell);
-            let gap_m = (x - sx).hypot(y - sy);
-            if gap_m < nearest.0 && field.leads_from(cell) {
-                nearest = (gap_m, x, y);
-            }
-        }
-    }
-    let (gap_m, x_m, y_m) = nearest;
-    match gap_m == 0.0 {
-        true => Error::NoRoomToTurn { x_m, y_m },
-        false => Error::NoPath { gap_m, x_m, y_m, hindrance: Hindrance::Unexplained },
-    }
 }
 
 fn start_snap(route: &Route, start: &Start) -> Snap {

@@ -9,7 +9,8 @@ use crate::{
     patience::Patience,
     question::{
         ends::goals_with_potential,
-        planner::{Planner, joins, nearest_connected},
+        guided::nearest_connected,
+        planner::{Planner, joins},
         snap::{Asked, snap},
     },
     search::astar::{Found, Outcome, Search, search},

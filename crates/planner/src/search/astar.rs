@@ -105,6 +105,17 @@ pub fn search(
     query: &Search<'_>,
     workspace: &mut Workspace,
 ) -> Outcome {
+    search_within(table, field, query, workspace, u64::MAX)
+}
+
+/// The same, given up as if patience had ended once so many states were expanded.
+pub(crate) fn search_within(
+    table: &CostTable,
+    field: &GoalField,
+    query: &Search<'_>,
+    workspace: &mut Workspace,
+    most_expanded: u64,
+) -> Outcome {
     let lattice = table.lattice();
     let units = |amount: f64| (amount * table.units()) as u32;
     let mut goals = HashMap::with_capacity(query.goals.len());
@@ -124,6 +135,7 @@ pub fn search(
         highest_after: goals.values().copied().max().unwrap_or(0),
         goals,
         expanded: 0,
+        most_expanded,
         least: 0,
         best: None,
         tried_sufficient: false,
@@ -154,6 +166,7 @@ struct Passes<'p> {
     goals: HashMap<u32, u32>,
     highest_after: u32,
     expanded: u64,
+    most_expanded: u64,
     /// No path costs less than this.
     least: u32,
     best: Option<Best>,
@@ -269,6 +282,10 @@ impl Passes<'_> {
                     queue.push(key, state);
                     return (best, Ended::Late);
                 }
+            }
+            if self.expanded == self.most_expanded {
+                queue.push(key, state);
+                return (best, Ended::Late);
             }
             self.expanded += 1;
             // Only where the field is as low as at a goal is it worth looking the state up.

@@ -183,6 +183,16 @@ impl CostTable {
         units / self.units * (1.0 + SINGLE_PRECISION)
     }
 
+    /// Amount that each unit of a path's cost proves where nothing is taken off.
+    pub(crate) fn proven_per_unit(&self) -> f64 {
+        self.proof.per_unit()
+    }
+
+    /// The fewest units of a path that takes so much when it is driven, in the objective's unit.
+    pub(crate) fn fewest_units(&self, amount: f64) -> f64 {
+        amount * self.units / ((1.0 + SINGLE_PRECISION) * (1.0 + self.proof.lost(self.units)))
+    }
+
     /// Least cost of a motion per cell of distance between its ends, in units.
     pub(crate) fn least_units_per_cell(&self) -> f32 {
         self.least_units_per_cell
@@ -217,9 +227,9 @@ impl CostTable {
 
     fn strip_codes(&self, state: u32, patience: &Patience) -> Option<StateCodes<'_>> {
         let tile = Layout::tile(state);
-        let strips = self.strips[tile].get_or_init(|| Strips::new(&self.kernel, &self.lattice, tile).into());
+        let strips = self.strips[tile].get_or_init(|| Strips::new(&self.lattice, tile).into());
         if !strips.are_many() {
-            return strips.codes(&self.kernel, state, patience);
+            return strips.codes((&self.kernel, &self.lattice), state, patience);
         }
         self.evaluate(tile, true, patience)?;
         self.state_codes_at_hand(state)
@@ -233,6 +243,11 @@ impl CostTable {
             Some(codes) => Some(StateCodes::of_tile(codes, state, self.stride())),
             None => self.strips[tile].get()?.codes_at_hand(state),
         }
+    }
+
+    /// Lets go of what only further costs need, which is made again when they are asked for.
+    pub(crate) fn rest(&self) {
+        self.strips.iter().filter_map(OnceLock::get).for_each(|strips| strips.rest());
     }
 
     /// The least codes of a tile, evaluated when first asked for; `None` when patience ends first.

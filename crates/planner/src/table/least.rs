@@ -7,7 +7,7 @@ use crate::{
     lattice::{
         edge::Chain,
         graph::Lattice,
-        ground_class::GroundClass,
+        ground_class::{GroundClass, StepWeights},
         objective::Weights,
         primitive::Motion,
         step::{Limits, PreparedStep, Step},
@@ -28,7 +28,7 @@ use crate::{
 /// allowed and P₀ the standing power: a longer way on a slope and the smaller normal force there cancel. The printed form has
 /// no such floor on friction, and neither has a robot with mechanisms, whose wind may push; its standing power alone counts.
 pub(crate) fn least_cost_per_m(lattice: &Lattice, weights: &Weights) -> f64 {
-    let floor = friction_floor(lattice).unwrap_or(0.0) * lattice.robot.limits.max_roll_rad.cos();
+    let floor = floor_under_limits(lattice).unwrap_or(0.0);
     let cell_size_m = lattice.terrain.grid.cell_size_m;
     let least = chains(lattice)
         .filter(|(_, motion)| (motion.columns, motion.rows) != (0, 0))
@@ -97,6 +97,11 @@ fn friction_floor(lattice: &Lattice) -> Option<f64> {
     (settings.power_model == PowerModel::ForceBalance && is_plain).then(|| lattice.kappa())
 }
 
+/// The least share of friction's work on level ground that is drawn on any slope that limits allow, where there is such a floor.
+pub(crate) fn floor_under_limits(lattice: &Lattice) -> Option<f64> {
+    friction_floor(lattice).map(|floor| floor * lattice.robot.limits.max_roll_rad.cos())
+}
+
 fn least_cost(lattice: &Lattice, weights: &Weights, chain: &Chain, floor: f64) -> f64 {
     chain.steps_with_manoeuvres().map(|step| least_of_step(lattice, weights, step, floor)).sum()
 }
@@ -107,27 +112,67 @@ fn least_of_step(
     (step, manoeuvres, reverse): (&PreparedStep, &[Manoeuvre], bool),
     floor: f64,
 ) -> f64 {
-    let steepest = lattice.robot.limits.max_roll_rad.tan();
     let on = |(manoeuvre, class): (&Manoeuvre, &GroundClass)| {
-        let (kernel, motion) = (manoeuvre.kernel(), manoeuvre.motion());
-        let left = |tilt| kernel.pull.left_of_skid(tilt, 0.0);
-        let skid_n = kernel.skid_n * left(steepest).min(left(-steepest));
-        let rims_mps = motion.rim_speeds_mps;
-        let friction_w = (kernel.rolling_n.left - skid_n) * rims_mps.left
-            + (kernel.rolling_n.right + skid_n) * rims_mps.right;
-        let least_w = (floor * friction_w).max(0.0) + kernel.standing_w;
-        let duration_s = match step.horizontal_m {
-            0.0 => step.turn_rad / motion.yaw_rate_radps,
-            horizontal_m => horizontal_m / motion.speed_mps.abs(),
-        };
-        let weights = class.weights(weights, &lattice.settings, step, reverse);
-        let taken_j = least_w * duration_s;
-        weights.per_j * taken_j
-            + weights.per_m * step.horizontal_m
-            + weights.per_s * duration_s
-            + weights.fixed
+        least_on(lattice, weights, (step, manoeuvre, reverse), class, floor).cost()
     };
     manoeuvres.iter().zip(&lattice.classes.list).map(on).fold(f64::INFINITY, f64::min)
+}
+
+/// What a step takes at least on a kind of ground, whatever the slope.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeastOfStep {
+    /// Energy beyond lifting that forces take, and that of the standing power [J].
+    pub(crate) friction_j: f64,
+    pub(crate) standing_j: f64,
+    /// Length on the map [m].
+    pub(crate) length_m: f64,
+    /// Time [s].
+    pub(crate) duration_s: f64,
+    /// What these weigh there.
+    pub(crate) weights: StepWeights,
+}
+
+impl LeastOfStep {
+    /// Their weighted sum.
+    pub(crate) fn cost(&self) -> f64 {
+        self.cost_over(1.0)
+    }
+
+    /// The same where the way over the ground is so many times as long as on the map: friction's least stays what it is, since the wheels
+    /// press less on a slope.
+    pub(crate) fn cost_over(&self, longer: f64) -> f64 {
+        let StepWeights { per_j, per_m, per_s, fixed } = self.weights;
+        let along = per_j * self.standing_j + per_m * self.length_m + per_s * self.duration_s;
+        per_j * self.friction_j + longer * along + fixed
+    }
+}
+
+/// The same of a step on one kind of ground, where at least a share `floor` of friction's power on level ground is drawn.
+pub(crate) fn least_on(
+    lattice: &Lattice,
+    weights: &Weights,
+    (step, manoeuvre, reverse): (&PreparedStep, &Manoeuvre, bool),
+    class: &GroundClass,
+    floor: f64,
+) -> LeastOfStep {
+    let steepest = lattice.robot.limits.max_roll_rad.tan();
+    let (kernel, motion) = (manoeuvre.kernel(), manoeuvre.motion());
+    let left = |tilt| kernel.pull.left_of_skid(tilt, 0.0);
+    let skid_n = kernel.skid_n * left(steepest).min(left(-steepest));
+    let rims_mps = motion.rim_speeds_mps;
+    let friction_w =
+        (kernel.rolling_n.left - skid_n) * rims_mps.left + (kernel.rolling_n.right + skid_n) * rims_mps.right;
+    let duration_s = match step.horizontal_m {
+        0.0 => step.turn_rad / motion.yaw_rate_radps,
+        horizontal_m => horizontal_m / motion.speed_mps.abs(),
+    };
+    LeastOfStep {
+        friction_j: (floor * friction_w).max(0.0) * duration_s,
+        standing_j: kernel.standing_w * duration_s,
+        length_m: step.horizontal_m,
+        duration_s,
+        weights: class.weights(weights, &lattice.settings, step, reverse),
+    }
 }
 
 /// Level ground and the steepest that limits allow, up, down and to either side.

@@ -6,6 +6,7 @@ pub(crate) mod cost_table;
 pub(crate) mod least;
 pub(crate) mod piece_bound;
 pub(crate) mod proof;
+pub(crate) mod relation;
 pub(crate) mod roll_bound;
 pub(crate) mod row_step;
 pub(crate) mod step_cost;

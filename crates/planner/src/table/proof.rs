@@ -70,6 +70,17 @@ impl Proof {
         Proof { per_unit: share.max(0.0) / units, off: 0.0 }
     }
 
+    /// Amount proven by a unit of cost.
+    pub(crate) fn per_unit(&self) -> f64 {
+        self.per_unit
+    }
+
+    /// Share of a path's units that may be lost to cancellation, at most: what `q` lacks of the roundings that are relative. Each motion loses
+    /// `a` of at least `t₀` units.
+    pub(crate) fn lost(&self, units: f64) -> f64 {
+        ((1.0 - LARGEST_ROUNDING) * (1.0 - SINGLE_PRECISION) - units * self.per_unit).max(0.0)
+    }
+
     /// The least amount of a path that costs at least so many units.
     pub(crate) fn least(&self, units: f64) -> f64 {
         (units * self.per_unit - self.off).max(0.0)

@@ -19,6 +19,8 @@ pub(crate) enum StepCosts {
     Least,
     /// A lower bound of it, for which heights are enough on most ground.
     Bounds,
+    /// What a field of another planner proves of it.
+    Related,
 }
 
 /// Bound from which on a field over bounds of costs serves the first search as well: with a smaller one a search expands so many more
@@ -28,12 +30,13 @@ const LOOSE_BOUND: f64 = 1.05;
 const LOOSE_BOUND_OF_MANY: f64 = 1.2;
 
 impl StepCosts {
-    /// What the field is to grow over for a search that is to prove a bound.
-    pub(crate) fn that_prove(bound: f64) -> Self {
-        if bound >= LOOSE_BOUND { StepCosts::Bounds } else { StepCosts::Least }
+    /// What a search that is to prove a bound goes by, in the order in which it is tried.
+    pub(crate) fn that_prove(bound: f64) -> &'static [Self] {
+        const WITH_BOUNDS: [StepCosts; 3] = [StepCosts::Related, StepCosts::Bounds, StepCosts::Least];
+        if bound >= LOOSE_BOUND { &WITH_BOUNDS } else { &WITH_BOUNDS[2..] }
     }
 
-    /// The same for a field that is to serve many searches.
+    /// What a field grows over that is to serve many searches.
     pub(crate) fn for_many(self, bound: f64) -> Self {
         if bound >= LOOSE_BOUND_OF_MANY { self } else { StepCosts::Least }
     }

@@ -1,7 +1,7 @@
 //! Costs of a tile for a search that looks at little of it: a row of cells under one heading at a time.
 
 use std::sync::{
-    OnceLock,
+    Arc, Mutex, MutexGuard, OnceLock, PoisonError,
     atomic::{AtomicUsize, Ordering},
 };
 
@@ -24,10 +24,12 @@ use crate::{
 
 /// A tile of which some strips have been evaluated.
 pub(crate) struct Strips {
-    window: Window,
-    blocked: Blocked,
+    /// South-western cell of the tile.
+    origin: Cell,
     /// Columns of the tile that the map has.
     columns: usize,
+    /// The ground about the tile, while it is needed.
+    surroundings: Mutex<Option<Arc<(Window, Blocked)>>>,
     /// Codes by row and heading, motion by motion.
     strips: Box<[OnceLock<Box<[RowCodes]>>]>,
     evaluated: AtomicUsize,
@@ -69,14 +71,13 @@ impl<'t> StateCodes<'t> {
 
 impl Strips {
     /// A tile of which nothing is known.
-    pub(crate) fn new(kernel: &TileKernel, lattice: &Lattice, tile: usize) -> Self {
+    pub(crate) fn new(lattice: &Lattice, tile: usize) -> Self {
         let (tile_row, tile_column) = lattice.layout.tile_place(tile);
         let origin = Cell { row: tile_row * TILE, column: tile_column * TILE };
-        let (window, blocked) = kernel.surroundings(lattice, origin);
         Strips {
-            window,
-            blocked,
+            origin,
             columns: TILE.min(lattice.terrain.grid.columns - origin.column),
+            surroundings: Mutex::default(),
             strips: (0..STRIPS).map(|_| OnceLock::new()).collect(),
             evaluated: AtomicUsize::new(0),
         }
@@ -91,7 +92,7 @@ impl Strips {
     #[inline]
     pub(crate) fn codes(
         &self,
-        kernel: &TileKernel,
+        (kernel, lattice): (&TileKernel, &Lattice),
         state: u32,
         patience: &Patience,
     ) -> Option<StateCodes<'_>> {
@@ -99,12 +100,28 @@ impl Strips {
         if strip.get().is_none() {
             let within = Layout::within(state) >> HEADING_BITS;
             let place = (within / TILE, state as usize % HEADINGS);
-            let codes = kernel.strip_codes((&self.window, &self.blocked), place, self.columns, patience)?;
+            let surroundings = self.surroundings(kernel, lattice);
+            let (window, blocked) = &*surroundings;
+            let codes = kernel.strip_codes((window, blocked), place, self.columns, patience)?;
             if strip.set(codes).is_ok() {
                 self.evaluated.fetch_add(1, Ordering::Relaxed);
             }
         }
         self.codes_at_hand(state)
+    }
+
+    fn surroundings(&self, kernel: &TileKernel, lattice: &Lattice) -> Arc<(Window, Blocked)> {
+        let mut known = self.lock();
+        Arc::clone(known.get_or_insert_with(|| Arc::new(kernel.surroundings(lattice, self.origin))))
+    }
+
+    /// Lets go of what only further strips need.
+    pub(crate) fn rest(&self) {
+        *self.lock() = None;
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Arc<(Window, Blocked)>>> {
+        self.surroundings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Codes of a state if its strip has been evaluated.
@@ -118,7 +135,8 @@ impl Strips {
     /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
         let codes = self.strips.iter().filter_map(OnceLock::get).map(|codes| size_of_val(&codes[..]));
-        size_of_val(&self.strips[..]) + self.window.bytes() + self.blocked.bytes() + codes.sum::<usize>()
+        let ground = self.lock().as_ref().map_or(0, |ground| ground.0.bytes() + ground.1.bytes());
+        size_of_val(&self.strips[..]) + ground + codes.sum::<usize>()
     }
 }
 
