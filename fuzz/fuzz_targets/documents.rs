@@ -14,7 +14,12 @@ fuzz_target!(|text: &str| {
     let _ = Map::from_json(text);
     let _ = io::json::read(text);
     let bytes = text.as_bytes();
-    let options = io::Options { nodata_m: Some(0.0), fill_voids_m: Some(10.0), most_cells: MOST_CELLS };
+    let options = io::Options {
+        nodata_m: Some(0.0),
+        fill_voids_m: Some(10.0),
+        most_cells: MOST_CELLS,
+        ..io::Options::default()
+    };
     for format in [io::Format::Ascii, io::Format::Json] {
         let _ = io::read_bytes(format, bytes, &options);
     }

@@ -51,6 +51,10 @@ impl<'a> Operation<'a> {
         let (mut path, mut query, mut headers) = (self.path.to_owned(), Vec::new(), Vec::new());
         for parameter in self.parameters() {
             let (name, example) = (parameter["name"].as_str().unwrap(), text(&parameter["example"]));
+            // The frame of an array, which has no example: any other map is refused with one.
+            if self.id() == "createMap" && ["cell_size_m", "origin_m", "crs"].contains(&name) {
+                continue;
+            }
             match parameter["in"].as_str().unwrap() {
                 "path" => {
                     let value =
@@ -153,7 +157,7 @@ fn parameters_in_the_path_are_those_of_its_template() {
 fn no_array_is_closed_by_a_boolean_and_no_bytes_are_an_array() {
     fn walk(value: &Value, place: &str) {
         assert_ne!(value.get("items"), Some(&Value::Bool(false)), "{place}");
-        let binary = ["image/tiff", "application/octet-stream", "application/mcap"];
+        let binary = ["image/tiff", "application/x-npy", "application/octet-stream", "application/mcap"];
         match value {
             Value::Object(fields) => {
                 for (name, field) in fields {

@@ -11,7 +11,11 @@ use service::{
         robots::RobotChoice,
     },
 };
-use terrain::{Terrain, Warning, areas::UnknownGround, io};
+use terrain::{
+    Terrain, Warning,
+    areas::UnknownGround,
+    io::{self, Georeference},
+};
 
 use crate::{
     areas_file,
@@ -144,7 +148,7 @@ impl Place {
 /// A map and how it is to be read.
 #[derive(Args)]
 pub(crate) struct MapArguments {
-    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .hgt SRTM tile, .yaml ROS map
+    /// Map file: .json grid, .asc or .asc.gz ESRI ASCII, .tif GeoTIFF, .npy numpy array, .hgt SRTM tile, .yaml ROS map
     #[arg(long)]
     map: PathBuf,
     #[command(flatten)]
@@ -173,11 +177,27 @@ struct MapReading {
     /// Elevation of unknown cells, beside those that the map marks [m] [default: none]
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     nodata: Option<f64>,
+    /// Edge of a cell of a numpy array, which needs it [m]
+    #[arg(long, value_name = "M")]
+    cell_size_m: Option<f64>,
+    /// South-west corner of a numpy array [m] [default: 0,0]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = Georeference::parse_origin_m)]
+    origin_m: Option<[f64; 2]>,
+    /// Coordinate reference system of a numpy array, as EPSG:26915 or WKT [default: unknown]
+    #[arg(long)]
+    crs: Option<String>,
 }
 
 impl MapReading {
     fn options(&self) -> io::Options {
-        io::Options { nodata_m: self.nodata, fill_voids_m: self.fill_voids_m, ..io::Options::default() }
+        let georeference =
+            Georeference { cell_size_m: self.cell_size_m, origin_m: self.origin_m, crs: self.crs.clone() };
+        io::Options {
+            nodata_m: self.nodata,
+            fill_voids_m: self.fill_voids_m,
+            georeference,
+            ..io::Options::default()
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use service::Problem;
 use terrain::{
     MapFile, Terrain,
     io::{
-        self,
+        self, Georeference,
         json::{Cells, Layer, SurfaceNames},
     },
 };
@@ -54,15 +54,18 @@ impl Map {
         Ok(Map { terrain: Arc::new(terrain) })
     }
 
-    /// A map from a file, whose ending says which format it is in.
+    /// A map from a file, whose ending says which format it is in, and the frame of an array.
     #[staticmethod]
     fn open(
         py: Python<'_>,
         path: PathBuf,
         nodata_m: Option<f64>,
         fill_voids_m: Option<f64>,
+        frame: (Option<f64>, Option<[f64; 2]>, Option<String>),
     ) -> PyResult<Self> {
-        let options = io::Options { nodata_m, fill_voids_m, ..io::Options::default() };
+        let (cell_size_m, origin_m, crs) = frame;
+        let georeference = Georeference { cell_size_m, origin_m, crs };
+        let options = io::Options { nodata_m, fill_voids_m, georeference, ..io::Options::default() };
         beside(py, None, |_| {
             io::read_path_as(&path, &options).map_err(|error| {
                 let mut problem = Problem::invalid_map(&error, "");

@@ -76,6 +76,7 @@ impl Limits {
             most_cells: self.map_cells(),
             nodata_m: self.nodata_m,
             fill_voids_m: self.fill_voids_m,
+            ..terrain::io::Options::default()
         }
     }
 }

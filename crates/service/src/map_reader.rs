@@ -19,6 +19,8 @@ const ASCII_CELL_BYTES: u64 = 8 + 8 + 4;
 const TIFF_CELL_BYTES: u64 = 8 + 1 + 8 + 4;
 /// The same of cells in bytes: an elevation as it comes, as it is read, in double precision and as it is kept, and three layers.
 const BYTES_CELL_BYTES: u64 = 4 + 4 + 8 + 4 + 3;
+/// The same of a numpy array: a number in double precision and as it is kept.
+const NPY_CELL_BYTES: u64 = 8 + 4;
 /// The same of a ROS map: a pixel of four colours in 16 bits, as it is decoded and as one colour, and what it stands for.
 const PIXEL_BYTES: u64 = ASCII_CELL_BYTES + 8 + 8 + 2;
 /// Bytes of a cell while holes are filled: two sums, two marks and its place in a hole.
@@ -42,8 +44,12 @@ pub(crate) enum MapReader {
     GeoTiff,
     /// Cells in bytes.
     Cells,
+    /// Array of numpy, which every body is that begins as one.
+    Npy,
     /// A form with this boundary between its parts.
     RosMap(String),
+    /// A content type that no map has: the body may still begin as an array.
+    Unknown(String),
 }
 
 /// A map as a body holds it.
@@ -62,20 +68,31 @@ impl MapReader {
             "text/plain" | "text/x-esri-ascii" | "application/x-esri-ascii" => MapReader::Ascii,
             "image/tiff" | "image/geotiff" | "application/geotiff" => MapReader::GeoTiff,
             "application/octet-stream" => MapReader::Cells,
+            "application/x-npy" => MapReader::Npy,
             "multipart/form-data" => MapReader::RosMap(form::boundary_of(request)?),
-            _ => {
-                let detail = format!(
-                    "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF), application/octet-stream (cells in bytes, JPT1) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
-                );
-                return Err(Problem::new(ProblemType::UnsupportedMediaType, detail));
-            }
+            _ => MapReader::Unknown(kind),
         })
+    }
+
+    /// The reader for a body, which is an array whatever its content type if it begins as one.
+    ///
+    /// # Errors
+    /// Another body of a content type that no map has.
+    pub(crate) fn for_body(self, body: &[u8]) -> Result<Self, Problem> {
+        match self {
+            _ if io::npy::is_npy(body) => Ok(MapReader::Npy),
+            MapReader::Unknown(kind) => Err(unsupported(&kind)),
+            known => Ok(known),
+        }
     }
 
     /// The map that a body holds.
     pub(crate) fn read(&self, mut content: Content, options: &io::Options) -> Result<Read, Problem> {
         let length = content.bytes.len() as u64;
         let filling = options.fill_voids_m.map_or(0, |_| FILLING_CELL_BYTES);
+        if !matches!(self, MapReader::Npy) {
+            options.georeference.refuse().map_err(|error| invalid(&error))?;
+        }
         let read = match self {
             MapReader::Json => {
                 let mut file: MapFile = content.parsed(from_json)?;
@@ -104,6 +121,13 @@ impl MapReader {
                 content.reserved.grow_to(length + (BYTES_CELL_BYTES + filling) * cells)?;
                 io::read_bytes(io::Format::Cells, &content.bytes, options)
             }
+            MapReader::Npy => {
+                let cells = io::npy::claimed(&content.bytes).map_err(|error| invalid(&error))?;
+                let cells = cells.min(options.most_cells).min(length);
+                content.reserved.grow_to(length + (NPY_CELL_BYTES + filling) * cells)?;
+                io::read_bytes(io::Format::Npy, &content.bytes, options)
+            }
+            MapReader::Unknown(kind) => return Err(unsupported(kind)),
             MapReader::RosMap(boundary) => {
                 let Content { bytes, mut reserved } = content;
                 let example = "-F yaml=@map.yaml -F image=@map.pgm";
@@ -115,6 +139,14 @@ impl MapReader {
         };
         read.map(|terrain| Read { terrain, name: None }).map_err(|error| invalid(&error))
     }
+}
+
+/// The refusal of a content type that no map has.
+fn unsupported(kind: &str) -> Problem {
+    let detail = format!(
+        "a map is application/json, text/plain (ESRI ASCII grid), image/tiff (GeoTIFF), application/x-npy (numpy array), application/octet-stream (cells in bytes, JPT1) or multipart/form-data (ROS map: yaml and image), but the request has `{kind}`; a tile of SRTM (.hgt) is placed by its file's name, which a request does not have: send `gdal_translate N46W094.hgt N46W094.tif`"
+    );
+    Problem::new(ProblemType::UnsupportedMediaType, detail)
 }
 
 /// The YAML of a ROS map that came without its image.

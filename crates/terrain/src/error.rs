@@ -182,6 +182,9 @@ pub enum Error {
     /// An SRTM tile.
     #[error(transparent)]
     Hgt(#[from] crate::io::hgt::HgtError),
+    /// An array of numpy, or what only an array takes.
+    #[error(transparent)]
+    Npy(#[from] crate::io::npy::NpyError),
     /// Text that is not UTF-8.
     #[error("byte {position} is not UTF-8 text{}", is_of(*found))]
     NotText {
@@ -311,7 +314,7 @@ pub enum Error {
     },
     /// A file name that says nothing about its format.
     #[error(
-        "`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .hgt, .hgt.gz, .yaml or .yml"
+        "`{path}` is no map file: the name must end in .json, .asc, .asc.gz, .tif, .tiff, .npy, .hgt, .hgt.gz, .yaml or .yml"
     )]
     UnknownFormat {
         /// The path.
@@ -367,6 +370,7 @@ impl Error {
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
             Error::Area(error) => error.at.clone(),
+            Error::Npy(error) => error.field()?,
             Error::LongWarning { index, .. } => format!("warnings[{index}].detail"),
             _ => return None,
         })

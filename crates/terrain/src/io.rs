@@ -3,9 +3,11 @@
 pub mod ascii;
 pub mod cells;
 pub mod degrees;
+mod georeference;
 pub mod geotiff;
 pub mod hgt;
 pub mod json;
+pub mod npy;
 pub mod ros_map;
 
 use std::{
@@ -17,10 +19,11 @@ use std::{
 use flate2::read::MultiGzDecoder;
 use tiff::{ColorType, decoder::Decoder};
 
+pub use self::georeference::Georeference;
 use crate::{Error, Terrain, crs::Crs};
 
 /// How a map is to be read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Most cells. Default: [`Terrain::MAX_CELLS`].
     pub most_cells: u64,
@@ -28,11 +31,18 @@ pub struct Options {
     pub nodata_m: Option<f64>,
     /// Holes of unknown ground up to this wide are filled [m]: see [`Terrain::with_filled_voids`].
     pub fill_voids_m: Option<f64>,
+    /// Frame of an array, whose file holds none; any other file is refused with one.
+    pub georeference: Georeference,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { most_cells: Terrain::MAX_CELLS, nodata_m: None, fill_voids_m: None }
+        Options {
+            most_cells: Terrain::MAX_CELLS,
+            nodata_m: None,
+            fill_voids_m: None,
+            georeference: Georeference::default(),
+        }
     }
 }
 
@@ -47,6 +57,8 @@ pub enum Format {
     GeoTiff,
     /// Cells in bytes: see [`cells`].
     Cells,
+    /// Array of numpy.
+    Npy,
 }
 
 /// Most bytes that a packed text is unpacked to: 24 for each cell of the largest map, as `%.15g` and a blank take.
@@ -55,7 +67,8 @@ const MOST_UNPACKED_BYTES: u64 = 24 * Terrain::MAX_CELLS;
 /// Reads a map file; its ending says which format it is in. Files beside it that belong to it are read too: `.prj` beside `.asc`, and
 /// [`geotiff::Sidecars`].
 ///
-/// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.hgt` and `.hgt.gz` SRTM tile, `.yaml`/`.yml` ROS `map_server`.
+/// `.json` grid, `.asc` and `.asc.gz` ESRI ASCII, `.tif`/`.tiff` GeoTIFF, `.hgt` and `.hgt.gz` SRTM tile, `.yaml`/`.yml` ROS `map_server`,
+/// `.npy` array of numpy, which needs a cell size of the options.
 ///
 /// # Errors
 /// What is wrong with the file, with the place in it.
@@ -71,8 +84,12 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
     let bytes = || fs::read(path).map_err(|source| Error::Read { path: path.display().to_string(), source });
     let has = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
+    if !has(&[".npy"]) {
+        options.georeference.refuse()?;
+    }
     let terrain = match () {
         () if has(&[".json"]) => read_bytes(Format::Json, &bytes()?, options)?,
+        () if has(&[".npy"]) => read_bytes(Format::Npy, &bytes()?, options)?,
         () if has(&[".asc"]) => read_ascii_beside(&bytes()?, path, options)?,
         () if has(&[".asc.gz"]) => {
             read_ascii_beside(&unpacked(&bytes()?, path, MOST_UNPACKED_BYTES)?, path, options)?
@@ -97,11 +114,15 @@ pub fn read_path_as(path: &Path, options: &Options) -> Result<Terrain, Error> {
 /// # Errors
 /// What is wrong with it, with the place in it.
 pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Terrain, Error> {
+    if format != Format::Npy {
+        options.georeference.refuse()?;
+    }
     match format {
         Format::Json => json::read(text(bytes)?)?.as_asked(options),
         Format::Ascii => ascii::read(text(bytes)?, options)?.as_asked(options),
         Format::GeoTiff => read_geotiff(bytes, &geotiff::Sidecars::default(), options),
         Format::Cells => cells::read_sent(bytes)?.as_asked(options),
+        Format::Npy => npy::read(bytes, options),
     }
 }
 
@@ -126,6 +147,7 @@ pub fn read_ros_map(
     options: &Options,
     image: impl FnOnce(&str) -> std::io::Result<Vec<u8>>,
 ) -> Result<Terrain, Error> {
+    options.georeference.refuse()?;
     ros_map::read(text(yaml)?, options.most_cells, image)?.as_asked(options)
 }
 
@@ -158,13 +180,14 @@ pub fn text(bytes: &[u8]) -> Result<&str, Error> {
 
 /// What a file is by its first bytes.
 fn named_by_magic(bytes: &[u8]) -> Option<&'static str> {
-    const MAGIC: [(&[u8], &str); 6] = [
+    const MAGIC: [(&[u8], &str); 7] = [
         (b"II*\0", "a TIFF"),
         (b"MM\0*", "a TIFF"),
         (b"II+\0", "a TIFF"),
         (b"\x1f\x8b", "a gzip file"),
         (b"\x89PNG", "a PNG image"),
         (b"PK\x03\x04", "a ZIP file"),
+        (b"\x93NUMPY", "a numpy array"),
     ];
     MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
 }

@@ -79,21 +79,33 @@ class Map:
         return Map(_native.Map.from_layers(encode(head), elevation_m.ravel(), names, codes, blocked))
 
     @staticmethod
-    def open(path: str | os.PathLike[str], *, nodata_m: float | None = None, fill_voids_m: float | None = None) -> Map:
-        """A map from a file: ``.json`` grid, ``.asc`` ESRI ASCII, ``.tif`` GeoTIFF, ``.hgt`` SRTM tile or ``.yaml`` ROS map.
+    def open(
+        path: str | os.PathLike[str],
+        *,
+        nodata_m: float | None = None,
+        fill_voids_m: float | None = None,
+        cell_size_m: float | None = None,
+        origin_m: tuple[float, float] | None = None,
+        crs: str | None = None,
+    ) -> Map:
+        """A map from a file: ``.json`` grid, ``.asc`` ESRI ASCII, ``.tif`` GeoTIFF, ``.npy`` array, ``.hgt`` SRTM tile or ``.yaml`` ROS map.
 
         ``nodata_m``: elevation of unknown cells besides those that the file marks [m]. ``fill_voids_m``: holes up to this wide are filled
-        [m].
+        [m]. ``cell_size_m``, ``origin_m`` and ``crs`` are those of ``from_array``, for ``.npy`` files, where NaN is unknown ground.
 
         Raises ``InvalidMapError`` with file, place and mend.
 
-        >>> import joulepath
+        >>> import joulepath, numpy, os, tempfile
+        >>> path = os.path.join(tempfile.mkdtemp(), "dem.npy")
+        >>> numpy.save(path, numpy.zeros((40, 60), dtype="float32"))
+        >>> joulepath.Map.open(path, cell_size_m=0.5).id == joulepath.Map.from_array(numpy.zeros((40, 60)), 0.5).id
+        True
         >>> joulepath.Map.open("no-such.tif")
         Traceback (most recent call last):
             ...
         joulepath.errors.InvalidMapError: ...no-such.tif...
         """
-        return Map(_native.Map.open(os.fspath(path), nodata_m, fill_voids_m))
+        return Map(_native.Map.open(os.fspath(path), nodata_m, fill_voids_m, (cell_size_m, origin_m, crs)))
 
     @staticmethod
     def from_rasterio(dataset: Any, *, band: int = 1, **layers: Any) -> Map:

@@ -35,7 +35,12 @@ class Map:
         obstacle: NDArray[numpy.bool_] | None,
     ) -> Map: ...
     @staticmethod
-    def open(path: str | os.PathLike[str], nodata_m: float | None, fill_voids_m: float | None) -> Map: ...
+    def open(
+        path: str | os.PathLike[str],
+        nodata_m: float | None,
+        fill_voids_m: float | None,
+        frame: tuple[float | None, tuple[float, float] | None, str | None],
+    ) -> Map: ...
     @property
     def shape(self) -> tuple[int, int]: ...
     @property

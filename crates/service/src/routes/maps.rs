@@ -7,7 +7,10 @@ use axum::{
     http::{HeaderMap, StatusCode, Uri, header},
     response::{IntoResponse, Response},
 };
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{
+    Deserialize, Deserializer, Serialize,
+    de::{DeserializeOwned, Error as _},
+};
 use sha2::{Digest, Sha256};
 use terrain::{MapFile, Patch, Terrain, Warning, areas::Areas, io, io::json::JsonText};
 use utoipa::{IntoParams, ToSchema};
@@ -105,13 +108,28 @@ pub struct ReadingQuery {
     pub fill_voids_m: Option<f64>,
     /// Elevation of unknown cells, beside those that the file marks. Default: the service's setting, as above [m].
     pub nodata_m: Option<f64>,
+    /// Edge of a cell of a numpy array (application/x-npy), which needs it. Other maps hold their own, and are refused with one [m].
+    #[param(minimum = 0.01, maximum = 100.0)]
+    pub cell_size_m: Option<f64>,
+    /// South-west corner of a numpy array, x and y with a comma between them. Default: 0,0 [m].
+    #[serde(default, deserialize_with = "origin_m")]
+    #[param(value_type = String, pattern = r"^-?\d+(\.\d+)?,-?\d+(\.\d+)?$")]
+    pub origin_m: Option<[f64; 2]>,
+    /// Coordinate reference system of a numpy array, in metres: `EPSG:` and a code, or WKT. Default: unknown.
+    pub crs: Option<String>,
     /// What the map is called, as its file; at most 200 characters. A map that is at hand takes this name. Default: the `name` in a
     /// JSON grid, else the one that it has.
     #[param(min_length = 1, max_length = 200)]
     pub name: Option<String>,
 }
 
-/// Store a map under a name of one's own, if it has one: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), cells in bytes (application/octet-stream: see the guide), or
+/// The two numbers of a query's `origin_m`.
+fn origin_m<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let text = String::deserialize(from)?;
+    io::Georeference::parse_origin_m(&text).map(Some).map_err(D::Error::custom)
+}
+
+/// Store a map under a name of one's own, if it has one: a JSON grid (application/json), an ESRI ASCII grid (text/plain), a GeoTIFF in projected metres or degrees (image/tiff), a numpy array (application/x-npy, with `cell_size_m`), cells in bytes (application/octet-stream: see the guide), or
 /// the YAML and the image of a ROS map_server map (multipart/form-data with the parts `yaml` and `image`). What looks wrong with
 /// its elevations stands in the answer's warnings.
 #[utoipa::path(
@@ -121,6 +139,7 @@ pub struct ReadingQuery {
         (MapFile = "application/json"),
         (String = "text/plain"),
         (Vec<u8> = "image/tiff"),
+        (Vec<u8> = "application/x-npy"),
         (Vec<u8> = "application/octet-stream"),
         (RosMapForm = "multipart/form-data")
     )),
@@ -140,16 +159,23 @@ pub(crate) async fn create(
     uri: Uri,
     request: Request,
 ) -> Result<(StatusCode, Json<MapSummary>), Problem> {
-    let query = query::<ReadingQuery>(&uri, "fill_voids_m`, `nodata_m` and `name")?;
+    let query =
+        query::<ReadingQuery>(&uri, "fill_voids_m`, `nodata_m`, `cell_size_m`, `origin_m`, `crs` and `name")?;
     let reader = MapReader::of(&request)?;
     let usual = engine.limits().map_options();
     let options = io::Options {
         nodata_m: query.nodata_m.or(usual.nodata_m),
         fill_voids_m: query.fill_voids_m.or(usual.fill_voids_m),
+        georeference: io::Georeference {
+            cell_size_m: query.cell_size_m,
+            origin_m: query.origin_m,
+            crs: query.crs,
+        },
         ..usual
     };
     let name = query.name.as_deref().map(checked_name).transpose()?;
     let content = read_body(request, &engine).await?;
+    let reader = reader.for_body(&content.bytes)?;
     let map = engine
         .compute(move |_| {
             let Read { terrain, name: own_name } = reader.read(content, &options)?;
