@@ -19,7 +19,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         [map, side, bound] => (map, side, bound, "1"),
         [map, side, bound, before] => (map, side, bound, before.as_str()),
         _ => {
-            return Err("arguments: a GeoTIFF, a side in cells, a bound such as 1.05, the bound before".into());
+            return Err(
+                "arguments: a GeoTIFF, a side in cells, a bound such as 1.05, the bound before".into()
+            );
         }
     };
     let (side, bound, before): (usize, f64, f64) = (side.parse()?, bound.parse()?, before.parse()?);

@@ -51,7 +51,7 @@ pub struct CostTable {
     /// Least codes of each tile's cells, by row, group of lanes, displacement and lane, over headings and motions.
     least: Vec<OnceLock<Least>>,
     /// Tiles of which a search has looked at little.
-    strips: Vec<OnceLock<Box<Strips>>>,
+    strips: Vec<OnceLock<Arc<Strips>>>,
     /// Tiles whose codes are held.
     held: AtomicUsize,
     /// Held while a tile is evaluated, so that two threads that need it do not both do the work.
@@ -127,6 +127,9 @@ impl CostTable {
             if let Some(codes) = self.codes[tile].get() {
                 let _ = table.codes[tile].set(Arc::clone(codes));
                 table.held.fetch_add(1, Ordering::Relaxed);
+            }
+            if let Some(strips) = self.strips[tile].get() {
+                let _ = table.strips[tile].set(Arc::clone(strips));
             }
         }
         table
