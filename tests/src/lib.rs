@@ -79,7 +79,7 @@ pub struct Server {
     /// Where it listens, as `http://127.0.0.1:41234`.
     pub url: String,
     /// Where it keeps what lasts as long as it does, which it cannot remove when it is killed.
-    _temporary: tempfile::TempDir,
+    temporary: tempfile::TempDir,
 }
 
 impl Server {
@@ -145,7 +145,7 @@ impl Server {
         let read = BufReader::new(stdout).read_line(&mut line);
         let url = line.trim().strip_prefix("listening on ").map(|url| url.replace("0.0.0.0", "127.0.0.1"));
         let url = url.unwrap_or_else(|| panic!("the server said {line:?} ({read:?})"));
-        Server { child, url, _temporary: temporary }
+        Server { child, url, temporary }
     }
 
     /// Sends a body with a content type.
@@ -228,6 +228,11 @@ impl Server {
     /// Deletes a path.
     pub fn delete(&self, path: &str) -> Answer {
         Answer::from(agent().delete(format!("{}{path}", self.url)).call())
+    }
+
+    /// The folder that stands for that of all temporary files.
+    pub fn temporary(&self) -> &Path {
+        self.temporary.path()
     }
 
     /// Asks the server to end, as a process manager does, and waits until it has.

@@ -326,6 +326,16 @@ fn uploads_and_deletes_leave_nothing_on_disk() {
 }
 
 #[test]
+fn a_service_that_ends_in_order_removes_the_folder_that_lasts_as_long_as_it_does() {
+    let mut server = Server::start();
+    filled(&server);
+    let kept = |server: &Server| fs::read_dir(server.temporary()).unwrap().count();
+    assert_eq!(kept(&server), 1);
+    assert!(server.terminate().success());
+    assert_eq!(kept(&server), 0);
+}
+
+#[test]
 fn a_store_that_cannot_be_used_is_told_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");

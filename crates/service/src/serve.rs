@@ -85,6 +85,8 @@ async fn run(
     if tokio::time::timeout(engine.limits().drain_time, open.shutdown()).await.is_err() {
         tracing::warn!("requests under way were cut off");
     }
+    // Tasks that go with the runtime hold the store too, and the process may end before they are dropped.
+    engine.records().store.end();
     Ok(())
 }
 

@@ -63,6 +63,15 @@ impl Folder {
         self.own.is_some()
     }
 
+    /// Removes a folder of the service's own, before what still runs has let go of it.
+    pub(crate) fn end(&self) {
+        if let Some(own) = &self.own
+            && let Err(error) = fs::remove_dir_all(own.path())
+        {
+            tracing::warn!("{} was left behind: {error}", own.path().display());
+        }
+    }
+
     /// A file for what is being received; gone again unless it is kept.
     pub(crate) fn spool(&self) -> io::Result<NamedTempFile> {
         tempfile::Builder::new().prefix(".received-").tempfile_in(self.root.join(INCOMING))

@@ -61,6 +61,11 @@ impl Store {
         self.folder.as_ref().is_none_or(|folder| !folder.is_temporary())
     }
 
+    /// Removes what does not outlast the service; nothing can be kept from now on.
+    pub(crate) fn end(&self) {
+        self.folder.iter().for_each(|folder| folder.end());
+    }
+
     /// Whether an object can be written and removed.
     pub(crate) async fn check(&self) -> Result<(), Problem> {
         self.probe().await.map_err(|error| cannot("use", &error))
