@@ -103,6 +103,23 @@ test("a map keeps the name of its file, and is read as the options say", async (
   expect(listed.maps.map(({ name }) => name)).toEqual(["yard.json"]);
 });
 
+test("an array is added once its cells have a size", async ({ page, service }) => {
+  await page.goto(service.url);
+  const choose = () => page.locator(".first-map input[type=file]").setInputFiles(repositoryFile("maps/hill.npy"));
+  await choose();
+  await expect(page.getByText("An array does not say how large its cells are.")).toBeVisible();
+  await page.getByText("Options", { exact: true }).click();
+  await page.getByLabel("Cell size of an array").fill("0,5");
+  await choose();
+  await expect(page.getByLabel("Map", { exact: true })).toContainText("hill.npy");
+  const listed = (await (await fetch(`${service.url}/v1/maps`)).json()) as { maps: { id: string }[] };
+  const map = (await (await fetch(`${service.url}/v1/maps/${listed.maps[0]?.id}`)).json()) as { cell_size_m: number };
+  expect(map.cell_size_m).toBe(0.5);
+  // Of other files the size is their own.
+  await page.locator(".map-bar input[type=file]").setInputFiles(repositoryFile("maps/yard.json"));
+  await expect(page.getByLabel("Map", { exact: true })).toContainText("yard.json");
+});
+
 test(
   "tiles lie where they belong to a pixel, and only their host is asked beside the service",
   PHONE_TOO,

@@ -21,9 +21,13 @@ export function upload<T>(path: string, body: Blob, contentType: string, tell: (
   });
 }
 
+/** The content type of numpy's arrays. */
+export const ARRAY_TYPE = "application/x-npy";
+
 /** The content type of a map file by its name. */
 export function mapType(name: string): string {
   if (/\.tiff?$/i.test(name)) return "image/tiff";
+  if (/\.npy$/i.test(name)) return ARRAY_TYPE;
   if (/\.json$/i.test(name)) return "application/json";
   return "text/plain";
 }

@@ -4,7 +4,7 @@ import { DropZone } from "../widgets/drop_zone";
 import { addMap, addSample, sending } from "./load";
 import { ReadingOptions } from "./reading_options";
 
-export const MAP_ENDINGS = ".json,.asc,.txt,.tif,.tiff";
+export const MAP_ENDINGS = ".json,.asc,.txt,.tif,.tiff,.npy";
 
 export function FirstMap() {
   return (
@@ -15,7 +15,7 @@ export function FirstMap() {
         is cheaper, and shows it beside the shortest and the fastest.
       </p>
       <DropZone label="Drop a map here, or choose a file" accept={MAP_ENDINGS} take={(files) => files[0] && void addMap(files[0])}>
-        <span>GeoTIFF, ESRI ASCII grid (.asc), or a JSON grid</span>
+        <span>GeoTIFF, ESRI ASCII grid (.asc), a JSON grid, or a numpy array (.npy)</span>
       </DropZone>
       <p class="first-map-guide">
         <GuideLink chapter="maps">What maps may be like</GuideLink>

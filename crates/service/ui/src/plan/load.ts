@@ -77,14 +77,10 @@ const LONGEST_NAME = 200;
 
 async function sent(body: Blob, type: string, name: string): Promise<void> {
   loadProblem.value = null;
-  const reading = readingQuery();
-  if (!reading) {
-    loadProblem.value = problemOf(new Error("One of the reading options is no number. Mend it, and add the map again."));
-    return;
-  }
-  sending.value = 0;
   try {
-    added(await storeMap(body, type, { name: name.slice(0, LONGEST_NAME), ...reading }, (share) => (sending.value = share)));
+    const query = { name: name.slice(0, LONGEST_NAME), ...readingQuery(type) };
+    sending.value = 0;
+    added(await storeMap(body, type, query, (share) => (sending.value = share)));
   } catch (thrown) {
     loadProblem.value = problemOf(thrown);
   }
