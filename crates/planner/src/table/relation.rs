@@ -135,13 +135,13 @@ fn are_alike(known: &Lattice, wanted: &Lattice) -> bool {
         mass_kg: known.robot.mass_kg,
         yaw_inertia_kgm2: known.robot.yaw_inertia_kgm2,
         hotel_power_w: known.robot.hotel_power_w,
-        battery: known.robot.battery.clone(),
-        uncertainty: known.robot.uncertainty.clone(),
+        battery: known.robot.battery,
+        uncertainty: known.robot.uncertainty,
         source: known.robot.source.clone(),
         provenance: known.robot.provenance.clone(),
         posterior: known.robot.posterior.clone(),
         model_error: known.robot.model_error.clone(),
-        noise: known.robot.noise.clone(),
+        noise: known.robot.noise,
         ..wanted.robot.clone()
     };
     loaded == known.robot
