@@ -19,8 +19,9 @@ fn changed(random: &mut impl Rng, robot: &Robot, settings: Settings) -> (Robot, 
     let mut settings = settings;
     let which = random.random_range(1..8);
     if which & 1 == 1 {
-        settings.speed_mps =
-            (settings.speed_mps * random.random_range(0.5..2.0)).clamp(0.01, robot.max_wheel_speed_mps);
+        // Down to where wheels hardly turn, whose rolling resistance goes with their speed.
+        let factor = if random.random_bool(0.2) { 0.001 } else { random.random_range(0.5..2.0) };
+        settings.speed_mps = (settings.speed_mps * factor).clamp(0.001, robot.max_wheel_speed_mps);
     }
     if which & 2 == 2 {
         robot.mass_kg *= random.random_range(0.6..1.6);
@@ -37,9 +38,21 @@ fn some_change(random: &mut impl Rng) -> (Terrain, [(Robot, Settings); 2]) {
         // With mechanisms there is no relation.
         robot.mechanisms.clear();
     }
+    if random.random_bool(0.3) {
+        // Motors that lose nothing, one of which gears down more than the other: what wheels are spared is spared to the full.
+        (robot.motors.left.k1_w_per_n2, robot.motors.right.k1_w_per_n2) = (0.0, 0.0);
+        (robot.motors.left.k2, robot.motors.right.k2) = (1.0, random.random_range(1.0..3.0));
+        robot.hotel_power_w = random.random_range(0.0..1.0);
+        robot.drive_electronics_w = 0.0;
+    }
     let mut settings = whims::settings(random, &robot);
     if random.random_bool(0.8) {
         settings.power_model = model::PowerModel::default();
+    }
+    if random.random_bool(0.2) {
+        // Arcs on whose inner side the wheels nearly stand.
+        settings.least_radius_m =
+            robot.half_slip_track_m() * (1.0 + 10f64.powf(random.random_range(-4.0..0.0)));
     }
     let other = changed(random, &robot, settings);
     (terrain, [(robot, settings), other])
@@ -49,7 +62,7 @@ fn some_change(random: &mut impl Rng) -> (Terrain, [(Robot, Settings); 2]) {
 fn no_motion_costs_less_than_what_its_cost_under_another_load_or_speed_proves() {
     let mut random = ground::random(147);
     let (mut compared, mut related, mut near) = (0u64, 0, 0u64);
-    for round in 0..120 {
+    for round in 0..200 {
         let (terrain, [known, wanted]) = some_change(&mut random);
         let lattice = |(robot, settings): &(Robot, Settings)| Lattice::new(&terrain, robot, *settings);
         let (Ok(known), Ok(wanted)) = (lattice(&known), lattice(&wanted)) else { continue };
@@ -167,6 +180,53 @@ fn a_change_of_speed_load_or_standing_power_takes_no_field_of_its_own() {
     }
     let elsewhere = work_beside(&other_ground, usual, true);
     assert!(2 * elsewhere > alone, "{elsewhere} on other ground, {alone} alone");
+}
+
+#[test]
+fn wheels_that_hardly_turn_prove_nothing_of_others() {
+    // Rolling resistance sets in over some millimetres a second, so that a robot that creeps takes less over the same ground.
+    let grid = Grid { rows: 24, columns: 24, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let terrain = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
+    let mut robot = builtin::husky_a200();
+    (robot.motors.left.k1_w_per_n2, robot.motors.right.k1_w_per_n2) = (0.0, 0.0);
+    (robot.motors.left.k2, robot.motors.right.k2) = (1.0, 3.0);
+    let usual = Settings::of(&robot);
+    let lattice = |speed_mps: f64| Lattice::new(&terrain, &robot, Settings { speed_mps, ..usual }).unwrap();
+    let relation = |speed_mps| Relation::between(&lattice(0.5), &lattice(speed_mps), Objective::Energy);
+    assert_eq!(relation(0.001), None);
+    assert!(relation(0.1).is_some_and(|relation| relation.share > 0.5));
+}
+
+#[test]
+fn no_search_is_made_twice_where_there_is_no_room_to_turn() {
+    // A passage through a wall with two bends that are too tight for the least radius.
+    let grid = Grid { rows: 90, columns: 90, cell_size_m: 1.0, origin_m: [0.0, 0.0] };
+    let passes = |row: usize, column: usize| match column {
+        40..45 => (44..47).contains(&row),
+        45..48 => (44..57).contains(&row),
+        48..55 => (54..57).contains(&row),
+        _ => true,
+    };
+    let z: Vec<f64> = (0..grid.cells())
+        .map(|i| if passes(grid.cell(i).row, grid.cell(i).column) { 0.0 } else { f64::NAN })
+        .collect();
+    let terrain = Terrain::new(grid, &z).unwrap();
+    let robot = builtin::husky_a200();
+    let mut query = ground::some_query(&mut ground::random(1), &terrain, &robot);
+    query.settings = Settings { least_radius_m: 6.0, ..Settings::of(&robot) };
+    ([query.start.x_m, query.start.y_m], [query.goal.x_m, query.goal.y_m]) =
+        (grid.at_fraction_m(0.15, 0.3), grid.at_fraction_m(0.85, 0.7));
+    (query.start.heading_rad, query.goal.heading_rad, query.goal.tolerance_m) = (None, None, 0.0);
+    let mut work = |bound: f64| {
+        let (patience, meter) = Patience::default().metered();
+        (query.bound, query.patience) = (bound, patience);
+        let found = Planner::new(&terrain, &robot, query.settings).unwrap().plan(&query, Objective::Energy);
+        assert!(matches!(found, Err(Error::NoRoomToTurn { .. })), "{found:?}");
+        meter.total()
+    };
+    // Over costs, and over bounds and then costs.
+    let [once, twice] = [1.0, 1.2].map(&mut work);
+    assert!(2 * twice < 5 * once, "{twice} over bounds first, {once} over costs");
 }
 
 #[test]

@@ -77,14 +77,17 @@ impl Planners {
         drop(kept);
         let planner = Arc::new(Planner::prepare(terrain, robot, settings, patience)?);
         let ground_bytes = if is_stored { 0 } else { terrain.grid.cells() * OWN_GROUND_BYTES_PER_CELL };
-        let mut kept = self.lock();
-        // Of a robot that drives faster or carries more, what was worked out before may serve.
-        kept.iter()
-            .filter(|other| other.key.map_id == key.map_id)
-            .for_each(|other| planner.relate(&other.planner));
-        kept.push(Kept { key, planner: Arc::clone(&planner), ground_bytes });
-        drop(kept);
+        self.keep(Kept { key, planner: Arc::clone(&planner), ground_bytes });
         Ok((planner, false))
+    }
+
+    /// Keeps a planner, which knows of the others over its map: what one has worked out may serve the same robot that drives faster or carries
+    /// more.
+    fn keep(&self, new: Kept) {
+        let mut kept = self.lock();
+        let others = kept.iter().filter(|other| other.key.map_id == new.key.map_id);
+        others.for_each(|other| new.planner.relate(&other.planner));
+        kept.push(new);
     }
 
     /// Whether there is a planner for a map, whatever the robot and settings.
@@ -106,7 +109,7 @@ impl Planners {
             let key = Key { map_id: to_id.to_owned(), ..key };
             // A surface that the robot lacks is told when it is asked for a path.
             let Ok(planner) = planner.patched(terrain, changed, &patience) else { continue };
-            self.lock().push(Kept { key, planner: Arc::new(planner), ground_bytes: 0 });
+            self.keep(Kept { key, planner: Arc::new(planner), ground_bytes: 0 });
         }
     }
 

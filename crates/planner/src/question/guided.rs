@@ -36,87 +36,65 @@ const CELLS_FOR_A_STATE: usize = 32;
 const LEAST_EXPANDED: usize = 1024;
 
 impl Planner {
-    /// Plans over what proves a bound with least work, over the next where that does not do, and over the costs of what can be driven where
-    /// there is no path: they alone know where ways end.
-    pub(super) fn over_bounds_first<T>(
-        &self,
-        bound: f64,
-        plan: impl Fn(StepCosts) -> Result<Option<T>, Error>,
-    ) -> Result<T, Error> {
-        for costs in StepCosts::that_prove(bound) {
-            match plan(*costs) {
-                Ok(Some(found)) => return Ok(found),
-                Ok(None) => {}
-                Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. }) if *costs != StepCosts::Least => {}
-                Err(error) => return Err(error),
-            }
-        }
-        Err(Error::Untraceable)
-    }
-
-    /// The field that leads to the goals of a question.
+    /// The field that leads to the goals of a question: for bounds of costs another planner's, where one proves anything.
     pub(super) fn guide(
         &self,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
     ) -> Result<Arc<GoalField>, Error> {
-        let table = self.table(objective);
-        let goals = ends.goals_with_potential(self.lattice(), objective);
         let key = FieldKey::new(objective, &ends.goals);
         let start = ends.start.cell;
-        let late = Error::Timeout { expanded: 0 };
-        let costs = match costs {
-            StepCosts::Related => match self.fields().at_hand(&key, start) {
-                Some(field) => return Ok(field),
-                None => match self.related_field(&key, (start, &goals), objective, &query.patience) {
-                    Some(field) => {
-                        self.fields().keep_related(key, start, &field);
-                        return Ok(field);
-                    }
-                    None => StepCosts::Bounds,
-                },
-            },
-            costs => costs,
-        };
-        let towards = Towards { start, costs, bound: query.bound };
-        self.fields().field(key, table, &goals, towards, &query.patience).ok_or(late)
+        // Such a field knows nothing of changes.
+        if costs == StepCosts::Bounds && Changes::of(self.lattice(), objective).is_none() {
+            if let Some(field) = self.fields().at_hand(&key, start) {
+                return Ok(field);
+            }
+            let goals = ends.goals_with_potential(self.lattice(), objective);
+            if let Some(field) = self.related_field(&key, (start, &goals), objective, &query.patience) {
+                self.fields().keep_related(key, start, &field);
+                return Ok(field);
+            }
+        }
+        self.own_guide(ends, (query, objective), costs)
     }
 
-    /// A path between ends; `None` where what another planner's field proves does not prove the bound asked for.
+    /// The field that is worked out from the planner's own costs.
+    fn own_guide(
+        &self,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        costs: StepCosts,
+    ) -> Result<Arc<GoalField>, Error> {
+        let goals = ends.goals_with_potential(self.lattice(), objective);
+        let key = FieldKey::new(objective, &ends.goals);
+        let towards = Towards { start: ends.start.cell, costs, bound: query.bound };
+        let field = self.fields().field(key, self.table(objective), &goals, towards, &query.patience);
+        field.ok_or(Error::Timeout { expanded: 0 })
+    }
+
+    /// A path between ends.
     pub(super) fn search(
         &self,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
-    ) -> Result<Option<Found>, Error> {
-        let (lattice, table) = (self.lattice(), self.table(objective));
-        let goals = ends.goals_with_potential(lattice, objective);
-        let field = self.guide(ends, (query, objective), costs)?;
-        let question = Search {
-            starts: &ends.starts,
-            goals: &goals,
-            besides: ends.besides(lattice, objective),
-            bound: query.bound,
-            patience: &query.patience,
-        };
-        let is_related = field.costs() == StepCosts::Related;
-        let most_expanded = match is_related {
-            true => (lattice.terrain.grid.cells() / CELLS_FOR_A_STATE).max(LEAST_EXPANDED) as u64,
-            false => u64::MAX,
-        };
-        let outcome = match Changes::of(lattice, objective) {
-            Some(_) if is_related => return Ok(None),
-            Some(changes) => search_changing(table, &field, &question, &changes),
-            None => self.with_workspace(|workspace| {
-                search_within(table, &field, &question, workspace, most_expanded)
-            }),
-        };
-        table.rest();
-        match outcome {
-            Outcome::Found(found) if !(is_related && found.late) => Ok(Some(found)),
-            _ if is_related && !query.patience.is_over() => Ok(None),
-            Outcome::Found(found) => Ok(Some(found)),
+    ) -> Result<Found, Error> {
+        let lattice = self.lattice();
+        let mut field = self.guide(ends, (query, objective), costs)?;
+        if field.costs() == StepCosts::Related {
+            let most_expanded = (lattice.terrain.grid.cells() / CELLS_FOR_A_STATE).max(LEAST_EXPANDED);
+            match self.search_by(&field, ends, (query, objective), most_expanded as u64) {
+                Outcome::Found(found) if !found.late || query.patience.is_over() => return Ok(found),
+                Outcome::Timeout { expanded } if query.patience.is_over() => {
+                    return Err(Error::Timeout { expanded });
+                }
+                // What it proves was not enough.
+                _ => field = self.own_guide(ends, (query, objective), costs)?,
+            }
+        }
+        match self.search_by(&field, ends, (query, objective), u64::MAX) {
+            Outcome::Found(found) => Ok(found),
             Outcome::Timeout { expanded } => Err(Error::Timeout { expanded }),
             Outcome::Untraceable => Err(Error::Untraceable),
             Outcome::Unreachable => {
@@ -126,6 +104,30 @@ impl Planner {
         }
     }
 
+    fn search_by(
+        &self,
+        field: &GoalField,
+        ends: &Ends,
+        (query, objective): (&Query, Objective),
+        most_expanded: u64,
+    ) -> Outcome {
+        let (lattice, table) = (self.lattice(), self.table(objective));
+        let question = Search {
+            starts: &ends.starts,
+            goals: &ends.goals_with_potential(lattice, objective),
+            besides: ends.besides(lattice, objective),
+            bound: query.bound,
+            patience: &query.patience,
+        };
+        let outcome = match Changes::of(lattice, objective) {
+            Some(changes) => search_changing(table, field, &question, &changes),
+            None => self
+                .with_workspace(|workspace| search_within(table, field, &question, workspace, most_expanded)),
+        };
+        table.rest();
+        outcome
+    }
+
     /// The best path between given ends, not refined.
     pub(crate) fn best_between(
         &self,
@@ -133,9 +135,25 @@ impl Planner {
         query: &Query,
         objective: Objective,
     ) -> Result<Route, Error> {
-        let found = self.search(ends, (query, objective), StepCosts::Least)?.ok_or(Error::Untraceable)?;
+        let found = self.search(ends, (query, objective), StepCosts::Least)?;
         Route::drive(self.lattice(), objective, (found.start, &found.motions), &query.patience)
     }
+}
+
+/// Plans over what proves a bound with less work, and over the costs of what can be driven where there is no path: they alone know where
+/// ways end.
+pub(super) fn over_bounds_first<T>(
+    bound: f64,
+    plan: impl Fn(StepCosts) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let mut outcome = Err(Error::Untraceable);
+    for costs in StepCosts::that_prove(bound) {
+        outcome = plan(*costs);
+        if !matches!(outcome, Err(Error::NoPath { .. } | Error::NoRoomToTurn { .. })) {
+            break;
+        }
+    }
+    outcome
 }
 
 /// Where the ground that leads to the goal comes nearest to the start, as an error, or that patience ended first.

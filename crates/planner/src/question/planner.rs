@@ -27,6 +27,7 @@ use crate::{
     pose_field::exact::ExactField,
     question::{
         ends::Ends,
+        guided::over_bounds_first,
         query::{Comparison, Goal, Plan, Query, SearchReport, Snap, Start},
         relatives::Relatives,
     },
@@ -131,7 +132,7 @@ impl Planner {
     /// Ends off the map or where the robot cannot stand, no path, or patience that ended before there was one.
     pub fn plan(&self, query: &Query, objective: Objective) -> Result<Plan, Error> {
         let began = Instant::now();
-        self.over_bounds_first(query.bound, |costs| {
+        over_bounds_first(query.bound, |costs| {
             let ends = self.ends_over(query, objective, costs)?;
             let found = self.plan_between(&ends, (query, objective), costs, began);
             self.explained_at_last(found, &ends, (query, objective), costs)
@@ -144,7 +145,7 @@ impl Planner {
     /// As [`Planner::plan`].
     pub fn compare(&self, query: &Query) -> Result<Comparison, Error> {
         let began = Instant::now();
-        self.over_bounds_first(query.bound, |costs| {
+        over_bounds_first(query.bound, |costs| {
             let ends = self.ends_over(query, Objective::Energy, costs)?;
             let one = |objective| self.plan_between(&ends, (query, objective), costs, began);
             let (energy, (distance, time)) = rayon::join(
@@ -152,19 +153,18 @@ impl Planner {
                 || rayon::join(|| one(Objective::Distance), || one(Objective::Time)),
             );
             let energy = self.explained_at_last(energy, &ends, (query, Objective::Energy), costs)?;
-            let all = energy.zip(distance?).zip(time?);
-            Ok(all.map(|((energy, distance), time)| Comparison { energy, distance, time }))
+            Ok(Comparison { energy, distance: distance?, time: time? })
         })
     }
 
     /// Explains why there is no path where bounds of costs have not led astray.
     fn explained_at_last(
         &self,
-        found: Result<Option<Plan>, Error>,
+        found: Result<Plan, Error>,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
-    ) -> Result<Option<Plan>, Error> {
+    ) -> Result<Plan, Error> {
         match costs {
             StepCosts::Related | StepCosts::Bounds => found,
             StepCosts::Least => found.map_err(|error| self.explained(error, ends, query, objective)),
@@ -191,22 +191,20 @@ impl Planner {
         Ok(())
     }
 
-    /// `None` where the costs did not prove the bound asked for.
     fn plan_between(
         &self,
         ends: &Ends,
         (query, objective): (&Query, Objective),
         costs: StepCosts,
         began: Instant,
-    ) -> Result<Option<Plan>, Error> {
+    ) -> Result<Plan, Error> {
         let changes = Changes::of(&self.lattice, objective);
         // A goal that is held knows nothing of changes.
         let walked = if changes.is_none() { self.walk(ends, objective, &query.patience)? } else { None };
         let found = match walked {
-            Some(found) => Some(found),
+            Some(found) => found,
             None => self.search(ends, (query, objective), costs)?,
         };
-        let Some(found) = found else { return Ok(None) };
         if !joins(&self.lattice, &found, &ends.starts, |end| ends.goals.contains(end)) {
             return Err(Error::Untraceable);
         }
@@ -222,7 +220,7 @@ impl Planner {
         if query.refine {
             plan.refined = RefinedPath::of(&self.lattice, objective, &plan.route, &query.patience);
         }
-        Ok(Some(plan))
+        Ok(plan)
     }
 
     /// Fields of goals that were asked for.

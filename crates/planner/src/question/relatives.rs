@@ -32,8 +32,8 @@ impl Relatives {
 
 impl Planner {
     /// Lets two planners know of each other. Where one is asked for a path whose bound is 1.05 or more, and the other has a field of the same
-    /// goal, it first tries what that proves. It needs the same ground, and robots that differ in mass and standing power alone, driven at
-    /// whatever speeds; of others it proves nothing.
+    /// goal, it first tries what that proves. It needs the same ground, and robots that differ in mass, standing power and speed alone, as far
+    /// as steady driving goes; of others it proves nothing, nor of wheels that hardly turn.
     pub fn relate(self: &Arc<Self>, other: &Arc<Self>) {
         self.relatives().add(other);
         other.relatives().add(self);
@@ -51,6 +51,9 @@ impl Planner {
         let start_state = State { cell: start, heading: Heading::new(0) };
         let mut best: Option<(u32, Arc<GoalField>)> = None;
         for other in self.relatives().all() {
+            if patience.is_over() {
+                return None;
+            }
             let known = other.table_at_hand(objective).zip(other.fields().own(key, start));
             let Some((known, field)) = known else { continue };
             let Some(related) = Related::new((known, table), objective, goals) else { continue };

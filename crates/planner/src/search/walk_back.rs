@@ -48,8 +48,8 @@ pub(crate) fn walk_back(
             return Walked::Late;
         }
         // The cost of each state came from one of its predecessors, whose own can only have fallen since.
-        let Some((before, motion, known)) = predecessor(table, labels, state).filter(|found| found.2 < cost)
-        else {
+        let Some(found) = predecessor(table, labels, state, patience) else { return Walked::Late };
+        let Some((before, motion, known)) = found.filter(|found| found.2 < cost) else {
             return Walked::Astray;
         };
         motions.push(motion);
@@ -62,20 +62,30 @@ pub(crate) fn walk_back(
     Walked::Start(state, motions)
 }
 
-/// The state through which another costs least, the motion between them and the cost of the former.
-fn predecessor(table: &CostTable, labels: &Labels, state: State) -> Option<(State, usize, u32)> {
+/// The state through which another costs least, the motion between them and the cost of the former, if there is one; `None` when patience ends
+/// first.
+fn predecessor(
+    table: &CostTable,
+    labels: &Labels,
+    state: State,
+    patience: &Patience,
+) -> Option<Option<(State, usize, u32)>> {
     let lattice = table.lattice();
-    let through = predecessors(lattice, state).filter_map(|(before, motion)| {
+    let mut best: Option<(u32, (State, usize, u32))> = None;
+    for (before, motion) in predecessors(lattice, state) {
         let packed = lattice.layout.pack(before);
         let known = labels.cost(packed);
         if known == UNREACHED {
-            return None;
+            continue;
         }
         // Also of states that were reached and not expanded: some lead there for less.
-        let code = table.state_codes(packed, &Patience::default())?.of(motion)?;
-        (code != FORBIDDEN).then(|| (known.saturating_add(decode(code)), (before, motion, known)))
-    });
-    through.min_by_key(|(total, _)| *total).map(|(_, found)| found)
+        let code = table.state_codes(packed, patience)?.of(motion).unwrap_or(FORBIDDEN);
+        let total = known.saturating_add(decode(code));
+        if code != FORBIDDEN && best.is_none_or(|(least, _)| total < least) {
+            best = Some((total, (before, motion, known)));
+        }
+    }
+    Some(best.map(|(_, found)| found))
 }
 
 /// States from which a motion leads to a state.

@@ -1,6 +1,6 @@
 //! What a robot's costs prove of its costs where it drives faster or slower, carries more or less, or draws more or less while it stands.
 
-use model::Robot;
+use model::{Manoeuvre, Robot};
 
 use crate::{
     lattice::{
@@ -13,7 +13,7 @@ use crate::{
 /// A lower bound of what any motion costs, from what it costs under another load, speed or standing power.
 ///
 /// With A what forces take beyond lifting, D what they dissipate in the motors and P₀ the standing power, a step takes
-/// `c = A + (D + P₀) τ`, where only the time τ depends on speed. Where the mass is μ times as large, A is too, and D is μ² times as large:
+/// `c = A + (D + P₀) τ`. Only the time τ depends on speed, where all wheels turn faster than some mm/s or stand; elsewhere there is no relation. Where the mass is μ times as large, A is too, and D is μ² times as large:
 ///
 /// ```text
 /// c' = μ A + (μ² D + P₀') τ'
@@ -44,7 +44,10 @@ impl Relation {
         let mass_ratio = wanted.robot.mass_kg / known.robot.mass_kg;
         let lift_ratio = wanted.lift_j_per_m() / known.lift_j_per_m();
         // A lighter robot may drive where a heavier one could not push.
-        if mass_ratio < 1.0 && may_lack_force(known) || (lift_ratio / mass_ratio - 1.0).abs() > ROUNDING {
+        let may_do_more = mass_ratio < 1.0 && may_lack_force(known);
+        let are_scaled =
+            (lift_ratio / mass_ratio - 1.0).abs() <= ROUNDING && are_forces_scaled(known, wanted, mass_ratio);
+        if may_do_more || !are_scaled {
             return None;
         }
         let weights = plain_weights(known, wanted, objective)?;
@@ -85,6 +88,22 @@ impl Relation {
         let per_m = per_m.fold(f64::INFINITY, f64::min) * (1.0 - ROUNDING);
         Some(Relation { share, per_m: per_m.max(0.0) })
     }
+}
+
+/// Whether forces are so many times as large wherever the robot drives. At other speeds they are the same, but for wheels that hardly turn: their
+/// rolling resistance goes with their speed.
+fn are_forces_scaled(known: &Lattice, wanted: &Lattice, ratio: f64) -> bool {
+    let manoeuvres = |lattice| {
+        let steps = chains(lattice).flat_map(|(chain, _)| chain.steps_with_manoeuvres());
+        steps.flat_map(|(_, manoeuvres, _)| manoeuvres.iter().map(Manoeuvre::kernel))
+    };
+    manoeuvres(known).zip(manoeuvres(wanted)).all(|(known, wanted)| {
+        let most_n = ROUNDING * wanted.lifting_n.sum().abs();
+        let is_scaled = |known_n: f64, wanted_n: f64| (wanted_n - ratio * known_n).abs() <= most_n;
+        is_scaled(known.rolling_n.left, wanted.rolling_n.left)
+            && is_scaled(known.rolling_n.right, wanted.rolling_n.right)
+            && is_scaled(known.skid_n, wanted.skid_n)
+    })
 }
 
 /// Whether a climb within the limits may ask a side for more force than it has.

@@ -19,7 +19,7 @@ pub(crate) enum StepCosts {
     Least,
     /// A lower bound of it, for which heights are enough on most ground.
     Bounds,
-    /// What a field of another planner proves of it.
+    /// What a field of another planner proves of it, which is tried before bounds.
     Related,
 }
 
@@ -32,8 +32,8 @@ const LOOSE_BOUND_OF_MANY: f64 = 1.2;
 impl StepCosts {
     /// What a search that is to prove a bound goes by, in the order in which it is tried.
     pub(crate) fn that_prove(bound: f64) -> &'static [Self] {
-        const WITH_BOUNDS: [StepCosts; 3] = [StepCosts::Related, StepCosts::Bounds, StepCosts::Least];
-        if bound >= LOOSE_BOUND { &WITH_BOUNDS } else { &WITH_BOUNDS[2..] }
+        const WITH_BOUNDS: [StepCosts; 2] = [StepCosts::Bounds, StepCosts::Least];
+        if bound >= LOOSE_BOUND { &WITH_BOUNDS } else { &WITH_BOUNDS[1..] }
     }
 
     /// What a field grows over that is to serve many searches.

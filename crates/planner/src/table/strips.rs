@@ -106,6 +106,10 @@ impl Strips {
             if strip.set(codes).is_ok() {
                 self.evaluated.fetch_add(1, Ordering::Relaxed);
             }
+            // A strip takes some microseconds, and a search asks for many.
+            if patience.is_over() {
+                return None;
+            }
         }
         self.codes_at_hand(state)
     }
