@@ -16,7 +16,7 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The built `joulepath` program, beside the tests' own executables.
 ///
@@ -40,6 +40,12 @@ pub fn program() -> PathBuf {
 /// A file of the repository.
 pub fn file(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// A map of cells of 1 m that rises by a twentieth to the east and a fiftieth to the north.
+pub fn slope_map(rows: usize, columns: usize) -> Value {
+    let row = |r: usize| (0..columns).map(|c| 0.05 * c as f64 + 0.02 * r as f64).collect::<Vec<_>>();
+    json!({ "cell_size_m": 1.0, "rows": rows, "columns": columns, "elevation_m": (0..rows).map(row).collect::<Vec<_>>() })
 }
 
 /// Power of the left and the right side of a Husky at 0.3 to 0.6 m/s on the left and 0.3 to 0.7 m/s on the right \[W\].

@@ -7,13 +7,8 @@ use std::{
     net::TcpStream,
 };
 
-use joulepath_tests::{Answer, Server, file};
+use joulepath_tests::{Answer, Server, file, slope_map};
 use serde_json::{Value, json};
-
-fn slope_map(rows: usize, columns: usize) -> Value {
-    let row = |r: usize| (0..columns).map(|c| 0.05 * c as f64 + 0.02 * r as f64).collect::<Vec<_>>();
-    json!({ "cell_size_m": 1.0, "rows": rows, "columns": columns, "elevation_m": (0..rows).map(row).collect::<Vec<_>>() })
-}
 
 fn question() -> Value {
     json!({
@@ -158,82 +153,6 @@ fn a_map_in_bytes_is_the_same_map_as_in_json() {
     vast[4..20].fill(0xff);
     let answer = server.post("/v1/maps", "application/octet-stream", &vast);
     assert!((400..500).contains(&answer.status), "{}", answer.text);
-}
-
-/// A numpy array of 12 × 20 elevations in single precision, or a part of it.
-fn slope_array() -> Vec<u8> {
-    let text = "{'descr': '<f4', 'fortran_order': False, 'shape': (12, 20), }\n";
-    let map = slope_map(12, 20);
-    let rows = map["elevation_m"].as_array().unwrap().iter().map(|row| row.as_array().unwrap());
-    let elements = rows.flatten().flat_map(|z| (z.as_f64().unwrap() as f32).to_le_bytes());
-    let head = [&b"\x93NUMPY\x01\x00"[..], &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat();
-    head.into_iter().chain(elements).collect()
-}
-
-#[test]
-fn a_numpy_array_is_the_same_map_as_in_json() {
-    let server = Server::start();
-    let array = slope_array();
-    let mut map = slope_map(12, 20);
-    for z in map["elevation_m"].as_array_mut().unwrap().iter_mut().flat_map(|row| row.as_array_mut().unwrap())
-    {
-        // What single precision holds.
-        *z = json!(f64::from(z.as_f64().unwrap() as f32));
-    }
-    map["crs"] = json!("EPSG:26915");
-    map["origin_m"] = json!([-2.0, 1.0]);
-    let path = "/v1/maps?cell_size_m=1&origin_m=-2,1&crs=EPSG:26915";
-    let sent = server.post(path, "application/x-npy", &array);
-    assert_eq!(sent.status, 201, "{}", sent.text);
-    let in_json = server.post_json("/v1/maps", &map);
-    assert_eq!((in_json.status, &in_json.json()["id"]), (200, &sent.json()["id"]), "it is at hand already");
-    for kind in ["application/octet-stream", "application/x-www-form-urlencoded", "text/plain", ""] {
-        let again = server.post(path, kind, &array);
-        assert_eq!(
-            (again.status, &again.json()["id"]),
-            (200, &sent.json()["id"]),
-            "by its content: `{kind}`"
-        );
-    }
-
-    let mut by_id = question_with("/map", Value::Null);
-    by_id["map_id"] = sent.json()["id"].clone();
-    let mut inline = question();
-    inline["map"] = map;
-    let (by_id, inline) = (server.post_json("/v1/plan", &by_id), server.post_json("/v1/plan", &inline));
-    assert!(inline.json()["energy_j"].is_number(), "{}", inline.text);
-    assert_eq!(by_id.json()["energy_j"], inline.json()["energy_j"]);
-}
-
-#[test]
-fn a_numpy_array_without_what_it_needs_is_refused_with_the_field() {
-    let server = Server::start();
-    let array = slope_array();
-    let refused = |query: &str, kind: &str, bytes: &[u8]| {
-        assert_problem(&server.post(&format!("/v1/maps{query}"), kind, bytes), 400, "invalid-map")
-    };
-    for (query, pointer) in [
-        ("", "/cell_size_m"),
-        ("?cell_size_m=0", "/cell_size_m"),
-        ("?cell_size_m=nan", "/cell_size_m"),
-        ("?cell_size_m=0.5&origin_m=1e300,0", "/origin_m/0"),
-        ("?cell_size_m=0.5&crs=EPSG:4326", "/crs"),
-    ] {
-        let problem = refused(query, "application/x-npy", &array);
-        assert_eq!(problem["errors"][0]["pointer"], pointer, "{problem}");
-    }
-    let own = refused("?cell_size_m=0.5", "application/json", slope_map(12, 20).to_string().as_bytes());
-    assert_eq!(own["errors"][0]["pointer"], "/cell_size_m", "a JSON grid has its own: {own}");
-    let short = refused("?cell_size_m=0.5", "application/x-npy", &array[..array.len() - 1]);
-    assert!(short["detail"].as_str().unwrap().contains("truncated"), "{short}");
-    let other = refused("?cell_size_m=0.5", "application/x-npy", b"JPT1");
-    assert!(other["detail"].as_str().unwrap().contains("no numpy array"), "{other}");
-    for origin in ["7", "a,b", "1,2,3", ""] {
-        let path = format!("/v1/maps?cell_size_m=0.5&origin_m={origin}");
-        let answer = server.post(&path, "application/x-npy", &array);
-        let problem = assert_problem(&answer, 400, "invalid-request");
-        assert!(problem["detail"].as_str().unwrap().contains("south-west corner"), "{problem}");
-    }
 }
 
 #[test]

@@ -224,9 +224,9 @@ fn no_search_is_made_twice_where_there_is_no_room_to_turn() {
         assert!(matches!(found, Err(Error::NoRoomToTurn { .. })), "{found:?}");
         meter.total()
     };
-    // Over costs, and over bounds and then costs.
+    // Over costs, and over bounds, which take less, and then costs.
     let [once, twice] = [1.0, 1.2].map(&mut work);
-    assert!(2 * twice < 5 * once, "{twice} over bounds first, {once} over costs");
+    assert!(twice < 2 * once, "{twice} over bounds first, {once} over costs");
 }
 
 #[test]

@@ -49,8 +49,9 @@ impl Planner {
     ) -> Option<Arc<GoalField>> {
         let table = self.table(objective);
         let start_state = State { cell: start, heading: Heading::new(0) };
-        let mut best: Option<(u32, Arc<GoalField>)> = None;
-        for other in self.relatives().all() {
+        let others = self.relatives().all();
+        let mut best: Option<(u32, Related<'_>, Arc<GoalField>)> = None;
+        for other in &others {
             if patience.is_over() {
                 return None;
             }
@@ -58,10 +59,11 @@ impl Planner {
             let Some((known, field)) = known else { continue };
             let Some(related) = Related::new((known, table), objective, goals) else { continue };
             let proven = related.units(&field, start_state);
-            if best.as_ref().is_none_or(|(most, _)| proven > *most) {
-                best = Some((proven, Arc::new(related.field(&field, patience)?)));
+            if best.as_ref().is_none_or(|(most, ..)| proven > *most) {
+                best = Some((proven, related, field));
             }
         }
-        best.map(|(_, field)| field)
+        let (_, related, field) = best?;
+        related.field(&field, patience).map(Arc::new)
     }
 }

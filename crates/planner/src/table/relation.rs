@@ -13,7 +13,8 @@ use crate::{
 /// A lower bound of what any motion costs, from what it costs under another load, speed or standing power.
 ///
 /// With A what forces take beyond lifting, D what they dissipate in the motors and P₀ the standing power, a step takes
-/// `c = A + (D + P₀) τ`. Only the time τ depends on speed, where all wheels turn faster than some mm/s or stand; elsewhere there is no relation. Where the mass is μ times as large, A is too, and D is μ² times as large:
+/// `c = A + (D + P₀) τ`. Only the time τ depends on speed where every wheel turns faster than some mm/s or stands; elsewhere there is no
+/// relation. Where the mass is μ times as large, A is too, and D is μ² times as large:
 ///
 /// ```text
 /// c' = μ A + (μ² D + P₀') τ'
@@ -21,9 +22,9 @@ use crate::{
 ///          ≥ (μ a + P₀' τ') − λ (a + P₀ τ)        λ ≤ μ,  λ ≤ μ² τ'/τ
 /// ```
 ///
-/// with a ≤ A the floor of friction, which no slope goes below. Times grow with the way on a slope, in which the rest is linear: it is looked at on level
-/// ground and on the steepest that limits allow. The share λ is the largest that leaves no step a negative rest; what is left of a motion's
-/// steps, per metre between its ends, is the least of all motions.
+/// with a ≤ A the floor of friction, which no slope goes below. Times grow with the way on a slope, in which the rest is linear: it is looked
+/// at on level ground and on the steepest that limits allow. The share λ is the largest that leaves no step a negative rest. What is left of
+/// a motion's steps, per metre between its ends, is the least of all motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relation {
     /// λ: share of the other cost.

@@ -67,6 +67,7 @@ impl Folder {
     pub(crate) fn end(&self) {
         if let Some(own) = &self.own
             && let Err(error) = fs::remove_dir_all(own.path())
+            && error.kind() != io::ErrorKind::NotFound
         {
             tracing::warn!("{} was left behind: {error}", own.path().display());
         }
