@@ -1,27 +1,8 @@
 import type { Page, TestInfo } from "@playwright/test";
-import {
-  answered,
-  checkAccessible,
-  energyOf,
-  expect,
-  fittedWidth,
-  openSample,
-  paths,
-  picture,
-  test,
-  type Service,
-  PHONE_TOO,
-} from "./service";
+import { answered, checkAccessible, energyOf, expect, openSample, paths, picture, pixel, test, type Service, PHONE_TOO } from "./service";
 
 interface Comparison {
   energy: { energy_j: number; distance_m: number; poses: { x_m: number; y_m: number }[] };
-}
-
-/** The pixel of a place of the fitted map, by parts of its width and height from the south-west. */
-async function pixel(page: Page, [right, up]: [number, number], aspect: number): Promise<[number, number]> {
-  const box = (await paths(page).boundingBox())!;
-  const width = fittedWidth(box, aspect);
-  return [box.x + box.width / 2 + (right - 0.5) * width, box.y + box.height / 2 - ((up - 0.5) * width) / aspect];
 }
 
 /** Sets corners with a finger on a phone, else with the mouse, and ends the shape as is usual there. */

@@ -130,6 +130,13 @@ export function fittedWidth(frame: { width: number; height: number }, aspect = 1
   return Math.min(0.96 * frame.width, height * aspect);
 }
 
+/** The pixel of a place of the fitted map, by parts of its width and height from the south-west. */
+export async function pixel(page: Page, [right, up]: [number, number], aspect = 1): Promise<[number, number]> {
+  const box = (await paths(page).boundingBox())!;
+  const width = fittedWidth(box, aspect);
+  return [box.x + box.width / 2 + (right - 0.5) * width, box.y + box.height / 2 - ((up - 0.5) * width) / aspect];
+}
+
 /** Presses a place of the map's frame, by shares of its width and height from the lower left. */
 export async function press(page: Page, right: number, up: number): Promise<void> {
   const box = (await paths(page).boundingBox())!;

@@ -1,10 +1,14 @@
-/** How areas look: each kind has a colour and a pattern of its own, and each area says what it changes. */
+/** How areas look, from above and on the ground of the 3-D view: each kind has a colour and a pattern of its own. */
 import type { Area, Geometry, Position } from "../api/areas";
 import type { Place } from "../api/plans";
 import type { Scene } from "../map/draw";
 import { toPixel } from "../map/view";
-import { inWords, KIND, kindOf, type Kind } from "./effects";
-import { chainsOf, isPolygon } from "./shape";
+import { KIND, kindOf, type Kind } from "./effects";
+import { chainsOf, isPolygon, middleOf } from "./shape";
+import type { Draft, ShownAreas } from "./shown";
+
+/** From the middle of an area down to its arrow [CSS pixels]. */
+const ARROW_BELOW_PX = 18;
 
 /** Width and height of a tile of a pattern [CSS pixels]. */
 const TILE_PX = 14;
@@ -30,14 +34,14 @@ export const PATTERN: Record<Kind, [number, number, number, number][]> = {
 const LINE_DASH: Record<Kind, number[]> = {
   keep_out: [],
   surface: [10, 5],
-  max_speed_mps: [2, 6],
+  max_speed_mps: [4, 4],
   cost_factor: [8, 4, 2, 4],
   one_way_rad: [16, 4],
 };
 
-/** A tile of a kind's lines; arrows of a one way turn into its direction. */
+/** A tile of a kind's lines, as fine as its canvas; arrows of a one way turn into its direction. */
 function pattern({ context, color }: Scene, kind: Kind, direction_rad: number): CanvasPattern | null {
-  const ratio = devicePixelRatio || 1;
+  const ratio = context.getTransform().a;
   const tile = document.createElement("canvas");
   tile.width = tile.height = Math.round(TILE_PX * ratio);
   const pen = tile.getContext("2d");
@@ -83,32 +87,30 @@ function drawArea(scene: Scene, { properties, geometry }: Area, isSelected: bool
     context.globalAlpha = 1;
   }
   const width = (isPolygon(geometry) ? 1.5 : 4) + (isSelected ? 1.5 : 0);
-  context.lineJoin = "round";
-  context.strokeStyle = color("casing");
-  context.lineWidth = width + 2;
-  context.stroke();
-  context.setLineDash(isPolygon(geometry) ? [] : LINE_DASH[kind]);
-  context.strokeStyle = own;
-  context.lineWidth = width;
-  context.stroke();
+  stroke(scene, own, width, isPolygon(geometry) ? [] : LINE_DASH[kind]);
   context.restore();
 }
 
-/** The middle of what a shape spans [m]. */
-function middle(geometry: Geometry): Position {
-  const points = chainsOf(geometry).flat();
-  const of = (axis: 0 | 1) => {
-    const [least, most] = points.reduce(([low, high], at) => [Math.min(low, at[axis]), Math.max(high, at[axis])], [Infinity, -Infinity]);
-    return (least + most) / 2;
-  };
-  return isPolygon(geometry) ? [of(0), of(1)] : (points[Math.floor((points.length - 1) / 2)] ?? [of(0), of(1)]);
+/** Draws what is traced with a rim. Dashes end straight: round ends would close the gaps. */
+function stroke({ context, color }: Scene, own: string, width: number, dash: number[]): void {
+  context.lineJoin = "round";
+  context.lineCap = "butt";
+  context.strokeStyle = color("casing");
+  context.lineWidth = width + 2;
+  context.stroke();
+  context.setLineDash(dash);
+  context.strokeStyle = own;
+  context.lineWidth = width;
+  context.stroke();
 }
 
-/** An arrow below the label, along the only way. */
-function drawArrow({ context, color }: Scene, x: number, y: number, direction_rad: number): void {
+/** An arrow along the only way, below what is written on the area. */
+function drawArrow({ context, view, size, color }: Scene, { properties, geometry }: Area): void {
+  if (typeof properties.one_way_rad !== "number") return;
+  const { x, y } = toPixel(view, size, ...middleOf(geometry));
   context.save();
-  context.translate(x, y);
-  context.rotate(-direction_rad);
+  context.translate(x, y + ARROW_BELOW_PX);
+  context.rotate(-properties.one_way_rad);
   for (const [width, name] of [
     [6, "casing"],
     [2.5, KIND.one_way_rad.color],
@@ -127,21 +129,6 @@ function drawArrow({ context, color }: Scene, x: number, y: number, direction_ra
   context.restore();
 }
 
-function drawLabel(scene: Scene, { properties, geometry }: Area): void {
-  const { context, view, size, color } = scene;
-  const { x, y } = toPixel(view, size, ...middle(geometry));
-  if (typeof properties.one_way_rad === "number") drawArrow(scene, x, y + 18, properties.one_way_rad);
-  context.font = "600 12px system-ui, sans-serif";
-  context.textAlign = "center";
-  context.textBaseline = "middle";
-  context.lineJoin = "round";
-  context.lineWidth = 4;
-  context.strokeStyle = color("casing");
-  context.fillStyle = color(KIND[kindOf(properties)].color);
-  context.strokeText(inWords(properties), x, y);
-  context.fillText(inWords(properties), x, y);
-}
-
 function drawCorners({ context, view, size, color }: Scene, corners: Position[], isRound: boolean): void {
   for (const [x_m, y_m] of corners) {
     const { x, y } = toPixel(view, size, x_m, y_m);
@@ -157,26 +144,20 @@ function drawCorners({ context, view, size, color }: Scene, corners: Position[],
 }
 
 /** All areas; the selected one shows its corners. */
-export function drawAreas(scene: Scene, areas: Area[], selected: number | null): void {
+export function drawAreas(scene: Scene, { areas, selected }: ShownAreas): void {
   for (const [i, area] of areas.entries()) drawArea(scene, area, i === selected);
-  for (const area of areas) drawLabel(scene, area);
+  for (const area of areas) drawArrow(scene, area);
   const own = selected === null ? undefined : areas[selected];
   if (own) drawCorners(scene, chainsOf(own.geometry).flat(), false);
 }
 
 /** The shape that is being drawn, with the edge to the pointer or cursor. */
-export function drawDraft(scene: Scene, corners: Position[], kind: Kind, tip: Place | null): void {
+export function drawDraft(scene: Scene, { corners, kind }: Draft, tip: Place | null): void {
   const { context, color } = scene;
   const ends: Position[] = tip ? [...corners, [tip.x_m, tip.y_m]] : corners;
   context.save();
   trace(scene, { type: "LineString", coordinates: ends });
-  context.strokeStyle = color("casing");
-  context.lineWidth = 5;
-  context.stroke();
-  context.setLineDash([6, 4]);
-  context.strokeStyle = color(KIND[kind].color);
-  context.lineWidth = 2.5;
-  context.stroke();
+  stroke(scene, color(KIND[kind].color), 2.5, [6, 4]);
   context.restore();
   drawCorners(scene, corners, true);
 }

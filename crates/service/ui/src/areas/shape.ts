@@ -1,4 +1,4 @@
-/** Polygons and lines: where they are hit, and how they are moved. */
+/** Polygons and lines: where their middle is, where they are hit, and how they are moved. */
 import type { Area, Geometry, Position } from "../api/areas";
 import { toPixel, type Point, type Size, type View } from "../map/view";
 
@@ -9,6 +9,16 @@ export function chainsOf(geometry: Geometry): Position[][] {
 }
 
 export const isPolygon = ({ type }: Geometry) => type === "Polygon" || type === "MultiPolygon";
+
+/** The middle of what a polygon spans, or the middle one of a line's corners [m]. */
+export function middleOf(geometry: Geometry): Position {
+  const points = chainsOf(geometry).flat();
+  const of = (axis: 0 | 1) => {
+    const [least, most] = points.reduce(([low, high], at) => [Math.min(low, at[axis]), Math.max(high, at[axis])], [Infinity, -Infinity]);
+    return (least + most) / 2;
+  };
+  return isPolygon(geometry) ? [of(0), of(1)] : (points[Math.floor((points.length - 1) / 2)] ?? [of(0), of(1)]);
+}
 
 /** A shape of the same kind, each of whose positions is changed. */
 function changed(geometry: Geometry, change: (position: Position, chain: number, at: number) => Position): Geometry {

@@ -6,7 +6,9 @@ import { DraftButtons } from "../areas/draft_buttons";
 import { canFinish } from "../areas/edit";
 import { drawAreas, drawDraft } from "../areas/draw";
 import { AREA_KEYS } from "../areas/keys";
+import { labelsOf, writeLabel } from "../areas/label";
 import { AreasLegend } from "../areas/legend";
+import { shownAreas, shownDraft } from "../areas/shown";
 import * as areas from "../areas/state";
 import { backdrops, focusedPath, followedPaths } from "../plan/shown_paths";
 import * as state from "../plan/state";
@@ -91,17 +93,17 @@ function drawOver(canvas: HTMLCanvasElement): void {
   void theme.value;
   if (!context || !shown) return;
   const scene: Scene = { context, view: shown, size: size.value, color };
-  const [selected, preview] = [areas.selected.value, areas.preview.value];
-  const shapes = areas.areas.value.map((area, i) => (preview && i === selected ? { ...area, geometry: preview } : area));
-  drawAreas(scene, shapes, areas.isEditing.value ? selected : null);
+  drawAreas(scene, shownAreas.value);
+  for (const label of labelsOf(shownAreas.value.areas)) {
+    const { x, y } = toPixel(shown, size.value, ...label.at);
+    writeLabel(context, label, color, x, y);
+  }
   drawContours(scene, state.contours.value);
   drawPaths(scene, backdrops.value, followedPaths.value);
   for (const { place, letter } of markers.value) drawEnd(scene, place, letter);
   const pose = followed && state.along_m.value !== null ? poseAt(followed.poses, state.along_m.value) : null;
   if (pose) drawRobot(scene, pose);
-  if (areas.isEditing.value && areas.corners.value.length > 0) {
-    drawDraft(scene, areas.corners.value, areas.nextKind.value, cursor.value ?? pointedAt.value);
-  }
+  if (shownDraft.value) drawDraft(scene, shownDraft.value, cursor.value ?? pointedAt.value);
   if (state.tool.value === "measure") drawMeasure(scene, points.value, cursor.value ?? pointedAt.value);
   if (cursor.value) drawCrosshair(scene, cursor.value);
 }

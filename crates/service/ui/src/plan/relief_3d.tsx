@@ -1,6 +1,9 @@
 /** The view in three dimensions; what draws it is fetched when it is first wanted. */
 import { effect, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { labelsOf } from "../areas/label";
+import { AreasLegend } from "../areas/legend";
+import { shownAreas, shownDraft } from "../areas/shown";
 import { Progress } from "../widgets/progress";
 import { groundPicture } from "../map/map_view";
 import { poseAt } from "../map/along";
@@ -41,9 +44,16 @@ export function Relief3d() {
             shown.paths(backdrops.value, followedPaths.value, color);
           }),
           effect(() => {
+            void theme.value;
+            const cells = state.cells.value;
+            if (cells) shown.areas({ cells, shown: shownAreas.value, draft: shownDraft.value, color });
+          }),
+          effect(() => {
             void [theme.value, stretch.value];
             const cells = state.cells.value;
-            shown.overlays(markers.value, state.contours.value, (x_m, y_m) => elevationAt(cells, x_m, y_m), color);
+            const labels = labelsOf(shownAreas.value.areas);
+            const overlays = { markers: markers.value, labels, contours: state.contours.value };
+            shown.overlays(overlays, (x_m, y_m) => elevationAt(cells, x_m, y_m), color);
           }),
           effect(() => {
             void stretch.value;
@@ -69,7 +79,7 @@ export function Relief3d() {
         ref={place}
         class="map-frame"
         role="img"
-        aria-label="The ground and the paths in three dimensions; drag to turn, scroll to zoom"
+        aria-label="The ground, areas and paths in three dimensions; drag to turn, scroll to zoom"
       />
       {status.value === "fetching" && <Progress label="Fetching the 3-D view" share={null} />}
       {status.value === "impossible" && (
@@ -77,6 +87,7 @@ export function Relief3d() {
           This browser cannot draw in three dimensions (WebGL is off). The map shows the same from above.
         </p>
       )}
+      <AreasLegend />
       <label class="relief-stretch">
         Heights × {stretch.value}
         <input

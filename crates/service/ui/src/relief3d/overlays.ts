@@ -1,10 +1,11 @@
-/** What lies on the ground of the 3-D view besides paths: marked places with their letters, and contours of energy. */
+/** What stands or lies on the ground of the 3-D view besides paths: marked places, what is written on areas, and contours of energy. */
 import {
   BufferGeometry,
   CanvasTexture,
   Group,
   Line,
   LineBasicMaterial,
+  LinearFilter,
   LineLoop,
   Sprite,
   SpriteMaterial,
@@ -12,6 +13,7 @@ import {
   Vector3,
 } from "three";
 import type { Contour } from "../api/reachable";
+import { LABEL_PX, setLabelStyle, writeLabel, type Label } from "../areas/label";
 import type { Marker } from "../map/markers";
 import { between } from "../map/reach_ramp";
 
@@ -21,6 +23,12 @@ export interface Ground {
   toScene: (x_m: number, y_m: number, z_m: number) => Vector3;
 }
 
+export interface Overlays {
+  markers: Marker[];
+  labels: Label[];
+  contours: Contour[];
+}
+
 type Color = (name: string) => string;
 
 /** Side of a marker's picture [px], and of the marker on the screen at any distance, for the camera's field of view at a distance of one. */
@@ -28,6 +36,9 @@ const PICTURE_PX = 96;
 const MARKER_SIZE = 0.045;
 /** Height of a marker's staff in the scene. */
 const STAFF = 0.09;
+/** Height of a label on the screen, as of markers, and pixels of its picture for one of its text. */
+const LABEL_SIZE = 0.036;
+const LABEL_RATIO = 2;
 /** Contours lie so far above the ground that it does not hide them. */
 const ABOVE_GROUND = 0.006;
 
@@ -52,28 +63,76 @@ function disc(letter: string, color: Color): CanvasTexture {
     context.textBaseline = "middle";
     context.fillText(letter, half, half + 2);
   }
+  return textureOf(canvas);
+}
+
+/** A label as it is written on the map. */
+function written(label: Label, color: Color): CanvasTexture {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d");
+  if (context) {
+    setLabelStyle(context);
+    const width = context.measureText(label.words).width + context.lineWidth;
+    [canvas.width, canvas.height] = [Math.ceil(width * LABEL_RATIO), LABEL_PX * LABEL_RATIO];
+    context.scale(LABEL_RATIO, LABEL_RATIO);
+    writeLabel(context, label, color, width / 2, LABEL_PX / 2);
+  }
+  const texture = textureOf(canvas);
+  // Small letters stay sharp: they are shown at about half of their picture's size or more.
+  texture.generateMipmaps = false;
+  texture.minFilter = LinearFilter;
+  return texture;
+}
+
+function textureOf(canvas: HTMLCanvasElement): CanvasTexture {
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   return texture;
 }
 
+/** A picture that faces who looks, as large from everywhere, and seen through hills. */
+const spriteOf = (map: CanvasTexture) => new Sprite(new SpriteMaterial({ map, depthTest: false, sizeAttenuation: false }));
+
+/** Fills a group with what stands and lies on the ground. */
+export function addOverlays(group: Group, { markers, labels, contours }: Overlays, ground: Ground, color: Color): void {
+  addContours(group, contours, ground, color);
+  addLabels(group, labels, ground, color);
+  addMarkers(group, markers, ground, color);
+}
+
 /** Each place on a staff that stands on the ground. */
-export function addMarkers(group: Group, markers: Marker[], { z_m, toScene }: Ground, color: Color): void {
+function addMarkers(group: Group, markers: Marker[], { z_m, toScene }: Ground, color: Color): void {
   for (const { place, letter } of markers) {
     const height_m = z_m(place.x_m, place.y_m);
     if (Number.isNaN(height_m)) continue;
     const foot = toScene(place.x_m, place.y_m, height_m);
     const head = foot.clone().add(new Vector3(0, STAFF, 0));
     group.add(new Line(new BufferGeometry().setFromPoints([foot, head]), new LineBasicMaterial({ color: color("end-ink") })));
-    const sprite = new Sprite(new SpriteMaterial({ map: disc(letter, color), depthTest: false, sizeAttenuation: false }));
+    const sprite = spriteOf(disc(letter, color));
     sprite.position.copy(head);
     sprite.scale.setScalar(MARKER_SIZE);
+    // Over what is written on areas, wherever that is seen from.
+    sprite.renderOrder = 1;
+    group.add(sprite);
+  }
+}
+
+/** What each area changes, upright over its middle. */
+function addLabels(group: Group, labels: Label[], { z_m, toScene }: Ground, color: Color): void {
+  for (const label of labels) {
+    const height_m = z_m(...label.at);
+    if (Number.isNaN(height_m)) continue;
+    const map = written(label, color);
+    const sprite = spriteOf(map);
+    sprite.position.copy(toScene(...label.at, height_m));
+    sprite.center.y = 0;
+    sprite.scale.set((LABEL_SIZE * map.image.width) / map.image.height, LABEL_SIZE, 1);
     group.add(sprite);
   }
 }
 
 /** Contours along the ground, in the colours of their legend. */
-export function addContours(group: Group, contours: Contour[], { z_m, toScene }: Ground, color: Color): void {
+function addContours(group: Group, contours: Contour[], { z_m, toScene }: Ground, color: Color): void {
   for (const [i, { polygons }] of contours.entries()) {
     const material = new LineBasicMaterial({ color: between(color, i, contours.length) });
     for (const ring of polygons.flat()) {

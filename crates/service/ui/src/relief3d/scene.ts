@@ -1,4 +1,4 @@
-/** The ground as a mesh with its picture on it, paths above, and the robot. Fetched only when wanted. */
+/** The ground as a mesh with its picture on it, areas on that, paths above, and the robot. Fetched only when wanted. */
 import {
   AmbientLight,
   BufferAttribute,
@@ -21,11 +21,10 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { Cells } from "../api/maps";
 import type { Pose } from "../api/plans";
-import type { Contour } from "../api/reachable";
 import { STYLE } from "../map/draw";
-import type { Marker } from "../map/markers";
 import type { Backdrop, ShownPath } from "../plan/shown_paths";
-import { addContours, addMarkers, clearOverlays, type Ground } from "./overlays";
+import { discardPicture, newCloth, paint, type Painting } from "./cloth";
+import { addOverlays, clearOverlays, type Ground, type Overlays } from "./overlays";
 
 /** Most cells along a side of the mesh. */
 const MESH_SIDE = 400;
@@ -33,7 +32,8 @@ const MESH_SIDE = 400;
 export interface Shown {
   ground: (cells: Cells, picture: HTMLCanvasElement, stretch: number, tint: string) => void;
   paths: (backdrops: Backdrop[], followed: ShownPath[], color: (name: string) => string) => void;
-  overlays: (markers: Marker[], contours: Contour[], z_m: Ground["z_m"], color: (name: string) => string) => void;
+  areas: (painting: Painting) => void;
+  overlays: (shown: Overlays, z_m: Ground["z_m"], color: (name: string) => string) => void;
   robot: (pose: Pose | null) => void;
   end: () => void;
 }
@@ -72,17 +72,19 @@ export function showRelief(element: HTMLElement): Shown | null {
   let toScene = (_x_m: number, _y_m: number, _z_m: number) => new Vector3();
   let isPlaced = false;
   const terrain = new Group();
+  const cloth = newCloth();
   const lines = new Group();
   const overlays = new Group();
   const robot = new Mesh(new ConeGeometry(0.028, 0.08, 4), new MeshLambertMaterial({ color: 0xffb000 }));
   robot.visible = false;
-  scene.add(terrain, lines, overlays, robot);
+  scene.add(terrain, cloth, lines, overlays, robot);
 
   return {
     ground(cells, picture, stretch, tint) {
       const { toScene: next, geometry } = meshOf(cells, stretch);
       toScene = next;
       clear(terrain);
+      cloth.geometry = geometry;
       const texture = new CanvasTexture(picture);
       texture.colorSpace = SRGBColorSpace;
       texture.anisotropy = renderer.capabilities.getMaxAnisotropy();
@@ -107,10 +109,13 @@ export function showRelief(element: HTMLElement): Shown | null {
       followed.forEach((path, i) => add(path, i === followed.length - 1 ? 0.008 : 0.0045));
       draw();
     },
-    overlays(markers, contours, z_m, color) {
+    areas(painting) {
+      paint(cloth, painting, renderer.capabilities.getMaxAnisotropy());
+      draw();
+    },
+    overlays(shown, z_m, color) {
       clearOverlays(overlays);
-      addContours(overlays, contours, { z_m, toScene }, color);
-      addMarkers(overlays, markers, { z_m, toScene }, color);
+      addOverlays(overlays, shown, { z_m, toScene }, color);
       draw();
     },
     robot(pose) {
@@ -126,6 +131,8 @@ export function showRelief(element: HTMLElement): Shown | null {
       watcher.disconnect();
       controls.dispose();
       clear(terrain);
+      discardPicture(cloth);
+      cloth.material.dispose();
       clear(lines);
       clearOverlays(overlays);
       renderer.dispose();
