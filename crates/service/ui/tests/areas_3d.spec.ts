@@ -1,7 +1,7 @@
 /** Areas in the view in three dimensions, on a slope that rises to the east. */
 import type { Page } from "@playwright/test";
 import { PerspectiveCamera, Vector3 } from "three";
-import { colors, expect, pixel, test, type Service } from "./service";
+import { colors, expect, ground, pixel, test, type Service } from "./service";
 
 const SIDE_M = 60;
 const SLOPE = 0.2;
@@ -105,7 +105,10 @@ test("a shape that is begun on the map is seen in three dimensions", async ({ pa
   await expect.poll(() => colors(page.locator(".relief-3d canvas"))).toBeGreaterThan(20);
   expect(await distanceTo(page, KEEP_OUT, onEdge, 2)).toBeGreaterThan(2 * NEAR);
   await toggle3d(page);
+  // A canvas has 300 pixels until the map knows its size, and takes clicks from then on.
+  await expect.poll(() => ground(page).evaluate((canvas: HTMLCanvasElement) => canvas.width)).toBeGreaterThan(300);
   for (const right of [0.2, 0.5]) await page.mouse.click(...(await pixel(page, [right, 0.7])));
+  await expect(page.locator("p[role=status]")).toHaveText(/^Corner 2\./);
   await toggle3d(page);
   await expect.poll(() => distanceTo(page, KEEP_OUT, onEdge, 2)).toBeLessThan(NEAR);
 });
