@@ -290,6 +290,31 @@ mod tests {
     }
 
     #[test]
+    fn a_drive_is_proposed_where_no_gyroscope_was_recorded() {
+        let robot = model::builtin::husky_a200();
+        let load = mechanism::by_name("payload").unwrap();
+        let applied = [Applied { mechanism: load, values: vec![12.0], span: Span::ALL }];
+        let mut level = drive(&robot, 0.0, &applied);
+        // Without slopes a load, a gain and other ground look alike.
+        [Channel::Pitch, Channel::YawRate].map(|channel| level.channels.remove(&channel));
+        let found = crate::diagnose(&Question::new(&robot, &level, None), &|_, _| {}).unwrap();
+        assert!(found.explanations.len() > 1, "{:?}", found.explanations);
+        assert!(found.next_drive.is_some(), "{}", found.sentence);
+    }
+
+    #[test]
+    fn one_row_that_no_robot_can_drive_is_named_and_not_fitted_to() {
+        let robot = model::builtin::husky_a200();
+        let mut glitch = drive(&robot, 0.0, &[]);
+        glitch.channels.get_mut(&Channel::LeftSpeed).unwrap()[4500] = 99_999.0;
+        let failed = crate::diagnose(&Question::new(&robot, &glitch, None), &|_, _| {}).unwrap_err();
+        assert!(
+            failed.to_string().contains("drive `hills`") && failed.to_string().contains("at 4"),
+            "{failed}"
+        );
+    }
+
+    #[test]
     fn a_watch_that_breaks_ends_the_search() {
         let robot = model::builtin::husky_a200();
         let suspect = drive(&robot, 0.0, &[]);

@@ -52,6 +52,19 @@ pub enum Error {
         "a simulation of the drives cannot be held against healthy drives, which were not simulated: leave out the healthy drives, or the simulation"
     )]
     SimulatedBesideHealthy,
+    /// Values that nothing can be fitted to.
+    #[error(
+        "nothing can be fitted to these drives: at {t_s:.1} s of drive `{drive}` the wheels of this robot would draw {power_w:.3e} W; is a row there a \
+         glitch? Leave it out"
+    )]
+    Beyond {
+        /// The drive.
+        drive: String,
+        /// Seconds since it began.
+        t_s: f64,
+        /// What the model makes of it [W].
+        power_w: f64,
+    },
     /// Not enough to decide anything.
     #[error(
         "{seconds} s of driving are too little for a diagnosis, which compares at least {needed} s of it"

@@ -78,6 +78,7 @@ impl Baseline {
         }
         let errors = differences(&series.recorded, &predicted);
         let noise = Noise::of(&errors, &predicted, &observed.places);
+        within_reach(observed, &predicted, &noise)?;
         let mut residual = errors;
         for (column, u) in sensitivities.iter().zip(u.iter()) {
             residual.iter_mut().zip(column).for_each(|(r, by)| *r += u * by);
@@ -142,6 +143,16 @@ impl Baseline {
     pub(crate) fn discrepancy(&self, observed: &Observations<'_>, share: f64) -> Vec<Vec<f64>> {
         discrepancy::columns(observed, &self.components(observed), share)
     }
+}
+
+/// Refuses predictions whose squares, in variances of the noise, cannot be summed beside those of other rows: of these no digit would be left.
+fn within_reach(observed: &Observations<'_>, predicted: &[f64], noise: &Noise) -> Result<(), Error> {
+    let reach = 1.0 / f64::EPSILON.sqrt();
+    let is_beyond = |(average, w): &(&crate::Average, &f64)| {
+        !(w.is_finite() && w.abs() < reach * noise.sigma(average.channel, 0.0))
+    };
+    let Some((average, w)) = observed.averages().iter().zip(predicted).find(is_beyond) else { return Ok(()) };
+    Err(Error::Beyond { drive: observed.series.run_name(average), t_s: average.t_s, power_w: *w })
 }
 
 /// Recorded less predicted.

@@ -154,6 +154,17 @@ impl Series {
         self.parts.iter().filter_map(of).collect()
     }
 
+    /// Time between the rows of the coarsest log, in the median [s].
+    pub(crate) fn row_s(&self) -> f64 {
+        let of = |part: &Part| {
+            let mut steps_s: Vec<f64> = part.drives.rows.iter().map(|row| row.step_s).collect();
+            steps_s.retain(|step_s| *step_s > 0.0);
+            steps_s.sort_unstable_by(f64::total_cmp);
+            steps_s.get(steps_s.len() / 2).copied().unwrap_or(0.0)
+        };
+        self.parts.iter().map(of).fold(0.0, f64::max)
+    }
+
     /// Length of the averages [s].
     pub(crate) fn average_s(&self) -> f64 {
         self.parts.iter().map(|part| part.drives.average_s()).fold(0.0, f64::max)
@@ -175,6 +186,18 @@ impl Series {
     pub(crate) fn compared_s(&self) -> Option<f64> {
         let sample = &self.parts.first()?.sample;
         (sample.compared_s < sample.driven_s).then_some(sample.compared_s)
+    }
+
+    /// Name of the drive that an average is of.
+    pub(crate) fn run_name(&self, average: &Average) -> String {
+        let healthy = self.parts.last().filter(|part| !part.suspect);
+        let name = match average.suspect {
+            true => self.names.get(average.run),
+            false => {
+                healthy.and_then(|part| part.drives.runs.get(average.run.checked_sub(self.names.len())?))
+            }
+        };
+        name.cloned().unwrap_or_default()
     }
 
     /// Number of channels of power.

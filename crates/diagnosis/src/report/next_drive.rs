@@ -16,7 +16,7 @@ use crate::{
     Applied, Error, Series, Span,
     evidence::linear_model::matrix,
     fit::{baseline::Baseline, member::Member},
-    observe::observations::Observations,
+    observe::observations::{Observations, YAW_RATE},
     report::planned_drive::{CATALOGUE, PlannedDrive},
     search::{
         engine::Found,
@@ -78,7 +78,8 @@ fn gain(
     let by_side = observed.series.channels() == 2;
     let surfaces = observed.series.surfaces();
     let surface = surfaces.first().unwrap_or(&file.default_surface);
-    let planned = drive.recording(file, surface, by_side);
+    // Only what these drives recorded: of nothing else the noise is known.
+    let planned = drive.recording(file, surface, by_side, observed.has_channel(YAW_RATE));
     let series = Series::new(file, &planned, None)?;
     let there = Observations::new(&series, file);
     let baseline = found.baseline.elsewhere(&series, file)?;

@@ -75,8 +75,14 @@ const LONG_STEP_S: f64 = 1.0;
 const LONG_S: f64 = 600.0;
 
 impl PlannedDrive {
-    /// Its motion on a surface, with power by side or of the battery that is there but means nothing.
-    pub(crate) fn recording(&self, robot: &Robot, surface: &str, by_side: bool) -> Recording {
+    /// Its motion on a surface, with power by side or of the battery that is there but means nothing, and with a gyroscope or without one.
+    pub(crate) fn recording(
+        &self,
+        robot: &Robot,
+        surface: &str,
+        by_side: bool,
+        has_gyroscope: bool,
+    ) -> Recording {
         let step_s = if self.duration_s > LONG_S { LONG_STEP_S } else { STEP_S };
         let rows = (self.duration_s / step_s) as usize;
         let fastest_mps = robot.max_wheel_speed_mps;
@@ -91,11 +97,13 @@ impl PlannedDrive {
         let mut channels = BTreeMap::from([
             (Channel::LeftSpeed, side(-1.0)),
             (Channel::RightSpeed, side(1.0)),
-            (Channel::YawRate, vec![yaw_rate_radps; rows]),
             (Channel::Heading, (0..rows).map(heading_rad).collect()),
             (Channel::Pitch, vec![self.ramp * RAMP_RAD; rows]),
             (Channel::Roll, vec![0.0; rows]),
         ]);
+        if has_gyroscope {
+            channels.insert(Channel::YawRate, vec![yaw_rate_radps; rows]);
+        }
         let powers: &[Channel] =
             if by_side { &[Channel::LeftPower, Channel::RightPower] } else { &[Channel::Power] };
         channels.extend(powers.iter().map(|channel| (*channel, vec![0.0; rows])));
