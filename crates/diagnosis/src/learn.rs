@@ -143,14 +143,15 @@ pub fn learn(before: &Robot, calibrated: &Robot, drives: &Recording, watch: &Wat
     let whitening = baseline.noise.whitening(&baseline.predicted, &observed.places);
     let rows = 0..observed.rows();
     let healthy = Healthy { observed: &observed, baseline: &baseline, whitening: &whitening, rows };
-    let fraction = healthy.model_error(&shares);
+    let missed = healthy.model_error(&shares);
+    let fraction = missed.power;
     let mut columns = baseline.sensitivities.clone();
-    columns.extend(baseline.discrepancy(&observed, fraction));
+    columns.extend(baseline.discrepancy(&observed, missed));
     columns.extend(shares);
     let tempered = whitening.scaled(|_| 1.0 / UNTOLD.sqrt());
     let white = columns.iter().map(|column| tempered.apply(column));
     let basis = transposed(observed.rows(), columns.len(), white);
-    let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD, &Amplitudes::AS_THEY_ARE);
+    let model = LinearModel::new(basis, observed.rows() as f64 / UNTOLD, &Amplitudes::as_they_are());
     let error =
         |robot: &Robot| Ok::<_, Error>(file_error(&observed, &baseline, &series.predict(robot, &[])?));
     // Ground that only the calibration knows is as new to the file before as to its reader.

@@ -77,6 +77,7 @@ mod hypothesis {
 
 /// The posterior over sets of mechanisms: screening on linear columns, refits in full, explanations.
 mod search {
+    pub(crate) mod basis;
     pub(crate) mod engine;
     pub(crate) mod explanation;
     pub(crate) mod fits;

@@ -30,11 +30,6 @@ pub(crate) struct Group {
     pub(crate) halves: Vec<DMatrix<f64>>,
 }
 
-impl Amplitudes<'static> {
-    /// No other amplitude than that of the columns as they are.
-    pub(crate) const AS_THEY_ARE: Self = Amplitudes { columns: 0..0, each: &[(1.0, 0.0)] };
-}
-
 impl Group {
     /// The same columns, each times a factor.
     pub(crate) fn scaled(mut self, factors: &[f64]) -> Self {
@@ -151,29 +146,63 @@ struct NoiseScale {
     log_weight: f64,
 }
 
-/// Amplitudes of some columns of a basis, each with the log of its prior; the first is that of the columns as they are.
-pub(crate) struct Amplitudes<'a> {
-    /// Which columns.
-    pub(crate) columns: Range<usize>,
-    /// Factors, the first of them 1, and log priors.
-    pub(crate) each: &'a [(f64, f64)],
+/// Amplitudes of parts of a basis; the first combination is that of screening.
+pub(crate) struct Amplitudes {
+    each: Vec<Combination>,
+}
+
+/// One amplitude of every part.
+#[derive(Clone)]
+struct Combination {
+    /// Columns, and by which factor they are larger.
+    parts: Vec<(Range<usize>, f64)>,
+    log_prior: f64,
+}
+
+impl Amplitudes {
+    /// No other amplitude than that of the columns as they are.
+    pub(crate) fn as_they_are() -> Self {
+        Amplitudes { each: vec![Combination { parts: Vec::new(), log_prior: 0.0 }] }
+    }
+
+    /// These together with each amplitude of another part, given as factors with log priors.
+    pub(crate) fn with(&self, columns: &Range<usize>, factors: &[(f64, f64)]) -> Self {
+        let together = |(by, log_prior): (f64, f64)| {
+            self.each.iter().cloned().map(move |mut one| {
+                one.parts.push((columns.clone(), by));
+                one.log_prior += log_prior;
+                one
+            })
+        };
+        Amplitudes { each: factors.iter().copied().flat_map(together).collect() }
+    }
+
+    /// Factors of so many columns at each combination.
+    fn factors(&self, count: usize) -> Vec<DVector<f64>> {
+        let of = |one: &Combination| {
+            let mut factors = DVector::from_element(count, 1.0);
+            for (columns, by) in &one.parts {
+                factors.rows_mut(columns.start, columns.len()).fill(*by);
+            }
+            factors
+        };
+        self.each.iter().map(of).collect()
+    }
 }
 
 impl LinearModel {
     /// Prepares a transposed basis of whitened, tempered rows; `effective_rows` is n/τ.
-    pub(crate) fn new(transposed: DMatrix<f64>, effective_rows: f64, amplitudes: &Amplitudes<'_>) -> Self {
+    pub(crate) fn new(transposed: DMatrix<f64>, effective_rows: f64, amplitudes: &Amplitudes) -> Self {
         let gram = products(&transposed);
         let count = gram.nrows();
-        let factors_at =
-            |by: f64| DVector::from_fn(count, |i, _| if amplitudes.columns.contains(&i) { by } else { 1.0 });
-        let factors: Vec<DVector<f64>> = amplitudes.each.iter().map(|(by, _)| factors_at(*by)).collect();
+        let factors = amplitudes.factors(count);
         let scale = |(amplitude, s): (usize, f64)| {
             let (precision, factors) = (1.0 / (s * s), &factors[amplitude]);
             let gram = DMatrix::from_fn(count, count, |i, j| factors[i] * factors[j] * gram[(i, j)]);
             let (root, log_weight) = at_scale(&gram, s, effective_rows)?;
             let mut inverse_root = DMatrix::from_diagonal(&(factors * precision));
             root.l_dirty().solve_lower_triangular_mut(&mut inverse_root);
-            let log_weight = log_weight + amplitudes.each[amplitude].1;
+            let log_weight = log_weight + amplitudes.each[amplitude].log_prior;
             Some(NoiseScale { precision, amplitude, root, inverse_root, log_weight })
         };
         let all: Vec<(usize, f64)> = (0..factors.len()).flat_map(|a| NOISE_SCALES.map(|s| (a, s))).collect();
@@ -339,7 +368,7 @@ mod tests {
     fn evidence_is_the_density_of_the_rows_under_all_columns_together() {
         let (basis, columns) = (waves(40, 5, 0.3), waves(40, 3, 2.1));
         let residual = waves(40, 1, 4.0).column(0) + columns.column(1) * 0.8;
-        let model = LinearModel::new(basis.transpose(), 40.0, &Amplitudes::AS_THEY_ARE);
+        let model = LinearModel::new(basis.transpose(), 40.0, &Amplitudes::as_they_are());
         let [columns_of, residual_of] = [columns.clone(), one_column(&residual)].map(|all| model.group(all));
         let reduced = model.reduce(&[&columns_of, &residual_of]);
         for some in [vec![], vec![1], vec![0, 2], vec![0, 1, 2]] {
@@ -354,7 +383,8 @@ mod tests {
         let (basis, columns) = (waves(40, 5, 0.3), waves(40, 2, 2.1));
         let residual = waves(40, 1, 4.0).column(0) + basis.column(3) * 2.5;
         let each = [(1.0, 0.7_f64.ln()), (3.0, 0.3_f64.ln())];
-        let model = LinearModel::new(basis.transpose(), 40.0, &Amplitudes { columns: 2..5, each: &each });
+        let model =
+            LinearModel::new(basis.transpose(), 40.0, &Amplitudes::as_they_are().with(&(2..5), &each));
         let all = [columns.clone(), one_column(&residual)].map(|all| model.group_at_all(all));
         let reduced = model.reduce(&[&all[0], &all[1]]);
         let density = |(by, log_prior): (f64, f64)| {
@@ -386,7 +416,7 @@ mod tests {
         let columns = waves(60, 1, 1.0);
         let evidence = |size: f64, half: Half| {
             let residual = waves(60, 1, 8.0).column(0) * 0.3 + columns.column(0) * size;
-            let model = LinearModel::new(waves(60, 2, 5.0).transpose(), 60.0, &Amplitudes::AS_THEY_ARE);
+            let model = LinearModel::new(waves(60, 2, 5.0).transpose(), 60.0, &Amplitudes::as_they_are());
             let groups = [columns.clone(), one_column(&residual)].map(|all| model.group(all));
             model.reduce(&[&groups[0], &groups[1]]).evidence(&[half]).log
         };
@@ -401,7 +431,7 @@ mod tests {
         let residual = waves(30, 1, 0.0).column(0).into_owned();
         let tau = 4.0_f64;
         let none = DMatrix::zeros(30, 0);
-        let tempered = LinearModel::new(none.transpose(), 30.0 / tau, &Amplitudes::AS_THEY_ARE);
+        let tempered = LinearModel::new(none.transpose(), 30.0 / tau, &Amplitudes::as_they_are());
         let alone = tempered.group(one_column(&(&residual / tau.sqrt())));
         let found = tempered.reduce(&[&alone]).evidence(&[]).log;
         let one = |s: f64| {

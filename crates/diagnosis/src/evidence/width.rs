@@ -9,6 +9,13 @@ pub(crate) fn log_priors() -> [f64; WIDTHS.len()] {
     WIDTHS.map(|by| (WIDTHS[0] / by / total).ln())
 }
 
+/// Log priors of so many amplitudes, each half as likely as the one before.
+pub(crate) fn halving_log_priors(count: usize) -> Vec<f64> {
+    let halves: Vec<f64> = (0..count).map(|i| 0.5_f64.powi(i as i32)).collect();
+    let total: f64 = halves.iter().sum();
+    halves.into_iter().map(|by| (by / total).ln()).collect()
+}
+
 /// The likeliest width of sizes together, its log prior, and the log density of the sizes with it, all in prior standard deviations and but for
 /// constants that do not depend on them.
 pub(crate) fn likeliest(sizes: &[f64]) -> (f64, f64, f64) {

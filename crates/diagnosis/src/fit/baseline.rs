@@ -8,7 +8,7 @@ use crate::{
     Error, Series,
     evidence::noise::{Noise, Whitening},
     fit::{
-        discrepancy::{self, Components},
+        discrepancy::{self, Components, Shares},
         parameter::{Parameter, Parameters, Shown},
     },
     observe::observations::{Observations, REST, YAW_RATE},
@@ -140,8 +140,8 @@ impl Baseline {
     }
 
     /// Discrepancy columns of an amplitude.
-    pub(crate) fn discrepancy(&self, observed: &Observations<'_>, share: f64) -> Vec<Vec<f64>> {
-        discrepancy::columns(observed, &self.components(observed), share)
+    pub(crate) fn discrepancy(&self, observed: &Observations<'_>, shares: Shares) -> Vec<Vec<f64>> {
+        discrepancy::columns(observed, &self.components(observed), shares)
     }
 }
 

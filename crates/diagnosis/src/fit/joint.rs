@@ -140,7 +140,7 @@ impl<'a> Joint<'a> {
         others: &[Vec<f64>],
         whitening: Whitening,
         temperature: f64,
-        amplitudes: &Amplitudes<'_>,
+        amplitudes: &Amplitudes,
     ) -> Self {
         let white = baseline.sensitivities.iter().chain(others).map(|column| whitening.apply(column));
         let basis = transposed(observed.rows(), baseline.sensitivities.len() + others.len(), white);

@@ -87,9 +87,10 @@ impl<'a> Observations<'a> {
         self.series.averages.iter().any(|average| average.channel == channel)
     }
 
-    /// Number of test drives, or of healthy ones.
-    pub(crate) fn runs(&self, suspect: bool) -> usize {
-        self.averages().iter().filter(|a| a.suspect == suspect).map(|a| a.run + 1).max().unwrap_or(0)
+    /// Numbers of the test drives, or of the healthy ones, which follow them.
+    pub(crate) fn runs(&self, suspect: bool) -> Range<usize> {
+        let runs = || self.averages().iter().filter(|a| a.suspect == suspect).map(|a| a.run);
+        runs().min().unwrap_or(0)..runs().max().map_or(0, |last| last + 1)
     }
 
     /// Root mean square of values over rows of power of the test drives.

@@ -27,7 +27,7 @@ pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) 
         (false, Some(_)) => "as its file has it of the drives that it was calibrated on",
         (false, None) => "by where its constants come from",
     };
-    let share = 100.0 * found.model_error;
+    let share = 100.0 * found.missed.power;
     let wider = match observed.series.has_healthy() {
         true => String::new(),
         false => format!(" or, less probably, up to {:.0} times as much", WIDTHS[WIDTHS.len() - 1]),
@@ -39,7 +39,7 @@ pub(crate) fn assumed(file: &Robot, observed: &Observations<'_>, found: &Found) 
     if found.run_variation > 0.0 {
         let share = 100.0 * found.run_variation;
         notes.push(format!(
-            "the ground of the healthy drives differs from run to run by {share:.0} % of its resistance"
+            "ground seems to differ from run to run by {share:.0} % of its resistance, which is no finding"
         ));
     }
     if found.temperature > UNTOLD {

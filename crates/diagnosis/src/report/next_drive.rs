@@ -125,7 +125,7 @@ fn open(there: &Observations<'_>, baseline: &Baseline, found: &Found) -> Vec<Vec
         sum
     };
     let mut columns: Vec<Vec<f64>> = (0..count).map(of_parameter).collect();
-    columns.extend(baseline.discrepancy(there, found.model_error));
+    columns.extend(baseline.discrepancy(there, found.missed));
     columns
 }
 

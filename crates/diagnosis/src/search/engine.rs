@@ -2,21 +2,16 @@
 
 use model::{
     Robot,
-    knowledge::Provenance,
     mechanism::{Mechanism, Scale},
 };
 use nalgebra::DMatrix;
 
 use crate::{
     Error,
-    evidence::{
-        linear_model::Amplitudes,
-        noise::Whitening,
-        width::{self, WIDTHS},
-    },
+    evidence::{linear_model::Amplitudes, noise::Whitening},
     fit::{
-        amplitude::Healthy,
         baseline::Baseline,
+        discrepancy::Shares,
         held_out::{HeldOut, held_out},
         joint::Joint,
         parameter::IDLE_SIGMA_A,
@@ -27,11 +22,13 @@ use crate::{
         unlisted::{self, Block},
         window::{Grid, Windows},
     },
-    observe::{
-        observations::Observations,
-        reach::{Beyond, beyond},
+    observe::{observations::Observations, reach::Beyond},
+    search::{
+        basis::{Basis, shared, shares},
+        explanation::Explanation,
+        refine::Search,
+        screen::Screen,
     },
-    search::{explanation::Explanation, refine::Search, screen::Screen},
 };
 
 /// Residuals beyond so many standard deviations count linearly: one second in 2000 by chance.
@@ -44,8 +41,8 @@ const FLEXIBLE: f64 = 5.0;
 pub(crate) struct Found {
     /// Explanations, likeliest first.
     pub(crate) explanations: Vec<Explanation>,
-    /// Amplitude of the discrepancy.
-    pub(crate) model_error: f64,
+    /// Amplitudes of the discrepancy.
+    pub(crate) missed: Shares,
     /// What the test drives do that those did not by which that is known.
     pub(crate) beyond: Vec<Beyond>,
     /// Standard deviation of ground from run to run, as a share of resistance.
@@ -86,50 +83,31 @@ pub(crate) fn find(
     step("making effects", 0.2)?;
     let effects = effects(library, &scale, &beside)?;
     let common = common(library, &scale, &beside)?;
-    let mut shared: Vec<Vec<f64>> = common.iter().flat_map(|effect| effect.columns.clone()).collect();
-    shared.extend(healthy_shares(&effects));
     step("learning what the model misses", 0.3)?;
     let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
-    let mut run_variation = 0.0;
-    let model_error = if observed.series.has_healthy() {
-        let healthy = observed.test_rows..observed.rows();
-        let of_runs;
-        let healthy = Healthy { observed, baseline: &baseline, whitening: &plain, rows: healthy };
-        (run_variation, of_runs) = healthy.run_variation(&shared);
-        shared.extend(of_runs);
-        healthy.model_error(&shared)
-    } else {
-        file.model_error_fraction()
-    };
-    // What a calibration found says nothing of drives that do what its own did not: there constants are fitted ones, and no more is known.
-    let beyond = beyond_calibration(observed, file);
-    let least = if beyond.is_empty() { 0.0 } else { Provenance::Fitted.model_error() };
-    let model_error = model_error.max(least);
-    let mut others = baseline.discrepancy(observed, model_error);
-    let first = baseline.sensitivities.len();
-    let discrepancy = first..first + others.len();
-    others.extend(shared);
-    let weighted = weighted(observed, (&baseline, file), &others, &plain);
+    let shared = shared(observed, &scale, &effects, &common);
+    let Basis { columns, amplitudes, shares: missed, beyond, run_variation } =
+        Basis::new(observed, (&baseline, file), &plain, shared);
+    let weighted = weighted(observed, (&baseline, file), &columns, &plain);
     let temperature = if observed.series.has_healthy() {
-        let basis: Vec<&Vec<f64>> = baseline.sensitivities.iter().chain(&others).collect();
+        let basis: Vec<&Vec<f64>> = baseline.sensitivities.iter().chain(&columns).collect();
         let healthy = observed.test_rows..observed.rows();
-        let shares = healthy_shares(&common);
+        let shares = shares(&common, |one| one.healthy_share());
         let columns = temperature::columns((&weighted, healthy), &basis, &shares, &baseline.residual);
         temperature::temperature(observed, &columns)
     } else {
         temperature::UNTOLD
     };
     let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
-    let each = amplitudes(observed);
-    let amplitudes = Amplitudes { columns: discrepancy, each: &each };
-    let joint = Joint::new(observed, (&baseline, file), &others, whitening, temperature, &amplitudes);
-    drop(others);
+    let joint = Joint::new(observed, (&baseline, file), &columns, whitening, temperature, &amplitudes);
+    drop(columns);
     step("screening mechanisms", 0.4)?;
     let grid = Grid::new(observed, windows);
     let screen = Screen::new(&joint, &grid, effects);
     let blocks = unlisted::blocks(&joint);
     step("refitting the leading sets", 0.5)?;
-    let search = Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks, missed: model_error };
+    let search =
+        Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks, missed: missed.power };
     let explanations = search.posterior()?;
     step("holding stretches out", 0.9)?;
     let held_out = held_outs(&joint, &explanations);
@@ -138,7 +116,7 @@ pub(crate) fn find(
     let parameter_covariance = joint.model.covariance_of_first(baseline.parameters.len());
     Ok(Found {
         explanations,
-        model_error,
+        missed,
         beyond,
         run_variation,
         temperature,
@@ -149,20 +127,6 @@ pub(crate) fn find(
         blocks,
         baseline,
     })
-}
-
-/// What the test drives do that those of a calibration did not; healthy drives beside them are rows of the same model.
-fn beyond_calibration(observed: &Observations<'_>, file: &Robot) -> Vec<Beyond> {
-    let known = file.model_error.as_ref().filter(|_| !observed.series.has_healthy());
-    known.map_or_else(Vec::new, |known| beyond(&known.regimes, &observed.covered(0..observed.test_rows)))
-}
-
-/// Amplitudes of the discrepancy that are summed over, with their log priors: with healthy drives that which these show.
-fn amplitudes(observed: &Observations<'_>) -> Vec<(f64, f64)> {
-    if observed.series.has_healthy() {
-        return vec![(1.0, 0.0)];
-    }
-    WIDTHS.into_iter().zip(width::log_priors()).collect()
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
@@ -198,7 +162,7 @@ pub(crate) fn scale<'r>(observed: &Observations<'_>, baseline: &Baseline, file: 
         Some(per_a) => IDLE_SIGMA_A * per_a.sum() / 2.0,
         None => 0.075 * mean_power_w,
     };
-    Scale { robot: file, meter_zero_w, mean_power_w, mean_loss_w }
+    Scale { robot: file, meter_zero_w, mean_power_w, mean_loss_w, row_s: observed.series.row_s() }
 }
 
 /// With healthy drives, every mechanism's sizes that all drives share: what the file lacks of this robot.
@@ -214,26 +178,6 @@ fn common(
     // Of the same columns the wider ones would say nothing new.
     effects.retain(|effect| effect.widening <= 1.0);
     Ok(effects)
-}
-
-/// Columns of what healthy robots and good logs have of mechanisms: in all drives without healthy ones, in the test drives beside them.
-fn healthy_shares(effects: &[Effect]) -> Vec<Vec<f64>> {
-    let mut columns = Vec::new();
-    for (i, effect) in effects.iter().enumerate() {
-        let (name, share) = (effect.mechanism.name(), effect.mechanism.healthy_share());
-        if share <= 0.0 {
-            continue;
-        }
-        for (j, size) in effect.free.iter().enumerate() {
-            let is_known = |other: &Effect| {
-                other.mechanism.name() == name && other.free.iter().any(|s| s.parameter == size.parameter)
-            };
-            if !effects[..i].iter().any(is_known) {
-                columns.push(effect.columns[j].iter().map(|by| share * by).collect());
-            }
-        }
-    }
-    columns
 }
 
 /// Effects in the test drives with nothing else acting.
@@ -255,8 +199,9 @@ pub(crate) fn healthy_columns(
     library: &[&'static dyn Mechanism],
 ) -> Result<Vec<Vec<f64>>, Error> {
     let beside = alone(observed, baseline);
-    let shared: Vec<_> = library.iter().copied().filter(|one| one.healthy_share() > 0.0).collect();
-    Ok(healthy_shares(&effects(&shared, &scale(observed, baseline, file), &beside)?))
+    let scale = scale(observed, baseline, file);
+    let shared: Vec<_> = library.iter().copied().filter(|one| one.unstated_share(&scale) > 0.0).collect();
+    Ok(shares(&effects(&shared, &scale, &beside)?, |one| one.unstated_share(&scale)))
 }
 
 /// Whitening with weights from what the most flexible fit leaves.
@@ -268,7 +213,7 @@ fn weighted(
 ) -> Whitening {
     let wide: Vec<Vec<f64>> =
         others.iter().map(|column| column.iter().map(|x| FLEXIBLE * x).collect()).collect();
-    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0, &Amplitudes::AS_THEY_ARE);
+    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0, &Amplitudes::as_they_are());
     let left = unlisted::left_by_all(&joint);
     let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
     plain.scaled(weight)

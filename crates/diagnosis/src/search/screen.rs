@@ -287,7 +287,7 @@ mod tests {
     use crate::{
         Series,
         evidence::linear_model::Amplitudes,
-        fit::baseline::Baseline,
+        fit::{baseline::Baseline, discrepancy::Shares},
         hypothesis::{
             effect::{Beside, effects},
             window::Windows,
@@ -302,10 +302,12 @@ mod tests {
         let observed = Observations::new(&series, &robot);
         let baseline = Baseline::fit(&observed, &robot).unwrap();
         let white = baseline.noise.whitening(&baseline.predicted, &observed.places);
-        let others = baseline.discrepancy(&observed, 0.03);
-        let joint = Joint::new(&observed, (&baseline, &robot), &others, white, 4.0, &Amplitudes::AS_THEY_ARE);
+        let others = baseline.discrepancy(&observed, Shares::of_power(0.03));
+        let joint =
+            Joint::new(&observed, (&baseline, &robot), &others, white, 4.0, &Amplitudes::as_they_are());
         let library = ["payload", "surface_change"].map(|name| mechanism::by_name(name).unwrap());
-        let scale = Scale { robot: &robot, meter_zero_w: 7.0, mean_power_w: 90.0, mean_loss_w: 9.0 };
+        let scale =
+            Scale { robot: &robot, meter_zero_w: 7.0, mean_power_w: 90.0, mean_loss_w: 9.0, row_s: 0.1 };
         let (series, robot) = (&series, &baseline.robot);
         let beside =
             Beside { series, robot, applied: &[], predicted: &baseline.predicted, everywhere: false };

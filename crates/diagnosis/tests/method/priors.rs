@@ -14,6 +14,18 @@ use crate::method::source::doc_of_mechanism;
 /// Mean power that sizes in the table go with, and mean copper loss of a side, a fifth of half of it \[W\].
 const MEAN_POWER_W: f64 = 100.0;
 const MEAN_LOSS_W: f64 = 10.0;
+const ROW_S: f64 = 0.1;
+
+/// Drives of a robot that the tables are of.
+fn scale(robot: &Robot) -> Scale<'_> {
+    Scale {
+        robot,
+        meter_zero_w: 0.075 * MEAN_POWER_W,
+        mean_power_w: MEAN_POWER_W,
+        mean_loss_w: MEAN_LOSS_W,
+        row_s: ROW_S,
+    }
+}
 
 /// Prior of every parameter's size on a Husky A200.
 ///
@@ -21,12 +33,7 @@ const MEAN_LOSS_W: f64 = 10.0;
 /// A mechanism without a source file.
 pub(crate) fn sizes() -> io::Result<String> {
     let robot = husky_a200();
-    let scale = Scale {
-        robot: &robot,
-        meter_zero_w: 0.075 * MEAN_POWER_W,
-        mean_power_w: MEAN_POWER_W,
-        mean_loss_w: MEAN_LOSS_W,
-    };
+    let scale = scale(&robot);
     let mut text = String::from(
         "| mechanism | parameter | one σ | sign | correlation | windows | reason |\n| --- | --- | --- | --- | --- | --- | --- |\n",
     );
@@ -90,11 +97,21 @@ pub(crate) fn forms() -> io::Result<String> {
 /// # Errors
 /// A mechanism without a source file.
 pub(crate) fn shares() -> io::Result<String> {
-    let mut text = String::from("| mechanism | share of one σ | reason |\n| --- | --- | --- |\n");
-    for mechanism in ALL.into_iter().filter(|one| one.healthy_share() > 0.0) {
-        let reason = doc_of_mechanism(mechanism.name(), "healthy_share")?;
-        let _ =
-            writeln!(text, "| `{}` | {} | {reason} |", mechanism.name(), figure(mechanism.healthy_share()));
+    let mut text = String::from(
+        "| mechanism | between drives | without healthy drives | reason |\n| --- | --- | --- | --- |\n",
+    );
+    let robot = husky_a200();
+    for mechanism in ALL {
+        let (between, unstated) = (mechanism.healthy_share(), mechanism.unstated_share(&scale(&robot)));
+        if unstated <= 0.0 {
+            continue;
+        }
+        let name = mechanism.name();
+        let mut reason = doc_of_mechanism(name, "healthy_share")?;
+        if unstated > between {
+            reason = format!("{reason} {}", doc_of_mechanism(name, "unstated_share")?);
+        }
+        let _ = writeln!(text, "| `{name}` | {} | {} | {reason} |", figure(between), figure(unstated));
     }
     Ok(text)
 }

@@ -2,6 +2,9 @@
 
 use crate::mechanism::{Kind, Mechanism, Parameter, Scale, SizePrior};
 
+/// One standard deviation of the delay [s].
+const DELAY_S: f64 = 0.4;
+
 /// Power that was recorded by another clock than speeds.
 pub(super) struct ClockOffset;
 
@@ -24,12 +27,17 @@ impl Mechanism for ClockOffset {
 
     /// Four rows of a log of ten a second.
     fn size_prior(&self, _: &Scale<'_>) -> Vec<SizePrior> {
-        vec![SizePrior::either(0.4)]
+        vec![SizePrior::either(DELAY_S)]
     }
 
     /// Half a row of a log of ten a second.
     fn healthy_share(&self) -> f64 {
         0.12
+    }
+
+    /// Without healthy drives a row: each reading in it may be up to a row old.
+    fn unstated_share(&self, scale: &Scale<'_>) -> f64 {
+        (scale.row_s / DELAY_S).max(self.healthy_share())
     }
 
     fn equation(&self) -> &'static str {

@@ -194,9 +194,15 @@ pub trait Mechanism: Sync {
         0.0
     }
 
-    /// Share of its prior size that healthy robots and good logs have of it and no file states. Default: none.
+    /// Share of its prior size by which drives of a healthy robot differ in it. Default: none.
     fn healthy_share(&self) -> f64 {
         0.0
+    }
+
+    /// Share of its prior size that healthy robots and good logs have of it all the time and no file states; healthy drives of the same
+    /// robot show it. Default: as much as drives differ by.
+    fn unstated_share(&self, _: &Scale<'_>) -> f64 {
+        self.healthy_share()
     }
 
     /// Shapes that are tried side by side, where power does not follow all parameters in proportion. Default: one, with all of them free.
@@ -286,7 +292,8 @@ mod tests {
     #[test]
     fn prior_sizes_are_within_what_a_robot_can_have_and_forms_hold_one_value_for_each_parameter() {
         let robot = builtin::husky_a200();
-        let scale = Scale { robot: &robot, meter_zero_w: 7.5, mean_power_w: 100.0, mean_loss_w: 5.0 };
+        let scale =
+            Scale { robot: &robot, meter_zero_w: 7.5, mean_power_w: 100.0, mean_loss_w: 5.0, row_s: 0.1 };
         for mechanism in ALL {
             let priors = mechanism.size_prior(&scale);
             assert_eq!(priors.len(), mechanism.parameters().len(), "{}", mechanism.name());

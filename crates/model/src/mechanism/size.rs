@@ -50,6 +50,8 @@ pub struct Scale<'a> {
     pub mean_power_w: f64,
     /// Mean copper loss of one side [W].
     pub mean_loss_w: f64,
+    /// Time between the rows of the logs [s].
+    pub row_s: f64,
 }
 
 /// One shape of a mechanism: parameters that are held, and those whose size is free.
