@@ -95,8 +95,8 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    let recording = &*recording.thinned_watched(watch)?;
-    let mut found = predict_drives(robot, recording, Drives::watched(robot, recording, watch)?)?;
+    let thin = &*recording.thinned_watched(watch)?;
+    let mut found = predict_drives(robot, thin, Drives::watched(robot, thin, watch)?)?;
     found.prediction.doubts = doubts(robot, recording, watch)?;
     Ok(found)
 }
