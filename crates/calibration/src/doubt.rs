@@ -14,6 +14,8 @@ mod placeholder;
 mod scale;
 mod second;
 mod stuck_sensor;
+mod time_scale;
+mod turning;
 
 use std::borrow::Cow;
 
@@ -71,7 +73,8 @@ fn cells<'a>(robot: &Robot, recording: &'a Recording, watch: &Watch) -> Result<L
         true => Cow::Borrowed(recording),
         false => Cow::Owned(cells::without(recording, &beyond)),
     };
-    let no_measurement = placeholder::doubt(&rest, &placeholder::placeholders(robot, &rest))
+    let no_measurement = time_scale::times(robot, &rest)
+        .or_else(|| placeholder::doubt(&rest, &placeholder::placeholders(robot, &rest)))
         .or_else(|| frozen::frozen(robot, &rest))
         .or_else(|| alike::alike(&rest));
     // Signs, sides and units are told by drives as a robot makes them.
@@ -91,7 +94,11 @@ fn sensors(
     if !stuck.is_empty() {
         return Ok(stuck);
     }
-    Ok(lifted::lifted(robot, recording, seconds).into_iter().collect())
+    let turning = || {
+        let is_size = !scale::speeds(robot, recording).is_empty();
+        if is_size { None } else { turning::turning(robot, recording, seconds) }
+    };
+    Ok(lifted::lifted(robot, recording, seconds).or_else(turning).into_iter().collect())
 }
 
 /// Doubts about sensors of one side.

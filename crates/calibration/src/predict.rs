@@ -13,6 +13,7 @@ use crate::{
     doubts,
     held_out::Skill,
     power::{PowerModel, columns_by_row, seen_w},
+    rhythm::rhythm_note,
     row::Row,
     score::Tally,
 };
@@ -98,6 +99,7 @@ pub fn predict_watched(
     let thin = &*recording.thinned_watched(watch)?;
     let mut found = predict_drives(robot, thin, Drives::watched(robot, thin, watch)?)?;
     found.prediction.doubts = doubts(robot, recording, watch)?;
+    found.prediction.notes.extend(rhythm_note(recording));
     Ok(found)
 }
 
