@@ -7,9 +7,12 @@ mod beyond;
 mod cells;
 mod change;
 mod charging;
+mod delay;
 mod follow;
 mod frozen;
+mod heights;
 mod lifted;
+mod measure;
 mod placeholder;
 mod scale;
 mod second;
@@ -136,8 +139,22 @@ pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec
     let known = all.len();
     all.extend(scale::speeds(robot, recording));
     let followed = follow::of(robot, recording, watch)?;
-    all.extend(scale::power(&followed));
-    all.extend(change::better(robot, recording, &followed, watch)?);
+    let ratio_at = |recording: &Recording| follow::of(robot, recording, watch).ok().and_then(|of| of.ratio);
+    let measures: Vec<Doubt> = measure::voltage(robot, recording, &followed)
+        .into_iter()
+        .chain(measure::temperatures(recording, ratio_at))
+        .collect();
+    let heights = heights::heights(robot, recording, watch)?;
+    let is_told = heights.is_some() || !measures.is_empty();
+    all.extend(heights.into_iter().chain(measures));
+    if !is_told {
+        // What has a reason of its own is no unit of power, nor a sign.
+        all.extend(scale::power(&followed));
+        all.extend(change::better(robot, recording, &followed, watch)?);
+    }
+    if all.len() == known {
+        all.extend(delay::delay(robot, recording, watch)?);
+    }
     if all.len() == known {
         all.extend(charging::charging(recording, &seconds));
     }

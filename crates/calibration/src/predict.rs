@@ -16,6 +16,7 @@ use crate::{
     rhythm::rhythm_note,
     row::Row,
     score::Tally,
+    slopes::slopes_note,
 };
 
 /// How well one run, or all of them, was predicted.
@@ -99,6 +100,7 @@ pub fn predict_watched(
     let thin = &*recording.thinned_watched(watch)?;
     let mut found = predict_drives(robot, thin, Drives::watched(robot, thin, watch)?)?;
     found.prediction.doubts = doubts(robot, recording, watch)?;
+    found.prediction.notes.extend(slopes_note(recording).map(str::to_owned));
     found.prediction.notes.extend(rhythm_note(recording));
     Ok(found)
 }

@@ -211,3 +211,15 @@ fn one_measurement_in_the_columns_of_both_sides_is_told() {
     assert!(told.len() == 1 && told[0].name == "sides_alike", "{told:?}");
     assert!(told[0].statement.contains("and so is `power_w`"), "{told:?}");
 }
+
+#[test]
+fn a_voltage_of_one_cell_is_told_by_power_and_another_battery_that_is_right_is_not() {
+    let mut cell = current_and_voltage();
+    cell.channels.get_mut(&Channel::Voltage).unwrap().iter_mut().for_each(|v| *v /= 7.0);
+    let told = found(&cell);
+    assert!(told.len() == 1 && told[0].name == "voltage", "{told:?}");
+    let mut twice = current_and_voltage();
+    twice.channels.get_mut(&Channel::Voltage).unwrap().iter_mut().for_each(|v| *v *= 2.0);
+    twice.channels.get_mut(&Channel::Current).unwrap().iter_mut().for_each(|a| *a /= 2.0);
+    assert_eq!(found(&twice), []);
+}
