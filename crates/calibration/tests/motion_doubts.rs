@@ -129,6 +129,9 @@ fn angles_in_degrees_are_called_so() {
         let told = only(&changed(healthy(), channels, f64::to_degrees), "angle_unit");
         assert!(told.cure.contains("`deg`"), "{told:?}");
     }
+    // An inclinometer that is askew is none of these.
+    let askew = found(&changed(healthy(), &[Channel::Pitch], |rad| rad + 0.15));
+    assert!(askew.iter().all(|doubt| doubt.name != "angle_unit"), "{askew:?}");
 }
 
 #[test]

@@ -152,19 +152,31 @@ fn turns_as_wheels_say(recording: &Recording) -> bool {
 fn has_slopes(recording: &Recording) -> bool {
     /// What an inclinometer is askew by (2 degrees) \[rad\].
     const ERROR_RAD: f64 = 0.035;
-    /// Shares of rows between which pitch or roll ranges farther: what shakes does not count.
+    [Channel::Pitch, Channel::Roll]
+        .into_iter()
+        .filter_map(|axis| range(recording, axis))
+        .any(|x| x > ERROR_RAD)
+}
+
+/// How far pitch or roll ranges; what shakes does not count \[rad\].
+fn range(recording: &Recording, channel: Channel) -> Option<f64> {
+    /// Shares of rows between which it ranges farther.
     const BETWEEN: [f64; 2] = [0.05, 0.95];
-    let ranges = |channel: Channel| {
-        let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
-        all.sort_by(f64::total_cmp);
-        let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
-        Some(high? - low?)
-    };
-    [Channel::Pitch, Channel::Roll].into_iter().filter_map(ranges).any(|range| range > ERROR_RAD)
+    let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
+    all.sort_by(f64::total_cmp);
+    let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
+    Some(high? - low?)
 }
 
 /// Pitch and roll as they are if they were told in degrees: both, or the one of them that no robot can have in radians.
 fn in_degrees(recording: &Recording) -> Option<Recording> {
+    /// From the steepest descent that a robot is driven down to the steepest climb, by the default of `max_pitch_rad` \[rad\]. An inclinometer
+    /// that is askew ranges no farther than the ground.
+    const STEEPEST_RAD: f64 = 2.0 * 0.52;
+    let is_steep = |axis: Channel| range(recording, axis).is_some_and(|range| range > STEEPEST_RAD);
+    if !is_steep(Channel::Pitch) && !is_steep(Channel::Roll) {
+        return None;
+    }
     let of = |channel: Channel| Some((channel, recording.channel(channel)?));
     let angles: Vec<(Channel, &[f64])> = [Channel::Pitch, Channel::Roll].into_iter().filter_map(of).collect();
     let impossible = angles.iter().filter(|(_, values)| values.iter().any(|x| x.abs() > FRAC_PI_2));
