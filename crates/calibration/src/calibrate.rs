@@ -11,6 +11,7 @@ use crate::{
     fit::NORMAL_975,
     held_out::{as_written, held_out},
     power_fit::{PowerFit, fit_power, fit_thinned},
+    rhythm::rhythm_note,
     slopes::slopes_note,
     stuck,
 };
@@ -103,7 +104,10 @@ pub fn calibrate_watched(
     let as_written = Some(as_written(&fitted, recording, watch)?);
     let coverage = DrivesCoverage::default();
     let found = Calibration { parameters, held_out, as_written, notes, robot: fitted, coverage };
-    Ok(found.covering(recording, &drives).with_note(slopes_note(recording)))
+    Ok(found
+        .covering(recording, &drives)
+        .with_note(slopes_note(recording))
+        .with_note(rhythm_note(recording).as_deref()))
 }
 
 /// What a fit of drives found.

@@ -2,18 +2,31 @@
 //!
 //! `predict`, `calibrate` and `diagnose` ask the same, before anything is believed. Nothing here changes a recording.
 
+mod alike;
+mod beyond;
+mod cells;
 mod change;
 mod charging;
+mod delay;
 mod follow;
+mod frozen;
+mod heights;
 mod lifted;
+mod measure;
+mod placeholder;
 mod scale;
 mod second;
 mod stuck_sensor;
+mod time_scale;
+mod turning;
+
+use std::borrow::Cow;
 
 use model::Robot;
 use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
+use self::second::Second;
 pub use self::{change::mends, scale::speeds};
 use crate::Error;
 
@@ -34,17 +47,61 @@ impl std::fmt::Display for Doubt {
     }
 }
 
-/// Doubts about how drives were recorded: sensors of one side that stand still, wheels in the air.
+/// Doubts about how drives were recorded: cells that are no measurement, times in another unit, sensors that stand still, wheels in the air.
 ///
 /// # Errors
 /// As [`crate::predict_watched()`].
 pub fn circumstances(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
+    let Looked { mut doubts, rest } = cells(robot, recording, watch)?;
+    if let Some(rest) = rest {
+        let rest = rest.thinned_watched(watch)?;
+        let seconds = second::seconds(robot, &rest, watch)?;
+        doubts.extend(sensors(robot, &rest, &seconds, watch)?);
+    }
+    Ok(doubts)
+}
+
+/// Doubts about single cells and times, and the recording in which no such cells are left; none where nothing else can be told of it.
+struct Looked<'a> {
+    doubts: Vec<Doubt>,
+    rest: Option<Cow<'a, Recording>>,
+}
+
+/// What is told by cells as they were recorded, before they become means.
+fn cells<'a>(robot: &Robot, recording: &'a Recording, watch: &Watch) -> Result<Looked<'a>, Error> {
+    let beyond = beyond::beyond(robot, recording);
+    let predicted_j = |recording: &Recording| second::predicted_j(robot, recording, watch).ok();
+    let mut doubts: Vec<Doubt> = beyond::doubt(robot, recording, &beyond, predicted_j).into_iter().collect();
+    let rest = match beyond.is_empty() {
+        true => Cow::Borrowed(recording),
+        false => Cow::Owned(cells::without(recording, &beyond)),
+    };
+    let no_measurement = time_scale::times(robot, &rest)
+        .or_else(|| placeholder::doubt(&rest, &placeholder::placeholders(robot, &rest)))
+        .or_else(|| frozen::frozen(robot, &rest))
+        .or_else(|| alike::alike(&rest));
+    // Signs, sides and units are told by drives as a robot makes them.
+    let is_all = no_measurement.is_some();
+    doubts.extend(no_measurement);
+    Ok(Looked { doubts, rest: (!is_all).then_some(rest) })
+}
+
+/// Doubts about sensors that stand still, wheels in the air and turning without wheels.
+fn sensors(
+    robot: &Robot,
+    recording: &Recording,
+    seconds: &[Second],
+    watch: &Watch,
+) -> Result<Vec<Doubt>, Error> {
     let stuck = stuck(robot, recording, watch)?;
     if !stuck.is_empty() {
         return Ok(stuck);
     }
-    let seconds = second::seconds(robot, recording, watch)?;
-    Ok(lifted::lifted(robot, recording, &seconds).into_iter().collect())
+    let turning = || {
+        let is_size = !scale::speeds(robot, recording).is_empty();
+        if is_size { None } else { turning::turning(robot, recording, seconds) }
+    };
+    Ok(lifted::lifted(robot, recording, seconds).or_else(turning).into_iter().collect())
 }
 
 /// Doubts about sensors of one side.
@@ -70,22 +127,36 @@ pub fn charged(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Op
 /// # Errors
 /// As [`crate::predict_watched()`].
 pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
-    let recording = recording.thinned_watched(watch)?;
-    let stuck = stuck(robot, &recording, watch)?;
-    if !stuck.is_empty() {
-        // Signs, sides and units are told by drives as a robot makes them.
-        return Ok(stuck);
+    let Looked { doubts: mut all, rest } = cells(robot, recording, watch)?;
+    let Some(rest) = rest else { return Ok(all) };
+    let recording = &*rest.thinned_watched(watch)?;
+    let seconds = second::seconds(robot, recording, watch)?;
+    let odd = sensors(robot, recording, &seconds, watch)?;
+    if !odd.is_empty() {
+        all.extend(odd);
+        return Ok(all);
     }
-    let seconds = second::seconds(robot, &recording, watch)?;
-    if let Some(lifted) = lifted::lifted(robot, &recording, &seconds) {
-        return Ok(vec![lifted]);
+    let known = all.len();
+    all.extend(scale::speeds(robot, recording));
+    let followed = follow::of(robot, recording, watch)?;
+    let ratio_at = |recording: &Recording| follow::of(robot, recording, watch).ok().and_then(|of| of.ratio);
+    let measures: Vec<Doubt> = measure::voltage(robot, recording, &followed)
+        .into_iter()
+        .chain(measure::temperatures(recording, ratio_at))
+        .collect();
+    let heights = heights::heights(robot, recording, watch)?;
+    let is_told = heights.is_some() || !measures.is_empty();
+    all.extend(heights.into_iter().chain(measures));
+    if !is_told {
+        // What has a reason of its own is no unit of power, nor a sign.
+        all.extend(scale::power(&followed));
+        all.extend(change::better(robot, recording, &followed, watch)?);
     }
-    let mut all = scale::speeds(robot, &recording);
-    let followed = follow::of(robot, &recording, watch)?;
-    all.extend(scale::power(&followed));
-    all.extend(change::better(robot, &recording, &followed, watch)?);
-    if all.is_empty() {
-        all.extend(charging::charging(&recording, &seconds));
+    if all.len() == known {
+        all.extend(delay::delay(robot, recording, watch)?);
+    }
+    if all.len() == known {
+        all.extend(charging::charging(recording, &seconds));
     }
     Ok(all)
 }

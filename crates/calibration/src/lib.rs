@@ -33,6 +33,7 @@ mod noise;
 pub mod power;
 pub mod power_fit;
 pub mod predict;
+mod rhythm;
 pub mod row;
 pub mod score;
 pub mod slip_law;

@@ -9,18 +9,6 @@ use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubt
 /// Name of the doubt that runs which were not fitted cast on a fit.
 const HELD_OUT: &str = "held_out";
 
-/// Driving of which a share of variance can be told \[s\]: of less, one manoeuvre decides.
-const LEAST_JUDGED_S: f64 = 60.0;
-
-/// From the first row of each run to its last, together \[s\].
-fn driven_s(recording: &Recording) -> f64 {
-    let of_run = |run: &recording::Run| {
-        let t_s = recording.t_s.get(run.rows.clone()).unwrap_or_default();
-        t_s.last().zip(t_s.first()).map_or(0.0, |(last, first)| last - first)
-    };
-    recording.runs.iter().map(of_run).sum()
-}
-
 /// What ground was taken for that the recording does not name.
 fn ground_note(robot: &Robot, recording: &Recording) -> Option<String> {
     let ground = &robot.default_surface;
@@ -96,7 +84,6 @@ impl Method {
             // Where nothing was determined nothing was fitted.
             Some(judged)
                 if judged.recorded_r2() < 0.0
-                    && driven_s(recording) >= LEAST_JUDGED_S
                     && found.parameters.iter().any(|parameter| parameter.determined)
                     && !options.is_overruled(HELD_OUT) =>
             {

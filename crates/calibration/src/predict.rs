@@ -13,8 +13,10 @@ use crate::{
     doubts,
     held_out::Skill,
     power::{PowerModel, columns_by_row, seen_w},
+    rhythm::rhythm_note,
     row::Row,
     score::Tally,
+    slopes::slopes_note,
 };
 
 /// How well one run, or all of them, was predicted.
@@ -95,9 +97,11 @@ pub fn predict_watched(
     recording: &Recording,
     watch: &Watch,
 ) -> Result<PredictedDrives, Error> {
-    let recording = &*recording.thinned_watched(watch)?;
-    let mut found = predict_drives(robot, recording, Drives::watched(robot, recording, watch)?)?;
+    let thin = &*recording.thinned_watched(watch)?;
+    let mut found = predict_drives(robot, thin, Drives::watched(robot, thin, watch)?)?;
     found.prediction.doubts = doubts(robot, recording, watch)?;
+    found.prediction.notes.extend(slopes_note(recording).map(str::to_owned));
+    found.prediction.notes.extend(rhythm_note(recording));
     Ok(found)
 }
 

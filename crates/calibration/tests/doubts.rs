@@ -7,30 +7,10 @@ use model::{Robot, builtin};
 use recording::{Channel, Labels, Recording, unwatched};
 
 mod simulated;
-use simulated::{drives, seeded, with_battery_power, with_power};
+use simulated::{changed, drives, healthy, seeded, with_battery_power, with_power};
 
 fn robot() -> Robot {
     builtin::husky_a200()
-}
-
-/// Drives with the yaw rate that the wheels give a Husky, and roll.
-fn healthy() -> Recording {
-    let mut random = seeded(5);
-    let mut plain = drives(&mut random, 3, 400);
-    let of = |recording: &Recording, channel| recording.channel(channel).unwrap().to_vec();
-    let (left, right) = (of(&plain, Channel::LeftSpeed), of(&plain, Channel::RightSpeed));
-    let yaw_rate = left.iter().zip(&right).map(|(l, r)| (r - l) / robot().slip_track_m).collect();
-    let roll = (0..plain.rows()).map(|i| 0.08 * (0.021 * i as f64).cos()).collect();
-    plain.channels.insert(Channel::YawRate, yaw_rate);
-    plain.channels.insert(Channel::Roll, roll);
-    with_power(&robot(), plain, &mut random)
-}
-
-fn changed(mut recording: Recording, channels: &[Channel], change: impl Fn(f64) -> f64) -> Recording {
-    for channel in channels {
-        recording.channels.get_mut(channel).unwrap().iter_mut().for_each(|value| *value = change(*value));
-    }
-    recording
 }
 
 fn names(recording: &Recording) -> Vec<&'static str> {

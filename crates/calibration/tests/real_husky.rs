@@ -102,3 +102,14 @@ fn the_built_in_sandy_loam_is_what_these_drives_give() {
     let [low, high] = parameter.interval_95.unwrap();
     assert!(low < 0.524 && 0.302 < high, "{parameter:?} {}", built_in.mu_skid);
 }
+
+#[test]
+fn the_real_husky_is_not_doubted() {
+    let robot = model::builtin::husky_a200();
+    for surface in ["flooring", "asphalt", "ice", "sandy-loam", "snow"] {
+        let Some(files) = files(&[surface]) else { continue };
+        let (recording, _) = recording::read_paths(&files, None).unwrap();
+        let found = calibration::doubts(&robot, &recording, &recording::unwatched()).unwrap();
+        assert_eq!(found, [], "{surface}");
+    }
+}

@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Channel, Combine, Conversion, Error, Quantity, Recording, rate::rates, units};
+use crate::{
+    Channel, Combine, Conversion, Error, Quantity, Recording,
+    rate::{beyond_wrap, rates},
+    units,
+};
 
 /// A checked map. Read from JSON:
 ///
@@ -195,6 +199,23 @@ pub(crate) struct SourceFile {
     sign: Sign,
 }
 
+impl Source {
+    /// Refuses a counter that goes beyond the value at which it is said to begin anew.
+    pub(crate) fn check_wraps(&self, index: usize, positions: &[f64]) -> Result<(), Error> {
+        let Some(wraps_at) = self.wraps_at else { return Ok(()) };
+        let Some(farthest) = beyond_wrap(positions, wraps_at) else { return Ok(()) };
+        // Both as they stand in the map and in the file.
+        let [wraps_at, farthest] =
+            [wraps_at / self.conversion.factor.abs(), farthest / self.conversion.factor];
+        Err(Error::Map {
+            path: format!("sources[{index}].wraps_at"),
+            message: format!(
+                "a counter that begins anew at {wraps_at} has no values as far as {farthest}; give the number of its own counts, before \"scale\" and unit"
+            ),
+        })
+    }
+}
+
 impl Map {
     /// Reads and checks a map.
     ///
@@ -237,13 +258,17 @@ impl Map {
     }
 
     /// Takes the rates of columns of positions, run by run; those of topics were taken before they were brought onto one clock.
-    pub(crate) fn derive_columns(&self, recording: &mut Recording) {
+    ///
+    /// # Errors
+    /// [`Error::Map`] where a counter goes beyond the value at which it is said to begin anew.
+    pub(crate) fn derive_columns(&self, recording: &mut Recording) -> Result<(), Error> {
         let Recording { t_s, channels, runs, .. } = recording;
-        for source in self.sources.iter().filter(|source| source.derivative) {
+        for (index, source) in self.sources.iter().enumerate().filter(|(_, source)| source.derivative) {
             let (Target::Channel(channel), Place::Columns(_)) = (&source.target, &source.place) else {
                 continue;
             };
             let Some(values) = channels.get_mut(channel) else { continue };
+            source.check_wraps(index, values)?;
             for run in runs.iter() {
                 if let (Some(t_s), Some(own)) = (t_s.get(run.rows.clone()), values.get_mut(run.rows.clone()))
                 {
@@ -252,6 +277,7 @@ impl Map {
                 }
             }
         }
+        Ok(())
     }
 
     /// Whether any of its sources is a column of a table.

@@ -35,9 +35,10 @@ impl Topics<'_> {
             let messages = topic.samples.messages();
             let mut stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
             let t_s = stream.t_s(stream.t_ns.first().copied().unwrap_or(0));
-            for (column, (source, _)) in stream.columns.iter_mut().zip(&topic.sources) {
-                let source = &self.map.sources[*source];
+            for (column, (index, _)) in stream.columns.iter_mut().zip(&topic.sources) {
+                let source = &self.map.sources[*index];
                 if source.derivative {
+                    source.check_wraps(*index, column)?;
                     *column = rates(&t_s, column, source.wraps_at);
                 }
             }

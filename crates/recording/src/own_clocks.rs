@@ -93,8 +93,13 @@ fn told_empty(channel: Channel, values: &[f64]) -> Option<Repair> {
         channel.tells_power() || matches!(channel, Channel::LeftSpeed | Channel::RightSpeed | Channel::Pitch);
     let empty = values.iter().filter(|value| value.is_nan()).count();
     let is_telling = values.len() >= TELLING_ROWS && empty as f64 > TELLING_SHARE * values.len() as f64;
+    // A prediction goes on where only the slope is missing.
+    let then = match channel {
+        Channel::Pitch => "predictions take the ground for level there",
+        _ => "no energy is counted there",
+    };
     let what = format!(
-        "{empty} of {} rows have no value, in holes that are too long to interpolate over; no energy is counted there",
+        "{empty} of {} rows have no value, in holes that are too long to interpolate over; {then}",
         values.len()
     );
     (is_needed && is_telling && empty < values.len())

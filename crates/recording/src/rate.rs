@@ -27,6 +27,16 @@ pub(crate) fn rates(t_s: &[f64], positions: &[f64], wraps_at: Option<f64>) -> Ve
     rates
 }
 
+/// A counter's value that it cannot have, where it begins again before: those of a counter from zero lie below `wraps_at`, and those of one with
+/// a sign within half of it.
+pub(crate) fn beyond_wrap(positions: &[f64], wraps_at: f64) -> Option<f64> {
+    let known = || positions.iter().copied().filter(|position| position.is_finite());
+    let [least, greatest] =
+        known().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    let farthest = if greatest.abs() >= least.abs() { greatest } else { least };
+    (greatest - least > wraps_at || farthest.abs() > wraps_at).then_some(farthest)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,5 +51,13 @@ mod tests {
         let found = rates(&t_s, &holed, None);
         assert!(found[50].is_nan() && found.iter().filter(|rate| (*rate + 2.0).abs() < 1e-9).count() == 99);
         assert!(rates(&[1.0], &[5.0], None)[0].is_nan());
+    }
+
+    #[test]
+    fn a_counter_that_begins_again_has_no_values_beyond() {
+        assert_eq!(beyond_wrap(&[0.0, 1023.0, f64::NAN, 5.0], 1024.0), None);
+        assert_eq!(beyond_wrap(&[-32_768.0, 32_767.0], 65_536.0), None);
+        assert_eq!(beyond_wrap(&[3.0, 65_000.0], 100.0), Some(65_000.0));
+        assert_eq!(beyond_wrap(&[-80.0, 60.0], 100.0), Some(-80.0));
     }
 }

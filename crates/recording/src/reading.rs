@@ -272,7 +272,7 @@ impl Reading {
         report.format = format.to_owned();
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
-        map.iter().for_each(|map| map.derive_columns(&mut recording));
+        map.iter().try_for_each(|map| map.derive_columns(&mut recording))?;
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })

@@ -121,6 +121,19 @@ mod tests {
     }
 
     #[test]
+    fn angles_in_degrees_are_no_unit_on_its_side() {
+        let wave = |row: usize| 0.06 * (0.05 * row as f64).sin();
+        assert_eq!(drive(Channel::Pitch, |row, _| wave(row)), []);
+        assert_eq!(
+            drive(Channel::Pitch, |row, _| wave(row).to_degrees()),
+            [(Channel::Pitch, Kind::Unit)],
+            "up to 3.4 degrees"
+        );
+        let on_its_side = drive(Channel::Pitch, |row, _| std::f64::consts::FRAC_PI_2 + wave(row));
+        assert_eq!(on_its_side, [(Channel::Pitch, Kind::Mounting)]);
+    }
+
+    #[test]
     fn without_a_gyroscope_the_heading_tells_swapped_sides_and_its_own_unit() {
         // A minute of weaving on a bearing that drifts round, with the noise of a compass.
         let t_s: Vec<f64> = (0..1200).map(|row| f64::from(row) * 0.1).collect();

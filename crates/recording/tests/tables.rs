@@ -224,3 +224,31 @@ fn the_real_recordings_are_read_whole_and_their_oddities_told() {
         assert!(slips(4) > 0 && slips(1) == 0, "{} on snow, {} on flooring", slips(4), slips(1));
     }
 }
+
+#[test]
+fn a_counter_that_goes_beyond_where_it_is_said_to_begin_anew_is_refused_with_both_numbers() {
+    let counts = |i: u32| i * 700 % 65_536;
+    let rows: String =
+        (0..200).map(|i| format!("{}.{},{},{},60\n", i / 10, i % 10, counts(i), counts(i))).collect();
+    let read_with = |wraps_at: f64| {
+        let source = |side: &str| {
+            format!(
+                r#"{{"channel": "v_{side}_mps", "column": "{side}", "unit": "rad/s", "scale": 0.0015, "derivative": true, "wraps_at": {wraps_at}}}"#
+            )
+        };
+        let map = format!(
+            r#"{{"name": "counters", "wheel_radius_m": 0.165, "sources": [{}, {}]}}"#,
+            source("left"),
+            source("right")
+        );
+        let map = Map::from_json(&map).unwrap();
+        read(format!("t_s,left,right,power_w\n{rows}").into_bytes(), Format::Csv, "drive", Some(&map))
+    };
+    let speeds = read_with(65_536.0).unwrap().recording;
+    assert!(speeds.channel(Channel::LeftSpeed).unwrap().iter().all(|v| (v - 1.7325).abs() < 1e-6));
+    let refused = read_with(98.3).unwrap_err().to_string();
+    assert!(
+        refused.contains("sources[0].wraps_at") && refused.contains("98.3") && refused.contains("65"),
+        "{refused}"
+    );
+}

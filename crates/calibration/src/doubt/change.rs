@@ -1,5 +1,7 @@
 //! Recordings that would follow the model if a side, a sign or an axis were another.
 
+use std::f64::consts::FRAC_PI_2;
+
 use model::Robot;
 use recording::{Channel, Recording, SuspicionKind, Watch, suspicions};
 
@@ -28,7 +30,7 @@ struct Change {
 const SCALE: &str = "give its source \"scale\": -1 in a map";
 
 /// All changes that are tried.
-const CHANGES: [Change; 9] = [
+const CHANGES: [Change; 10] = [
     Change {
         name: "power_sign",
         words: "power seems to have the wrong sign (drawn from the battery must be positive, charging negative)",
@@ -70,6 +72,12 @@ const CHANGES: [Change; 9] = [
         words: "pitch seems to have the wrong sign (nose up must be positive), as of an IMU that is mounted back to front or tells axes north-east-down",
         cure: SCALE,
         mended: |of| has_slopes(of).then(|| turned(of, &[Channel::Pitch]))?,
+    },
+    Change {
+        name: "angle_unit",
+        words: "pitch or roll seems to be in degrees",
+        cure: "give their sources the unit `deg` in a map",
+        mended: in_degrees,
     },
     Change {
         name: "imu_turned_left",
@@ -144,15 +152,37 @@ fn turns_as_wheels_say(recording: &Recording) -> bool {
 fn has_slopes(recording: &Recording) -> bool {
     /// What an inclinometer is askew by (2 degrees) \[rad\].
     const ERROR_RAD: f64 = 0.035;
-    /// Shares of rows between which pitch or roll ranges farther: what shakes does not count.
+    [Channel::Pitch, Channel::Roll]
+        .into_iter()
+        .filter_map(|axis| range(recording, axis))
+        .any(|x| x > ERROR_RAD)
+}
+
+/// How far pitch or roll ranges; what shakes does not count \[rad\].
+fn range(recording: &Recording, channel: Channel) -> Option<f64> {
+    /// Shares of rows between which it ranges farther.
     const BETWEEN: [f64; 2] = [0.05, 0.95];
-    let ranges = |channel: Channel| {
-        let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
-        all.sort_by(f64::total_cmp);
-        let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
-        Some(high? - low?)
-    };
-    [Channel::Pitch, Channel::Roll].into_iter().filter_map(ranges).any(|range| range > ERROR_RAD)
+    let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
+    all.sort_by(f64::total_cmp);
+    let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
+    Some(high? - low?)
+}
+
+/// Pitch and roll as they are if they were told in degrees: both, or the one of them that no robot can have in radians.
+fn in_degrees(recording: &Recording) -> Option<Recording> {
+    /// From the steepest descent that a robot is driven down to the steepest climb, by the default of `max_pitch_rad` \[rad\]. An inclinometer
+    /// that is askew ranges no farther than the ground.
+    const STEEPEST_RAD: f64 = 2.0 * 0.52;
+    let is_steep = |axis: Channel| range(recording, axis).is_some_and(|range| range > STEEPEST_RAD);
+    if !is_steep(Channel::Pitch) && !is_steep(Channel::Roll) {
+        return None;
+    }
+    let of = |channel: Channel| Some((channel, recording.channel(channel)?));
+    let angles: Vec<(Channel, &[f64])> = [Channel::Pitch, Channel::Roll].into_iter().filter_map(of).collect();
+    let impossible = angles.iter().filter(|(_, values)| values.iter().any(|x| x.abs() > FRAC_PI_2));
+    let channels: Vec<Channel> = impossible.map(|(channel, _)| *channel).collect();
+    let channels = if channels.is_empty() { vec![Channel::Pitch, Channel::Roll] } else { channels };
+    scaled(recording, &channels, f64::to_radians)
 }
 
 fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
@@ -164,11 +194,15 @@ fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recor
 }
 
 fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
+    scaled(recording, channels, |x| -x)
+}
+
+fn scaled(recording: &Recording, channels: &[Channel], by: impl Fn(f64) -> f64) -> Option<Recording> {
     let mut changed = recording.clone();
     let mut any = false;
     for channel in channels {
         if let Some(values) = changed.channels.get_mut(channel) {
-            values.iter_mut().for_each(|x| *x = -*x);
+            values.iter_mut().for_each(|x| *x = by(*x));
             any = true;
         }
     }

@@ -7,11 +7,11 @@ use super::{Doubt, follow::Followed};
 
 /// Slip tracks over the track of the robot: skid-steered robots turn as with 1 to 2.3 times their track (Mandow et al., IROS 2007: 1.5 to
 /// 2.3 on hard ground; BorealTC's Husky: 1.5 to 1.8).
-const SLIP_TRACKS: [f64; 2] = [0.75, 2.6];
+pub(super) const SLIP_TRACKS: [f64; 2] = [0.75, 2.6];
 /// Speeds over ground over those of the wheels: wheels slip by a tenth or two, and do not fall behind.
 const OVER_GROUND: [f64; 2] = [0.5, 1.25];
 /// Speeds beyond so many times the fastest that the robot's file has.
-const FASTEST: f64 = 1.5;
+pub(super) const FASTEST: f64 = 1.5;
 /// Share of the variance that wheels have to explain before their size is compared.
 const LEAST_R2: f64 = 0.5;
 /// Fewer rows tell nothing.
@@ -19,7 +19,7 @@ const LEAST_ROWS: usize = 50;
 /// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
 const STANDS_MPS: f64 = 0.016;
 /// How far a factor may be from that of a unit.
-const LIKE_UNIT: f64 = 1.6;
+pub(super) const LIKE_UNIT: f64 = 1.6;
 /// Ratios of recorded to predicted power that no friction explains: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as
 /// much on loam.
 const POWERS: [f64; 2] = [0.1, 3.0];
@@ -98,7 +98,7 @@ fn doubt(robot: &Robot, factor: f64, shown: &str) -> Doubt {
 }
 
 /// The slip track that yaw rate and wheel speeds mean together.
-fn slip_track_m(recording: &Recording) -> Option<f64> {
+pub(super) fn slip_track_m(recording: &Recording) -> Option<f64> {
     let [left, right, rate] =
         [Channel::LeftSpeed, Channel::RightSpeed, Channel::YawRate].map(|c| recording.channel(c));
     let (mut n, mut dd, mut dw, mut ww) = (0_usize, 0.0, 0.0, 0.0);

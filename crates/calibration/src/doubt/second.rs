@@ -85,6 +85,16 @@ pub(super) fn seconds(robot: &Robot, recording: &Recording, watch: &Watch) -> Re
     Ok(drives.averages.iter().zip(means).map(second).collect())
 }
 
+/// Energy that the robot's file predicts of drives \[J\].
+///
+/// # Errors
+/// As [`seconds`].
+pub(super) fn predicted_j(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<f64, Error> {
+    let recording = recording.thinned_watched(watch)?;
+    let seconds = seconds(robot, &recording, watch)?;
+    Ok(seconds.iter().map(|one| one.duration_s * one.predicted_w).sum())
+}
+
 /// Way by positions over that by wheels between the first and the last of some rows.
 fn way_share(recording: &Recording, drives: &Drives, rows: std::ops::Range<usize>) -> f64 {
     /// A way by wheels that positions can be compared with \[m\]: that of a tenth of a metre per second, in a second.

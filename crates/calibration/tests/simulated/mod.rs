@@ -8,7 +8,7 @@ use calibration::{
     Drives,
     power::{by_row, seen_w},
 };
-use model::Robot;
+use model::{Robot, builtin};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use recording::{Channel, Labels, PowerForm, Recording, Run};
@@ -124,5 +124,31 @@ pub(crate) fn over_two_grounds(mut recording: Recording, names: [&str; 2]) -> Re
     let mut index = vec![0; recording.t_s.len()];
     recording.runs.iter().skip(1).step_by(2).for_each(|run| index[run.rows.clone()].fill(1));
     recording.surface = Some(Labels { names: names.map(String::from).to_vec(), index });
+    recording
+}
+
+/// Healthy drives with the yaw rate that the wheels give a Husky, and roll.
+pub(crate) fn healthy() -> Recording {
+    let mut random = seeded(5);
+    let mut plain = drives(&mut random, 3, 400);
+    let of = |recording: &Recording, channel| recording.channel(channel).unwrap().to_vec();
+    let (left, right) = (of(&plain, Channel::LeftSpeed), of(&plain, Channel::RightSpeed));
+    let yaw_rate =
+        left.iter().zip(&right).map(|(l, r)| (r - l) / builtin::husky_a200().slip_track_m).collect();
+    let roll = (0..plain.rows()).map(|i| 0.08 * (0.021 * i as f64).cos()).collect();
+    plain.channels.insert(Channel::YawRate, yaw_rate);
+    plain.channels.insert(Channel::Roll, roll);
+    with_power(&builtin::husky_a200(), plain, &mut random)
+}
+
+/// A recording with some channels changed value by value.
+pub(crate) fn changed(
+    mut recording: Recording,
+    channels: &[Channel],
+    change: impl Fn(f64) -> f64,
+) -> Recording {
+    for channel in channels {
+        recording.channels.get_mut(channel).unwrap().iter_mut().for_each(|value| *value = change(*value));
+    }
     recording
 }

@@ -15,8 +15,12 @@ pub(super) fn mounting(channel: Channel, present: &[f64]) -> Option<String> {
         return None;
     }
     let mut sizes: Vec<f64> = present.iter().map(|value| value.abs()).collect();
-    let middle = sizes.len() / 2;
+    let [low, middle] = [sizes.len() / 10, sizes.len() / 2];
     let typical_rad = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    // A unit on its side is so all the time; angles in degrees come by nothing as well.
+    if *sizes.select_nth_unstable_by(low, f64::total_cmp).1 < ASKEW_RAD {
+        return None;
+    }
     (ASKEW_RAD..=std::f64::consts::PI).contains(&typical_rad).then(|| {
         let how = if typical_rad > 2.0 * ASKEW_RAD { "upside down" } else { "on its side" };
         format!(
@@ -35,9 +39,9 @@ pub(super) fn magnitude(channel: Channel, present: &[f64]) -> Option<String> {
     let high = high_magnitude(present)?;
     let unit = si_unit(channel.quantity());
     (high < least || high > greatest).then(|| {
-        format!(
-            "its 99th percentile is {high:.4} {unit}, outside {least} to {greatest:.4}: is the unit right?"
-        )
+        let is_angle = matches!(channel, Channel::Pitch | Channel::Roll);
+        let asked = if is_angle { "is it in degrees?" } else { "is the unit right?" };
+        format!("its 99th percentile is {high:.4} {unit}, outside {least} to {greatest:.4}: {asked}")
     })
 }
 

@@ -1,0 +1,54 @@
+//! The same power in the columns of both sides.
+
+use std::collections::BTreeSet;
+
+use recording::{Channel, Recording};
+
+use super::{Doubt, cells::recorded_j};
+
+/// Difference of rim speeds with which a robot turns \[m/s\]: sides draw unlike power then.
+const TURNING_MPS: f64 = 0.08;
+/// Share of such rows in which two meters are alike to the last digit: with noise of their own they never are.
+const ALIKE: f64 = 0.99;
+/// Different values, and rows of turning, that tell something.
+const LEAST_ROWS: usize = 10;
+
+/// Tells of two columns that hold one measurement.
+pub(super) fn alike(recording: &Recording) -> Option<Doubt> {
+    let pairs = [
+        ([Channel::LeftPower, Channel::RightPower], "power"),
+        ([Channel::LeftMotorCurrent, Channel::RightMotorCurrent], "motor current"),
+    ];
+    let form = recording.power_form()?.channels();
+    let (sides, quantity) = pairs.into_iter().find(|(sides, _)| *sides == form)?;
+    let [left, right, v_left, v_right] =
+        [sides[0], sides[1], Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c));
+    let (left, right, v_left, v_right) = (left?, right?, v_left?, v_right?);
+    let turns = |row: &usize| (v_right[*row] - v_left[*row]).abs() > TURNING_MPS;
+    let turned: Vec<usize> = (0..left.len())
+        .filter(|row| left[*row].is_finite() && right[*row].is_finite())
+        .filter(turns)
+        .collect();
+    let same: Vec<usize> = turned.iter().copied().filter(|row| left[*row] == right[*row]).collect();
+    let values: BTreeSet<u64> = same.iter().map(|row| left[*row].to_bits()).collect();
+    if values.len() < LEAST_ROWS || (same.len() as f64) < ALIKE * turned.len() as f64 {
+        return None;
+    }
+    let total = recording.channel(Channel::Power).map(|power_w| {
+        let of_total = same.iter().filter(|row| power_w[**row] == left[**row]).count();
+        format!(", and so is `power_w` in {of_total} of them")
+    });
+    let energy = recorded_j(recording)
+        .map(|joules| format!("; together they make {:.1} kJ, twice that of one", joules / 1e3));
+    Some(Doubt {
+        name: "sides_alike",
+        statement: format!(
+            "{quantity} of both sides is the same to the last digit in {} of {} rows in which the robot turns{}{}: both columns seem to hold one measurement",
+            same.len(),
+            turned.len(),
+            total.unwrap_or_default(),
+            energy.unwrap_or_default()
+        ),
+        cure: "give the power of the battery as `power_w` alone, or that of each side as its own driver tells it".to_owned(),
+    })
+}
