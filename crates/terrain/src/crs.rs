@@ -15,7 +15,7 @@ mod wkt;
 
 pub(crate) use self::{
     earth::registered_code,
-    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, to_ground},
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, square_cells, to_ground},
     mercator::is_of_earth,
     warp::{DegreeFrame, Unwarped, Warp},
 };
@@ -82,6 +82,14 @@ impl Crs {
             return Some(crs);
         }
         wkt::parse(text)
+    }
+
+    /// What a PROJ definition (`+proj=utm +zone=32 +datum=WGS84`) says of axes, units and projection, but for a name; `None` for one
+    /// without a projection.
+    pub(crate) fn from_proj(definition: &str) -> Option<Self> {
+        let is_named = definition.len() <= LONGEST_TEXT
+            && definition.split_ascii_whitespace().any(|word| word.starts_with("+proj="));
+        is_named.then(|| epsg::by_definition(definition))
     }
 
     /// The text of a system that a map in metres may be in.

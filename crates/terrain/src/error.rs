@@ -254,6 +254,14 @@ pub enum Error {
         /// EPSG code of the UTM zone of the middle.
         epsg: u32,
     },
+    /// A vertical system that counts downwards.
+    #[error(
+        "the file's vertical system counts depths, but heights are needed: `gdal_calc.py -A in.{ending} --calc=-A --outfile=out.tif` turns them over, and `gdal_edit.py -a_srs EPSG:CODE out.tif` names the horizontal system alone"
+    )]
+    Depths {
+        /// Ending of the file's name.
+        ending: &'static str,
+    },
     /// A TIFF whose samples are not one elevation per pixel.
     #[error("the GeoTIFF holds {found}, but one band of integer or float elevation is needed")]
     TiffSamples {

@@ -4,7 +4,7 @@
 
 use std::io::Cursor;
 
-use terrain::{Cell, Grid, Terrain, crs::Crs, io};
+use terrain::{Cell, Terrain, io};
 use tiff::{
     encoder::{TiffEncoder, colortype::Gray32Float},
     tags::Tag,
@@ -236,9 +236,12 @@ fn a_mercator_is_brought_to_the_ground_or_refused_where_one_scale_does_not_do() 
         );
         assert_ne!(terrain.crs.as_deref(), Some("EPSG:3857"), "its coordinates are others now");
     }
-    let grid = Grid { rows: 500, columns: 500, cell_size_m: 100.0, origin_m: [1_113_194.9, 8_399_737.9] };
-    let wide = Terrain::new(grid, &vec![1.0; grid.cells()]).unwrap();
-    let refused = wide.placed_in(&Crs::from_epsg(3857), "asc").unwrap_err().to_string();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wide.asc");
+    let header = "ncols 500\nnrows 500\nxllcorner 1113194.9\nyllcorner 8399737.9\ncellsize 100\n";
+    std::fs::write(&path, header.to_owned() + &"1 ".repeat(250_000)).unwrap();
+    std::fs::write(path.with_extension("prj"), "EPSG:3857").unwrap();
+    let refused = io::read_path(&path).unwrap_err().to_string();
     assert!(refused.contains("-t_srs EPSG:32632") && refused.contains("in.asc"), "{refused}");
 }
 

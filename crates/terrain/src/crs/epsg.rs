@@ -84,18 +84,28 @@ pub(super) fn horizontal(code: u32) -> Crs {
     }
     let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code);
     let Some(definition) = definition else { return Crs { text, ..Crs::default() } };
+    Crs { text, ..by_definition(definition.proj4) }
+}
+
+/// What a PROJ definition says of axes, unit, heights and projection.
+pub(super) fn by_definition(definition: &str) -> Crs {
     let value = |key: &str| {
-        let mut words = definition.proj4.split_ascii_whitespace();
+        let mut words = definition.split_ascii_whitespace();
         words.find_map(|word| word.strip_prefix('+')?.strip_prefix(key)?.strip_prefix('='))
     };
-    if value("proj") == Some("longlat") {
-        return Crs { text, is_geographic: true, ..Crs::default() };
-    }
-    let unit = match value("to_meter").and_then(|metres| metres.parse().ok()) {
-        Some(metres) => Some(LinearUnit::of_metres(metres)),
-        None => value("units").map_or(Some(LinearUnit::METRE), by_proj_name),
+    let unit = |length: &str, name: &str| match value(length).map(|metres| metres.parse::<f64>()) {
+        Some(Ok(metres)) if metres > 0.0 && metres.is_finite() => Some(LinearUnit::of_metres(metres)),
+        Some(_) => None,
+        None => value(name).map_or(Some(LinearUnit::METRE), by_proj_name),
     };
-    Crs { text, unit, mercator: Mercator::from_proj(value), ..Crs::default() }
+    let says_vertical = value("vto_meter").or(value("vunits")).is_some();
+    let vertical_unit = unit("vto_meter", "vunits").filter(|_| says_vertical);
+    let vertical = vertical_unit.map(|unit| Vertical { unit, is_depth: false });
+    if matches!(value("proj"), Some("longlat" | "latlong")) {
+        return Crs { is_geographic: true, vertical, ..Crs::default() };
+    }
+    let unit = unit("to_meter", "units");
+    Crs { unit, mercator: Mercator::from_proj(value), vertical, ..Crs::default() }
 }
 
 /// The unit that PROJ names so.

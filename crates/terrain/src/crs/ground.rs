@@ -1,7 +1,5 @@
 //! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
 
-use std::sync::Arc;
-
 use super::{Crs, Mercator, mercator::ECCENTRICITY_2};
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
@@ -41,11 +39,6 @@ impl Affine {
             columns: size.columns as u64,
         }
     }
-}
-
-/// Refuses coordinates in degrees; `ending` is that of the file's name. Readers that may warp them do not ask.
-fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs, ending: &'static str) -> Result<(), Error> {
-    if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
 }
 
 /// Refuses a system whose metres are no metres of the ground where a grid lies, of a grid that says that they are. Up to e² of the
@@ -133,36 +126,32 @@ fn mercator_to_ground(
     Ok((affine.scaled(scale.east, scale.north), None))
 }
 
-impl Terrain {
-    /// This ground with its grid, read as numbers of some system, brought to metres of the ground. Files whose system stands beside
-    /// them, as `.prj` does beside `.asc`, are placed so; `ending` is that of the file's name.
-    ///
-    /// # Errors
-    /// Degrees, which ground that is read already is not warped from, or a Mercator that no one scale brings to the ground.
-    pub fn placed_in(mut self, crs: &Crs, ending: &'static str) -> Result<Self, Error> {
-        let Grid { rows, columns, cell_size_m: cell, origin_m: origin } = self.grid;
-        let size = Size { columns, rows };
-        let affine = Affine { origin, column: [cell, 0.0], row: [0.0, cell] };
-        refuse_degrees(&affine, size, crs, ending)?;
-        let mut warnings = Vec::new();
-        let (affine, text) = to_ground(affine, size, crs, ending, &mut warnings)?;
-        let [width_m, height_m] = affine.edges();
-        let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
-        if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
-            let [longitude_deg, latitude_deg] = mercator.place_deg(origin[0], origin[1]);
-            return Err(Error::MercatorScale {
-                crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
-                south: width_m / cell,
-                north: height_m / cell,
-                ending,
-                epsg: utm_epsg(longitude_deg, latitude_deg),
-            });
-        }
-        self.grid = Terrain::check_size(rows as u64, columns as u64, width_m, affine.origin)?;
-        self.crs = text;
-        // The system says what its unit is.
-        let kept = self.warnings.iter().filter(|warning| warning.kind != WarningKind::UnknownUnit).cloned();
-        self.warnings = Arc::new(kept.collect());
-        Ok(warnings.into_iter().fold(self, Terrain::with_warning))
+/// The grid of upright square cells in some system, brought to metres of the ground, and the text of the system that it is in then;
+/// `ending` is that of the file's name.
+///
+/// # Errors
+/// A projection that no one scale brings to the ground, or a grid that no map may have.
+pub(crate) fn square_cells(
+    affine: Affine,
+    size: Size,
+    crs: &Crs,
+    ending: &'static str,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Grid, Option<String>), Error> {
+    let [cell, _] = affine.edges();
+    let (affine, text) = to_ground(affine, size, crs, ending, warnings)?;
+    let (columns, rows) = (size.columns as u64, size.rows as u64);
+    let [width_m, height_m] = affine.edges();
+    let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
+    if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
+        let [longitude_deg, latitude_deg] = mercator.place_deg(affine.origin[0], affine.origin[1]);
+        return Err(Error::MercatorScale {
+            crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
+            south: width_m / cell,
+            north: height_m / cell,
+            ending,
+            epsg: utm_epsg(longitude_deg, latitude_deg),
+        });
     }
+    Ok((Terrain::check_size(rows, columns, width_m, affine.origin)?, text))
 }

@@ -21,8 +21,11 @@ struct Node<'a> {
 
 /// What a text says; `None` if it is no WKT and no `.prj`.
 pub(super) fn parse(text: &str) -> Option<Crs> {
-    let Some((node, _)) = Node::read(text, 0) else { return prj::parse_words(text) };
+    let Some((node, rest)) = Node::read(text, 0) else { return prj::parse_words(text) };
     let mut crs = node.crs()?;
+    // Esri writes the vertical system behind the horizontal one, without a compound system around them.
+    let beside = rest.trim_start().strip_prefix(',').and_then(|rest| Node::read(rest, 0));
+    crs.vertical = crs.vertical.or_else(|| beside?.0.vertical());
     crs.text = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
     if let Some(code) = node.horizontal().epsg_code() {
         let of_code = Crs::from_epsg(code);
@@ -93,7 +96,7 @@ impl<'a> Node<'a> {
             return Some(crs);
         }
         if self.is(&GEOGRAPHIC) {
-            return Some(Crs { is_geographic: true, ..Crs::default() });
+            return Some(Crs { is_geographic: true, vertical: self.third_axis(), ..Crs::default() });
         }
         if self.is(&["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"]) {
             return Some(Crs { unit: self.unit(), ..Crs::default() });
@@ -101,7 +104,8 @@ impl<'a> Node<'a> {
         if !self.is(&["PROJCS", "PROJCRS", "PROJECTEDCRS"]) {
             return None;
         }
-        Some(Crs { unit: self.unit(), mercator: self.mercator(), ..Crs::default() })
+        let vertical = self.third_axis();
+        Some(Crs { unit: self.unit(), mercator: self.mercator(), vertical, ..Crs::default() })
     }
 
     fn vertical(&self) -> Option<Vertical> {
@@ -109,9 +113,24 @@ impl<'a> Node<'a> {
             return None;
         }
         let of_code = self.epsg_code().and_then(epsg::vertical);
-        let down = |node: &Node<'_>| node.words.iter().any(|word| word.eq_ignore_ascii_case("down"));
-        let is_depth = self.nodes.iter().any(|node| node.is(&["AXIS"]) && down(node));
-        of_code.or_else(|| self.unit().map(|unit| Vertical { unit, is_depth }))
+        let is_depth = self.nodes.iter().any(Node::counts_down) || of_code.is_some_and(|code| code.is_depth);
+        let unit = self.unit().or(of_code.map(|code| code.unit))?;
+        Some(Vertical { unit, is_depth })
+    }
+
+    /// Whether an axis, or the parameter by which Esri says so, points down.
+    fn counts_down(&self) -> bool {
+        let number = || self.words.get(1).and_then(|word| word.parse::<f64>().ok());
+        let is_direction = self.words.first().is_some_and(|word| word.eq_ignore_ascii_case("Direction"));
+        self.is(&["AXIS"]) && self.words.iter().any(|word| word.eq_ignore_ascii_case("down"))
+            || self.is(&["PARAMETER"]) && is_direction && number().is_some_and(|number| number < 0.0)
+    }
+
+    /// Unit of the ellipsoidal heights of a system of three axes, if it says one.
+    fn third_axis(&self) -> Option<Vertical> {
+        let is_up = |node: &&Node<'_>| node.words.iter().any(|word| word.eq_ignore_ascii_case("up"));
+        let axis = self.nodes.iter().filter(|node| node.is(&["AXIS"])).find(is_up)?;
+        axis.unit().map(|unit| Vertical { unit, is_depth: false })
     }
 
     /// The unit of a system's own axes: its `UNIT`, or that of its first axis.

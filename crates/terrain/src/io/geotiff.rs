@@ -1,7 +1,7 @@
 //! GeoTIFF elevation as files are: what a file says is honoured, or refused by name.
 //!
 //! The `tiff` crate reads the directories; tags that say how samples are laid out (`layout`), compressed (`codec`), predicted and typed
-//! (`sample`), masked (`masks`) and scaled (`metadata`, `heights`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
+//! (`sample`), masked (`masks`) and scaled (`metadata`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
 
 mod aux_xml;
 mod classes;
@@ -9,7 +9,6 @@ mod codec;
 mod directory;
 mod frame;
 mod geokeys;
-mod heights;
 mod layout;
 mod lerc;
 mod masks;
@@ -27,9 +26,8 @@ pub(crate) use self::classes::ClassRaster;
 use self::{
     directory::TiffFile,
     geokeys::GeoKeys,
-    heights::Heights,
     layout::{Layout, dimensions},
-    metadata::{BandMetadata, NoData},
+    metadata::NoData,
     placement::{Arrangement, Placement},
     raster::Band,
     sample::Number,
@@ -38,6 +36,7 @@ pub use self::{sidecars::Sidecars, write::write};
 use crate::{
     Error, Terrain, Warning, WarningKind,
     crs::{Crs, Size, Unwarped},
+    io::heights::{BandMetadata, Heights},
     resample::{Affine, Raster},
     samples::Sample,
 };
@@ -83,7 +82,7 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
     refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
     let metadata = beside.aux.over(BandMetadata::read(&mut file.tags(image), band)?)?;
-    let heights = Heights::of(&metadata, &crs, &mut warnings)?;
+    let heights = Heights::of(&metadata, &crs, "tif", &mut warnings)?;
     let nodata = match &beside.aux.nodata {
         Some(text) => NoData::parse(text, layout.sample)?,
         None => NoData::read(&mut file.tags(image), layout.sample)?,
