@@ -8,7 +8,11 @@ mod epsg;
 mod geographic;
 mod ground;
 mod mercator;
+mod method;
+mod multiplied;
 mod prj;
+mod projection;
+mod scale;
 mod unit;
 mod warp;
 mod wkt;
@@ -17,12 +21,15 @@ pub(crate) use self::{
     earth::registered_code,
     ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, square_cells, to_ground},
     mercator::is_of_earth,
+    method::Described,
     warp::{DegreeFrame, Unwarped, Warp},
 };
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
+    projection::Projection,
+    scale::ScaleRefusal,
     unit::{LinearUnit, by_epsg_code, by_name},
     warp::WarpRefusal,
 };
@@ -40,6 +47,8 @@ pub struct Crs {
     pub unit: Option<LinearUnit>,
     /// Its projection, where that is a Mercator or equidistant cylindrical one, whose metres are no metres of the ground.
     pub mercator: Option<Mercator>,
+    /// Any other projection, where it is known.
+    pub projection: Option<Projection>,
     /// Unit and direction of its heights, if it has any.
     pub vertical: Option<Vertical>,
 }
@@ -95,12 +104,17 @@ impl Crs {
     /// The text of a system that a map in metres may be in.
     ///
     /// # Errors
-    /// A text that names no system, or one in degrees.
+    /// A text that names no system, one in degrees, or a code of anything but a projected system, as of heights or of a unit.
     pub fn of_metres(text: String) -> Result<String, Error> {
         match Crs::parse(&text) {
-            Some(crs) if !crs.is_geographic => Ok(text),
+            Some(crs) if !crs.is_geographic && !(crs.is_code_alone() && crs.unit.is_none()) => Ok(text),
             _ => Err(Error::Crs { found: text.chars().take(60).collect() }),
         }
+    }
+
+    /// Whether nothing is known of the system but what the registry says of its code.
+    fn is_code_alone(&self) -> bool {
+        self.text.as_ref().is_some_and(|text| text.starts_with("EPSG:"))
     }
 
     /// What the EPSG registry says of a code. Of a code that is not known here nothing but itself is known.

@@ -179,6 +179,9 @@ pub enum Error {
     /// A grid of degrees that is not warped to metres.
     #[error(transparent)]
     Warp(#[from] crate::crs::WarpRefusal),
+    /// A projection whose metres are not brought to the ground.
+    #[error(transparent)]
+    Scale(#[from] crate::crs::ScaleRefusal),
     /// An SRTM tile.
     #[error(transparent)]
     Hgt(#[from] crate::io::hgt::HgtError),
@@ -374,7 +377,7 @@ impl Error {
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
-            Error::Crs { .. } | Error::StretchedCrs { .. } => "crs".into(),
+            Error::Crs { .. } | Error::StretchedCrs { .. } | Error::Scale(_) => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
             Error::Area(error) => error.at.clone(),

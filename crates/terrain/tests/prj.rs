@@ -104,7 +104,7 @@ fn heights_of_a_grid_in_degrees_have_their_unit_too() {
 
 #[test]
 fn heights_without_a_unit_are_doubted_where_coordinates_are_in_feet() {
-    let terrain = read(LONG_ISLAND).unwrap();
+    let terrain = read_beside(1.0, [980_000.0, 200_000.0], &[("a.prj", LONG_ISLAND.as_bytes())]).unwrap();
     near(lowest_m(&terrain), 300.0);
     near(terrain.grid.cell_size_m, US_FOOT_M);
     let said = said(&terrain, WarningKind::AssumedHeightUnit).unwrap();
@@ -178,9 +178,7 @@ fn the_size_of_cells_is_checked_in_metres() {
     let refused = read(400.0).unwrap_err().to_string();
     assert!(refused.contains("121.9"), "{refused}");
     assert!(read(0.02).unwrap_err().to_string().contains("0.006"));
-    let kilometres = UTM
-        .replace(r#"UNIT["metre",1]],PROJ"#, "")
-        .replace(r#"UNIT["metre",1],AUTHORITY["EPSG","32632"]"#, r#"UNIT["kilometre",1000]"#);
+    let kilometres = "+proj=utm +zone=32 +datum=WGS84 +units=km";
     let fine = read_beside(0.005, [512.0, 5000.0], &[("a.prj", kilometres.as_bytes())]).unwrap();
     assert_eq!((fine.grid.cell_size_m, fine.grid.origin_m), (5.0, [512_000.0, 5_000_000.0]));
 }

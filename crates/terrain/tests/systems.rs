@@ -93,18 +93,25 @@ fn a_map_in_metres_keeps_its_system_and_needs_no_note() {
 
 #[test]
 fn feet_become_metres_whether_a_key_or_the_code_says_so() {
-    for file in [
-        File::epsg(2263),
-        File { keys: [File::epsg(32632).keys, vec![3076, 0, 1, 9003]].concat(), ..File::epsg(0) },
-        File {
-            keys: [File::epsg(32767).keys, vec![3076, 0, 1, 32767, 3077, 34736, 1, 0]].concat(),
-            doubles: vec![US_FOOT_M],
-            ..File::epsg(0)
-        },
+    let long_island = [980_000.0, 200_000.0];
+    for (file, [x, y]) in [
+        (File::epsg(2263), long_island),
+        (
+            File { keys: [File::epsg(32632).keys, vec![3076, 0, 1, 9003]].concat(), ..File::epsg(0) },
+            [1_640_000.0, 17_700_000.0],
+        ),
+        (
+            File {
+                keys: [File::epsg(32767).keys, vec![3076, 0, 1, 32767, 3077, 34736, 1, 0]].concat(),
+                doubles: vec![US_FOOT_M],
+                ..File::epsg(0)
+            },
+            long_island,
+        ),
     ] {
-        let terrain = file.read();
+        let terrain = File { tie: [0.0, 0.0, 0.0, x, y, 0.0], ..file }.read();
         near(terrain.grid.cell_size_m, 2.0 * US_FOOT_M);
-        near(terrain.grid.origin_m[0], 500_000.0 * US_FOOT_M);
+        near(terrain.grid.origin_m[0], x * US_FOOT_M);
         near(height_m(&terrain, 0, 0), 120.0);
         assert!(
             terrain.warnings().iter().any(|warning| warning.detail.contains("unit of its heights")),
@@ -112,8 +119,8 @@ fn feet_become_metres_whether_a_key_or_the_code_says_so() {
             terrain.warnings()
         );
     }
-    let both =
-        File { keys: [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat(), ..File::epsg(0) }.read();
+    let keys = [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat();
+    let both = File { keys, tie: [0.0, 0.0, 0.0, 300_000.0, 60_000.0, 0.0], ..File::epsg(0) }.read();
     near(both.grid.cell_size_m, 2.0);
     assert!(both.warnings()[0].detail.contains("EPSG:2263"), "{:?}", both.warnings());
 }

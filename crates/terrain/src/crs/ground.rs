@@ -1,6 +1,9 @@
 //! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
 
-use super::{Crs, Mercator, mercator::ECCENTRICITY_2};
+use super::{
+    Crs, GroundScale, Mercator, ScaleRefusal, mercator::ECCENTRICITY_2, projection::AxisScale,
+    scale::projected_to_ground,
+};
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
     io::degrees::{Coordinates, utm_epsg},
@@ -47,27 +50,49 @@ impl Affine {
 /// # Errors
 /// [`Error::StretchedCrs`] with the command that mends.
 pub(crate) fn refuse_stretched(grid: &Grid, text: &str) -> Result<(), Error> {
-    let Some(mercator) = Crs::parse(text).and_then(|crs| crs.mercator) else { return Ok(()) };
+    let Some(crs) = Crs::parse(text) else { return Ok(()) };
     let half_m = |cells: usize| cells as f64 * grid.cell_size_m / 2.0;
     let middle_m = [grid.origin_m[0] + half_m(grid.columns), grid.origin_m[1] + half_m(grid.rows)];
-    let scale = mercator.ground_scale(middle_m[1]);
-    let mean = (scale.east * scale.north).sqrt();
-    if (mean - 1.0).abs() <= ECCENTRICITY_2 {
-        return Ok(());
+    let Some((scale, [longitude_deg, latitude_deg])) = scale_at(&crs, middle_m)? else { return Ok(()) };
+    let epsg = utm_epsg(longitude_deg, latitude_deg);
+    let found = || text.chars().take(60).collect::<String>();
+    if crs.projection.is_some_and(|projection| projection.is_south_orientated()) {
+        return Err(ScaleRefusal::SouthOrientated { crs: found(), ending: "tif", epsg }.into());
     }
-    let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
-    Err(Error::StretchedCrs {
-        found: text.chars().take(60).collect(),
-        scale: mean,
-        epsg: utm_epsg(longitude_deg, latitude_deg),
-    })
+    let AxisScale { x, y, shear } = scale;
+    if (scale.mean() - 1.0).abs() > ECCENTRICITY_2 {
+        return Err(Error::StretchedCrs { found: found(), scale: scale.mean(), epsg });
+    }
+    if scale.unevenness() > 2.0 * ECCENTRICITY_2 {
+        let angle_deg = shear.acos().to_degrees();
+        return Err(ScaleRefusal::Uneven { crs: found(), x, y, angle_deg, ending: "tif", epsg }.into());
+    }
+    Ok(())
 }
 
-/// Brings projected coordinates to metres of the ground: by the system's unit and, of a Mercator, by its scale. Returns the text of the
+/// Ground by map at a place, and its longitude and latitude, of a projection that is computed here.
+///
+/// # Errors
+/// A projection of the world that is not.
+fn scale_at(crs: &Crs, place_m: [f64; 2]) -> Result<Option<(AxisScale, [f64; 2])>, ScaleRefusal> {
+    if let Some(mercator) = crs.mercator {
+        let GroundScale { east, north } = mercator.ground_scale(place_m[1]);
+        let scale = AxisScale { x: east, y: north, shear: 0.0 };
+        return Ok(Some((scale, mercator.place_deg(place_m[0], place_m[1]))));
+    }
+    let Some(projection) = &crs.projection else { return Ok(None) };
+    let Some(conversion) = projection.conversion() else {
+        let name = crs.text.clone().unwrap_or_default();
+        return projection.refuse_world(&name, "tif").map(|()| None);
+    };
+    Ok(conversion.axis_scale(place_m).zip(conversion.place_deg(place_m)))
+}
+
+/// Brings projected coordinates to metres of the ground: by the system's unit and by the scale of its projection. Returns the text of the
 /// system that they are in then. What was changed is added to the warnings.
 ///
 /// # Errors
-/// A Mercator whose scale changes over the map by more than its cells can tell.
+/// A scale that changes over the map by more than its cells can tell, or that differs between directions.
 pub(crate) fn to_ground(
     affine: Affine,
     size: Size,
@@ -79,7 +104,7 @@ pub(crate) fn to_ground(
     let affine = affine.scaled(metres, metres);
     match &crs.mercator {
         Some(mercator) => mercator_to_ground(affine, size, mercator, (crs, ending), warnings),
-        None => Ok((affine, crs.text.clone())),
+        None => projected_to_ground(affine, size, crs, ending, warnings),
     }
 }
 

@@ -90,7 +90,7 @@ fn understood(text: &str) -> Result<Crs, String> {
     if text.starts_with('{') {
         return Err("it is PROJJSON, which is not read".into());
     }
-    if text.contains("+proj=") {
+    if text.contains("+proj=") && !text.contains('[') {
         return Crs::from_proj(text).ok_or_else(|| "its PROJ definition is not known here".into());
     }
     let beginning = || text.chars().take(40).collect::<String>();
