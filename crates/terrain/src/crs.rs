@@ -22,7 +22,7 @@ pub(crate) use self::{
     ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, square_cells, to_ground},
     mercator::is_of_earth,
     method::Described,
-    warp::{DegreeFrame, Unwarped, Warp},
+    warp::{DegreeFrame, Regridding, Unwarped, Warp},
 };
 pub use self::{
     earth::{Earth, EarthError},

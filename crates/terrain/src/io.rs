@@ -21,7 +21,7 @@ use flate2::read::MultiGzDecoder;
 use tiff::{ColorType, decoder::Decoder};
 
 pub use self::georeference::Georeference;
-use crate::{Error, Terrain};
+use crate::{Error, Terrain, crs::Unwarped};
 
 /// How a map is to be read.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,8 +129,7 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
 
 fn read_geotiff(bytes: &[u8], beside: &geotiff::Sidecars, options: &Options) -> Result<Terrain, Error> {
     let unwarped = geotiff::read_unwarped(bytes, options.most_cells, beside).map_err(Error::in_geotiff)?;
-    let terrain = unwarped.into_metres(options)?;
-    Ok(if holds_bytes(bytes) { terrain.with_doubt_of_bytes() } else { terrain })
+    Unwarped { is_of_bytes: holds_bytes(bytes), ..unwarped }.into_metres(options)
 }
 
 /// Whether a TIFF holds one number of 8 bits for each pixel.

@@ -71,13 +71,13 @@ pub(crate) fn read_in(text: &str, options: &Options, crs: &Crs) -> Result<Unwarp
     if crs.is_geographic {
         let warp = Warp::plan(frame, crs, ENDING, options.most_cells)?;
         let terrain = values.terrain(text, &header, warp.source_grid())?;
-        return Ok(Unwarped { terrain: with_warnings(terrain, warnings), warp: Some(warp) });
+        return Ok(Unwarped::of(with_warnings(terrain, warnings), Some(warp)));
     }
     let is_in_metres = crs.unit.is_none_or(|unit| unit.is_metre());
     let placed = square_cells(header.affine(), frame.size, crs, ENDING, &mut warnings);
     let (grid, name) = placed.map_err(|error| if is_in_metres { in_header(error) } else { error })?;
     let terrain = Terrain { crs: name, ..values.terrain(text, &header, grid)? };
-    Ok(Unwarped { terrain: with_warnings(terrain, warnings), warp: None })
+    Ok(Unwarped::of(with_warnings(terrain, warnings), None))
 }
 
 fn with_warnings(terrain: Terrain, warnings: Vec<Warning>) -> Terrain {

@@ -37,7 +37,7 @@ use crate::{
     Error, Terrain, Warning, WarningKind,
     crs::{Crs, Size, Unwarped},
     io::heights::{BandMetadata, Heights},
-    resample::{Affine, Raster},
+    resample::Affine,
     samples::Sample,
 };
 
@@ -79,7 +79,7 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
     let is_named = keys.name_a_system() || beside.aux.crs.is_some();
     let size = Size { columns, rows };
     let placement = Placement::of(affine, size, (is_named, &crs), most_cells, &mut warnings)?;
-    refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
+    placement.refuse_many(most_cells)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
     let metadata = beside.aux.over(BandMetadata::read(&mut file.tags(image), band)?)?;
     let heights = Heights::of(&metadata, &crs, "tif", &mut warnings)?;
@@ -87,7 +87,7 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
         Some(text) => NoData::parse(text, layout.sample)?,
         None => NoData::read(&mut file.tags(image), layout.sample)?,
     };
-    let warp = placement.warp.clone();
+    let regridding = placement.regridding.clone();
     let reading = Reading { layout, band, nodata, heights, placement, mask: beside.mask.as_deref() };
     let terrain = if reading.layout.sample.is_exact_in_single() {
         reading.terrain::<f32>(&mut file, &mut warnings)?
@@ -95,7 +95,7 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
         reading.terrain::<f64>(&mut file, &mut warnings)?
     };
     let terrain = sidecars::joined(warnings).into_iter().fold(terrain, Terrain::with_warning);
-    Ok(Unwarped { terrain, warp })
+    Ok(Unwarped { terrain, regridding, is_of_bytes: false })
 }
 
 /// Number of cells of a GeoTIFF, as its head has it; of one in degrees, with those of the grid that it is warped to.
@@ -199,16 +199,8 @@ impl Reading<'_> {
         }
         masks::apply(file, layout, self.mask, &mut samples)?;
         let grid = self.placement.grid;
-        let (columns, rows) = (layout.columns, layout.rows);
-        let samples = match self.placement.arrangement {
-            Arrangement::Cells { rows_from_north, columns_from_east } => {
-                from_south_west(&mut samples, columns, rows_from_north, columns_from_east);
-                samples
-            }
-            Arrangement::Resampled(affine) => {
-                Raster { samples: &samples, columns, rows, affine }.on(&grid, T::from_double)
-            }
-        };
+        let Arrangement { rows_from_north, columns_from_east } = self.placement.arrangement;
+        from_south_west(&mut samples, layout.columns, rows_from_north, columns_from_east);
         let heights = self.heights;
         let mut terrain = if heights.is_height() {
             Terrain::from_samples(grid, samples, |sample| sample)?
