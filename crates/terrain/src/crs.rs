@@ -106,9 +106,10 @@ impl Crs {
     /// # Errors
     /// A text that names no system, one in degrees, or a code of anything but a projected system, as of heights or of a unit.
     pub fn of_metres(text: String) -> Result<String, Error> {
-        match Crs::parse(&text) {
-            Some(crs) if !crs.is_geographic && !(crs.is_code_alone() && crs.unit.is_none()) => Ok(text),
-            _ => Err(Error::Crs { found: text.chars().take(60).collect() }),
+        let is_of_another_kind = |crs: &Crs| crs.is_geographic || crs.is_code_alone() && crs.unit.is_none();
+        match Crs::parse(&text).filter(|crs| !is_of_another_kind(crs)) {
+            Some(_) => Ok(text),
+            None => Err(Error::Crs { found: text.chars().take(60).collect() }),
         }
     }
 
