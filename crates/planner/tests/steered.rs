@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use model::{Robot, builtin};
 use planner::{
-    Error, Footprint, Goal, Objective, Patience, Plan, Planner, Prices, Query, Settings, Start, least_room_m,
-    stops, stops_j,
+    Error, Footprint, Goal, Objective, Patience, Plan, Planner, Pose, Prices, Query, Settings, Start,
+    least_room_m, stops, stops_j,
 };
 use rand::RngExt;
 use terrain::{Grid, Terrain};
@@ -123,7 +123,7 @@ fn the_room_beside_a_path_is_what_a_look_at_all_obstacles_finds() {
         let outline = Footprint::of(&husky());
         let steps = |n: i32| (0..=n).map(move |i| f64::from(i) / f64::from(n) - 0.5);
         let mut least_m = f64::INFINITY;
-        for pose in &plan.route.poses {
+        for pose in driven(&plan.route.poses, 8) {
             let (sin, cos) = pose.heading_rad.sin_cos();
             for (ahead, aside) in steps(16).flat_map(|a| steps(16).map(move |b| (a, b))) {
                 let (ahead, aside) = (ahead * outline.length_m, aside * outline.width_m);
@@ -138,6 +138,60 @@ fn the_room_beside_a_path_is_what_a_look_at_all_obstacles_finds() {
             }
         }
         assert!(found_m <= least_m + 1e-9 && least_m - found_m < 0.04, "{found_m}, by points {least_m}");
+    }
+}
+
+/// Poses along the arcs between those of a path, so many to each.
+fn driven(poses: &[Pose], between: usize) -> Vec<Pose> {
+    let along = |pair: &[Pose]| {
+        let [from, to] = [pair[0], pair[1]];
+        let (dx_m, dy_m) = (to.x_m - from.x_m, to.y_m - from.y_m);
+        let turned_rad = (to.heading_rad - from.heading_rad + PI).rem_euclid(2.0 * PI) - PI;
+        (0..=between).map(move |i| {
+            let share = i as f64 / between as f64;
+            let heading_rad = from.heading_rad + share * turned_rad;
+            // The chord to a point of an arc lies half the rest of the turn off the whole chord.
+            let (sin, cos) = ((share - 1.0) * turned_rad / 2.0).sin_cos();
+            let whole = (turned_rad / 2.0).sin();
+            let part = if whole == 0.0 { share } else { (share * turned_rad / 2.0).sin() / whole };
+            let (x_m, y_m) =
+                (from.x_m + part * (dx_m * cos - dy_m * sin), from.y_m + part * (dx_m * sin + dy_m * cos));
+            Pose { x_m, y_m, heading_rad, ..from }
+        })
+    };
+    poses.windows(2).flat_map(along).collect()
+}
+
+/// A robot far smaller than the cells passes obstacles between the ends of its steps.
+#[test]
+fn the_room_beside_a_path_is_never_more_than_the_true_one_where_cells_are_large() {
+    let robot = Robot { wheelbase_m: 0.1, track_m: 0.1, slip_track_m: 0.1, wheel_radius_m: 0.02, ..husky() };
+    let is_post = |x: f64, y: f64| (x / 1.5).fract() > 0.66 && (y / 1.5).fract() > 0.66;
+    let terrain = level(|x, y| is_post(x + 0.4 * y.sin(), y) && (x - 5.0).hypot(y - 5.0) > 2.0);
+    let planner = Planner::new(&terrain, &robot, Settings::of(&robot)).unwrap();
+    let outline = Footprint::of(&robot);
+    for goal in [at(25.25, 12.25, None), at(16.25, 24.25, None)] {
+        let asked = Query { refine: true, ..query(goal, Settings::of(&robot)) };
+        let plan = planner.plan(&asked, Objective::Energy).unwrap();
+        for route in plan.routes() {
+            let found_m = least_room_m(planner.lattice(), route, &Patience::default()).unwrap();
+            let mut least_m = f64::INFINITY;
+            for pose in driven(&route.poses, 24) {
+                let (sin, cos) = pose.heading_rad.sin_cos();
+                for (ahead, aside) in [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)] {
+                    let (ahead, aside) = (ahead * outline.length_m, aside * outline.width_m);
+                    let [x, y] = [pose.x_m + ahead * cos - aside * sin, pose.y_m + ahead * sin + aside * cos];
+                    for cell in
+                        (0..GRID.cells()).map(|i| GRID.cell(i)).filter(|cell| terrain.is_blocked(*cell))
+                    {
+                        let [cx, cy] = GRID.center_m(cell);
+                        let beyond = |d: f64| (d.abs() - GRID.cell_size_m / 2.0).max(0.0);
+                        least_m = least_m.min(beyond(x - cx).hypot(beyond(y - cy)));
+                    }
+                }
+            }
+            assert!(found_m <= least_m + 1e-9, "{found_m}, by points {least_m}");
+        }
     }
 }
 

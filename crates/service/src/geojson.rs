@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use crate::{
+    antimeridian,
     routes::{mission::StopAnswer, plan::PoseAnswer},
     tracks::{Track, Tracks},
 };
@@ -36,9 +37,7 @@ fn path(track: &Track<'_>, out: &mut dyn Write) -> io::Result<()> {
     match track.poses {
         [pose] => write!(out, "{}", json!({ "type": "Point", "coordinates": position(pose) }))?,
         poses => {
-            out.write_all(br#"{"type":"LineString","coordinates":"#)?;
-            serde_json::to_writer(&mut *out, &Line(poses))?;
-            out.write_all(b"}")?;
+            line(poses, out)?;
         }
     }
     out.write_all(br#","properties":"#)?;
@@ -64,6 +63,20 @@ fn stop(stop: &StopAnswer) -> serde_json::Value {
             "departure_charge": stop.departure_charge,
         },
     })
+}
+
+/// A line string, or one in several parts where it crosses the antimeridian.
+fn line(poses: &[PoseAnswer], out: &mut dyn Write) -> io::Result<()> {
+    let crosses = |[from, to]: &[PoseAnswer; 2]| {
+        from.lon_deg.zip(to.lon_deg).is_some_and(|(from_deg, to_deg)| (to_deg - from_deg).abs() > 180.0)
+    };
+    if poses.array_windows().any(crosses) {
+        let parts = antimeridian::cut_line(&poses.iter().map(position).collect::<Vec<_>>());
+        return write!(out, "{}", json!({ "type": "MultiLineString", "coordinates": parts }));
+    }
+    out.write_all(br#"{"type":"LineString","coordinates":"#)?;
+    serde_json::to_writer(&mut *out, &Line(poses))?;
+    out.write_all(b"}")
 }
 
 /// Poses as positions.

@@ -8,6 +8,7 @@ mod accept;
 mod access;
 mod admission;
 mod answer;
+mod antimeridian;
 mod bare_refusal;
 mod body;
 mod cells;

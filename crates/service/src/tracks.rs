@@ -111,6 +111,7 @@ impl<'a> Tracks<'a> {
             poses: &to.poses,
             totals: vec![
                 ("energy_j", json!(to.energy_j - from.energy_j)),
+                ("driving_energy_j", json!(to.poses.last().map_or(0.0, |pose| pose.energy_j))),
                 ("duration_s", json!(to.arrival_s - from.departure_s)),
                 ("distance_m", json!(to.poses.last().map_or(0.0, |pose| pose.distance_m))),
                 ("arrival_charge", json!(to.arrival_charge)),

@@ -8,21 +8,28 @@ mod epsg;
 mod geographic;
 mod ground;
 mod mercator;
+mod method;
+mod multiplied;
 mod prj;
+mod projection;
+mod scale;
 mod unit;
 mod warp;
 mod wkt;
 
 pub(crate) use self::{
     earth::registered_code,
-    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, to_ground},
+    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, square_cells, to_ground},
     mercator::is_of_earth,
-    warp::{DegreeFrame, Unwarped, Warp},
+    method::Described,
+    warp::{DegreeFrame, Regridding, Unwarped, Warp},
 };
 pub use self::{
     earth::{Earth, EarthError},
     epsg::vertical,
     mercator::{GroundScale, Mercator, Spacing},
+    projection::Projection,
+    scale::ScaleRefusal,
     unit::{LinearUnit, by_epsg_code, by_name},
     warp::WarpRefusal,
 };
@@ -40,6 +47,8 @@ pub struct Crs {
     pub unit: Option<LinearUnit>,
     /// Its projection, where that is a Mercator or equidistant cylindrical one, whose metres are no metres of the ground.
     pub mercator: Option<Mercator>,
+    /// Any other projection, where it is known.
+    pub projection: Option<Projection>,
     /// Unit and direction of its heights, if it has any.
     pub vertical: Option<Vertical>,
 }
@@ -84,15 +93,29 @@ impl Crs {
         wkt::parse(text)
     }
 
+    /// What a PROJ definition (`+proj=utm +zone=32 +datum=WGS84`) says of axes, units and projection, but for a name; `None` for one
+    /// without a projection.
+    pub(crate) fn from_proj(definition: &str) -> Option<Self> {
+        let is_named = definition.len() <= LONGEST_TEXT
+            && definition.split_ascii_whitespace().any(|word| word.starts_with("+proj="));
+        is_named.then(|| epsg::by_definition(definition))
+    }
+
     /// The text of a system that a map in metres may be in.
     ///
     /// # Errors
-    /// A text that names no system, or one in degrees.
+    /// A text that names no system, one in degrees, or a code of anything but a projected system, as of heights or of a unit.
     pub fn of_metres(text: String) -> Result<String, Error> {
-        match Crs::parse(&text) {
-            Some(crs) if !crs.is_geographic => Ok(text),
-            _ => Err(Error::Crs { found: text.chars().take(60).collect() }),
+        let is_of_another_kind = |crs: &Crs| crs.is_geographic || crs.is_code_alone() && crs.unit.is_none();
+        match Crs::parse(&text).filter(|crs| !is_of_another_kind(crs)) {
+            Some(_) => Ok(text),
+            None => Err(Error::Crs { found: text.chars().take(60).collect() }),
         }
+    }
+
+    /// Whether nothing is known of the system but what the registry says of its code.
+    fn is_code_alone(&self) -> bool {
+        self.text.as_ref().is_some_and(|text| text.starts_with("EPSG:"))
     }
 
     /// What the EPSG registry says of a code. Of a code that is not known here nothing but itself is known.

@@ -179,6 +179,9 @@ pub enum Error {
     /// A grid of degrees that is not warped to metres.
     #[error(transparent)]
     Warp(#[from] crate::crs::WarpRefusal),
+    /// A projection whose metres are not brought to the ground.
+    #[error(transparent)]
+    Scale(#[from] crate::crs::ScaleRefusal),
     /// An SRTM tile.
     #[error(transparent)]
     Hgt(#[from] crate::io::hgt::HgtError),
@@ -253,6 +256,14 @@ pub enum Error {
         ending: &'static str,
         /// EPSG code of the UTM zone of the middle.
         epsg: u32,
+    },
+    /// A vertical system that counts downwards.
+    #[error(
+        "the file's vertical system counts depths, but heights are needed: `gdal_calc.py -A in.{ending} --calc=-A --outfile=out.tif` turns them over, and `gdal_edit.py -a_srs EPSG:CODE out.tif` names the horizontal system alone"
+    )]
+    Depths {
+        /// Ending of the file's name.
+        ending: &'static str,
     },
     /// A TIFF whose samples are not one elevation per pixel.
     #[error("the GeoTIFF holds {found}, but one band of integer or float elevation is needed")]
@@ -366,7 +377,7 @@ impl Error {
             Error::AllUnknown => "elevation_m".into(),
             Error::CellSize { .. } => "cell_size_m".into(),
             Error::Origin { axis, .. } => format!("origin_m[{axis}]"),
-            Error::Crs { .. } | Error::StretchedCrs { .. } => "crs".into(),
+            Error::Crs { .. } | Error::StretchedCrs { .. } | Error::Scale(_) => "crs".into(),
             Error::TooManySurfaces { .. } => "surface".into(),
             Error::TooManyWarnings { .. } => "warnings".into(),
             Error::Area(error) => error.at.clone(),

@@ -5,6 +5,7 @@ pub mod cells;
 pub mod degrees;
 mod georeference;
 pub mod geotiff;
+mod heights;
 pub mod hgt;
 pub mod json;
 pub mod npy;
@@ -20,7 +21,7 @@ use flate2::read::MultiGzDecoder;
 use tiff::{ColorType, decoder::Decoder};
 
 pub use self::georeference::Georeference;
-use crate::{Error, Terrain, crs::Crs};
+use crate::{Error, Terrain, crs::Unwarped};
 
 /// How a map is to be read.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,8 +129,7 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
 
 fn read_geotiff(bytes: &[u8], beside: &geotiff::Sidecars, options: &Options) -> Result<Terrain, Error> {
     let unwarped = geotiff::read_unwarped(bytes, options.most_cells, beside).map_err(Error::in_geotiff)?;
-    let terrain = unwarped.into_metres(options)?;
-    Ok(if holds_bytes(bytes) { terrain.with_doubt_of_bytes() } else { terrain })
+    Unwarped { is_of_bytes: holds_bytes(bytes), ..unwarped }.into_metres(options)
 }
 
 /// Whether a TIFF holds one number of 8 bits for each pixel.
@@ -151,21 +151,15 @@ pub fn read_ros_map(
     ros_map::read(text(yaml)?, options.most_cells, image)?.as_asked(options)
 }
 
-/// An ESRI ASCII grid, placed in the system that a `.prj` file beside it names, if there is one that can be read.
+/// An ESRI ASCII grid, placed in the system that a `.prj` file beside it names.
 fn read_ascii_beside(bytes: &[u8], path: &Path, options: &Options) -> Result<Terrain, Error> {
-    let stem = path.with_extension("");
-    let bare =
-        if stem.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("asc")) { &stem } else { path };
-    let beside = ["prj", "PRJ"].iter().find_map(|ending| {
-        let bytes = fs::read(bare.with_extension(ending)).ok()?;
-        Crs::parse(text(&bytes).ok()?)
-    });
+    let beside = ascii::ProjectionFile::beside(path)?;
     let text = text(bytes)?;
-    match beside {
-        Some(crs) if crs.is_geographic => ascii::read_degrees(text, options, &crs)?.into_metres(options),
-        Some(crs) => ascii::read(text, options)?.placed_in(&crs, "asc")?.as_asked(options),
-        None => ascii::read(text, options)?.as_asked(options),
-    }
+    let terrain = match &beside.crs {
+        Some(crs) => ascii::read_in(text, options, crs)?.into_metres(options)?,
+        None => ascii::read(text, options)?.as_asked(options)?,
+    };
+    Ok(beside.warning.into_iter().fold(terrain, Terrain::with_warning))
 }
 
 /// The bytes as text, without a byte order mark.

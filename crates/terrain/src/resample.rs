@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::Grid;
+use crate::{Error, Grid, Terrain};
 
 /// A map from pixels, counted from a raster's first corner, to coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,17 @@ impl Affine {
     pub(crate) fn scaled(&self, east: f64, north: f64) -> Self {
         let scale = |[x, y]: [f64; 2]| [x * east, y * north];
         Affine { origin: scale(self.origin), column: scale(self.column), row: scale(self.row) }
+    }
+
+    /// The same map with rows or columns counted from their other end.
+    pub(crate) fn counted_from(&self, columns: Option<usize>, rows: Option<usize>) -> Self {
+        let origin = self.at(columns.unwrap_or(0) as f64, rows.unwrap_or(0) as f64);
+        let turned = |step: [f64; 2], is_turned: bool| if is_turned { step.map(|by| -by) } else { step };
+        Affine {
+            origin,
+            column: turned(self.column, columns.is_some()),
+            row: turned(self.row, rows.is_some()),
+        }
     }
 
     /// The same map with pixels counted from the middle of the first one.
@@ -111,6 +122,38 @@ impl<T: Copy + Into<f64> + Sync> Raster<'_, T> {
             weight * self.samples[(row + below) * self.columns + column + right].into()
         };
         corners.iter().filter(|(.., weight)| *weight > 0.0).map(sample).sum()
+    }
+}
+
+/// The way from a raster's own pixels, kept as ground on a grid of their number, to the cells of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Resampling {
+    /// From pixels, counted from the first cell's outer corner, to the map's metres.
+    pub(crate) affine: Affine,
+    /// The map's cells.
+    pub(crate) grid: Grid,
+    /// The map's system.
+    pub(crate) crs: Option<String>,
+}
+
+impl Resampling {
+    /// A grid of so many pixels, for what is asked of them before they are resampled: square, of the map's cells.
+    pub(crate) fn source_grid(&self, columns: usize, rows: usize) -> Grid {
+        Grid { rows, columns, origin_m: [0.0; 2], ..self.grid }
+    }
+
+    /// Ground on the map's cells out of ground on [`Resampling::source_grid`], with its warnings.
+    ///
+    /// # Errors
+    /// No known cell.
+    pub(crate) fn apply(&self, source: &Terrain) -> Result<Terrain, Error> {
+        let Grid { rows, columns, .. } = source.grid;
+        let raster = Raster { samples: source.relative_m(), columns, rows, affine: self.affine };
+        let relative_m = raster.on(&self.grid, |relative_m| relative_m as f32);
+        let base_m = source.base_m();
+        let terrain = Terrain::from_samples(self.grid, relative_m, |relative_m| base_m + relative_m)?;
+        let terrain = Terrain { crs: self.crs.clone(), ..terrain };
+        Ok(source.warnings().iter().cloned().fold(terrain, Terrain::with_warning))
     }
 }
 

@@ -11,6 +11,7 @@ use terrain::{
     areas::{Areas, ClassesError},
     io::geotiff,
 };
+use tiff::tags::Tag;
 
 fn ground(grid: Grid, crs: Option<&str>) -> Terrain {
     let mut terrain = Terrain::new(grid, &vec![0.0; grid.cells()]).unwrap();
@@ -114,4 +115,33 @@ fn rasters_of_another_place_or_of_none_are_refused() {
         said.to_string().contains("none of the table's classes (7) lies over the map, which holds"),
         "{said}"
     );
+}
+
+#[test]
+fn pixels_that_an_internal_mask_leaves_out_have_no_class() {
+    let mut file = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut file).unwrap();
+    let side = 20;
+    let mut image = encoder.new_image::<tiff::encoder::colortype::Gray8>(side, side).unwrap();
+    let tags = image.encoder();
+    tags.write_tag(Tag::ModelPixelScaleTag, &[1.0, 1.0, 0.0][..]).unwrap();
+    tags.write_tag(Tag::ModelTiepointTag, &[0.0, 0.0, 0.0, 512_000.0, 5_423_000.0, 0.0][..]).unwrap();
+    tags.write_tag(Tag::GeoKeyDirectoryTag, &[1u16, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32_632][..]).unwrap();
+    let class = |index: u32| if index % side < 10 { 80u8 } else { 40 };
+    image.write_data(&(0..side * side).map(class).collect::<Vec<u8>>()).unwrap();
+    let mut mask = encoder.new_image::<tiff::encoder::colortype::Gray8>(side, side).unwrap();
+    const MASK: u32 = 4;
+    mask.encoder().write_tag(Tag::NewSubfileType, MASK).unwrap();
+    let shown = |index: u32| if index % side < 5 { 0u8 } else { 255 };
+    mask.write_data(&(0..side * side).map(shown).collect::<Vec<u8>>()).unwrap();
+    let grid = Grid { rows: 20, columns: 20, cell_size_m: 1.0, origin_m: [512_000.0, 5_422_980.0] };
+    let terrain = ground(grid, Some("EPSG:32632"));
+    let table = json!({"80": {"keep_out": true}, "40": null});
+    let found = Areas::of_classes(&file.into_inner(), &table, &terrain).unwrap();
+    let areas = Areas::of(&found.document, &terrain).unwrap();
+    let driven = terrain.with_areas(areas).as_driven(&|| false).unwrap();
+    let kept_out: Vec<bool> = (0..20).map(|column| driven.is_blocked(Cell { row: 3, column })).collect();
+    // Cells that an edge touches are kept out too.
+    let is_in = |columns: std::ops::Range<usize>| kept_out[columns].iter().any(|is_kept_out| *is_kept_out);
+    assert!(!is_in(0..4) && kept_out[5..10].iter().all(|is_kept_out| *is_kept_out) && !is_in(11..20));
 }

@@ -8,7 +8,7 @@ mod rasterio;
 
 use rasterio::by_rasterio;
 use terrain::{
-    Cell, Grid, Terrain, WarningKind,
+    Cell, Grid, WarningKind,
     crs::{Crs, Earth},
     io::{self, geotiff},
 };
@@ -62,8 +62,12 @@ fn what_lies_beside_a_geotiff_and_cannot_be_used_is_said() {
 
 #[test]
 fn a_written_raster_lies_where_the_map_does() {
-    let web = Grid { rows: 2, columns: 3, cell_size_m: 0.5, origin_m: [1_000_000.0, 6_200_000.0] };
-    let scaled = Terrain::new(web, &[1.0; 6]).unwrap().placed_in(&Crs::from_epsg(3857), "asc").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let web = folder.path().join("web.asc");
+    let header = "ncols 3\nnrows 2\nxllcorner 1000000\nyllcorner 6200000\ncellsize 0.5\n";
+    std::fs::write(&web, header.to_owned() + "1 1 1 1 1 1").unwrap();
+    std::fs::write(web.with_extension("prj"), "EPSG:3857").unwrap();
+    let scaled = io::read_path(&web).unwrap();
     let (scaled, scaled_origin_m) = (scaled.crs.unwrap(), scaled.grid.origin_m);
     let zone = "PROJCS[\"NAD_1983_UTM_Zone_15N\",GEOGCS[\"GCS_North_American_1983\",DATUM[\"D_North_American_1983\",SPHEROID[\"GRS_1980\",6378137.0,298.257222101]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"False_Easting\",500000.0],PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",-93.0],PARAMETER[\"Scale_Factor\",0.9996],PARAMETER[\"Latitude_Of_Origin\",0.0],UNIT[\"Meter\",1.0]]";
     for (crs, origin_m, epsg) in [

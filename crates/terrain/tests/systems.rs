@@ -4,7 +4,7 @@
 
 use std::io::Cursor;
 
-use terrain::{Cell, Grid, Terrain, crs::Crs, io};
+use terrain::{Cell, Terrain, io};
 use tiff::{
     encoder::{TiffEncoder, colortype::Gray32Float},
     tags::Tag,
@@ -93,18 +93,25 @@ fn a_map_in_metres_keeps_its_system_and_needs_no_note() {
 
 #[test]
 fn feet_become_metres_whether_a_key_or_the_code_says_so() {
-    for file in [
-        File::epsg(2263),
-        File { keys: [File::epsg(32632).keys, vec![3076, 0, 1, 9003]].concat(), ..File::epsg(0) },
-        File {
-            keys: [File::epsg(32767).keys, vec![3076, 0, 1, 32767, 3077, 34736, 1, 0]].concat(),
-            doubles: vec![US_FOOT_M],
-            ..File::epsg(0)
-        },
+    let long_island = [980_000.0, 200_000.0];
+    for (file, [x, y]) in [
+        (File::epsg(2263), long_island),
+        (
+            File { keys: [File::epsg(32632).keys, vec![3076, 0, 1, 9003]].concat(), ..File::epsg(0) },
+            [1_640_000.0, 17_700_000.0],
+        ),
+        (
+            File {
+                keys: [File::epsg(32767).keys, vec![3076, 0, 1, 32767, 3077, 34736, 1, 0]].concat(),
+                doubles: vec![US_FOOT_M],
+                ..File::epsg(0)
+            },
+            long_island,
+        ),
     ] {
-        let terrain = file.read();
+        let terrain = File { tie: [0.0, 0.0, 0.0, x, y, 0.0], ..file }.read();
         near(terrain.grid.cell_size_m, 2.0 * US_FOOT_M);
-        near(terrain.grid.origin_m[0], 500_000.0 * US_FOOT_M);
+        near(terrain.grid.origin_m[0], x * US_FOOT_M);
         near(height_m(&terrain, 0, 0), 120.0);
         assert!(
             terrain.warnings().iter().any(|warning| warning.detail.contains("unit of its heights")),
@@ -112,8 +119,8 @@ fn feet_become_metres_whether_a_key_or_the_code_says_so() {
             terrain.warnings()
         );
     }
-    let both =
-        File { keys: [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat(), ..File::epsg(0) }.read();
+    let keys = [File::epsg(2263).keys, vec![3076, 0, 1, 9001]].concat();
+    let both = File { keys, tie: [0.0, 0.0, 0.0, 300_000.0, 60_000.0, 0.0], ..File::epsg(0) }.read();
     near(both.grid.cell_size_m, 2.0);
     assert!(both.warnings()[0].detail.contains("EPSG:2263"), "{:?}", both.warnings());
 }
@@ -236,9 +243,12 @@ fn a_mercator_is_brought_to_the_ground_or_refused_where_one_scale_does_not_do() 
         );
         assert_ne!(terrain.crs.as_deref(), Some("EPSG:3857"), "its coordinates are others now");
     }
-    let grid = Grid { rows: 500, columns: 500, cell_size_m: 100.0, origin_m: [1_113_194.9, 8_399_737.9] };
-    let wide = Terrain::new(grid, &vec![1.0; grid.cells()]).unwrap();
-    let refused = wide.placed_in(&Crs::from_epsg(3857), "asc").unwrap_err().to_string();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wide.asc");
+    let header = "ncols 500\nnrows 500\nxllcorner 1113194.9\nyllcorner 8399737.9\ncellsize 100\n";
+    std::fs::write(&path, header.to_owned() + &"1 ".repeat(250_000)).unwrap();
+    std::fs::write(path.with_extension("prj"), "EPSG:3857").unwrap();
+    let refused = io::read_path(&path).unwrap_err().to_string();
     assert!(refused.contains("-t_srs EPSG:32632") && refused.contains("in.asc"), "{refused}");
 }
 

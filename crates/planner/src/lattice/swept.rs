@@ -82,7 +82,7 @@ impl Rectangle {
     }
 
     /// Its corners in order round it, in cells.
-    fn corners(&self, cell_size_m: f64) -> [[f64; 2]; 4] {
+    pub(crate) fn corners(&self, cell_size_m: f64) -> [[f64; 2]; 4] {
         let [cos, sin] = self.direction;
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[along, across]| {
             let (along_m, across_m) = (along * self.half_m[0], across * self.half_m[1]);
@@ -145,11 +145,16 @@ impl<'p> SweptPiece<'p> {
         cell_size_m: f64,
         longest_m: f64,
     ) -> Self {
+        Self::with_slack(piece, outline, SLACK_CELLS * cell_size_m, longest_m)
+    }
+
+    /// The same with covers that reach no more than `slack_m` beyond what the outline sweeps.
+    pub(crate) fn with_slack(piece: &'p Piece, outline: &Footprint, slack_m: f64, longest_m: f64) -> Self {
         let half_m = [outline.length_m / 2.0, outline.width_m / 2.0];
         let turn_rad = piece.turn_rad.abs();
         let by_turn = if turn_rad > 0.0 {
             let radius_m = piece.length_m / turn_rad;
-            turn_rad / (2.0 * half_turn_rad(half_m, radius_m, SLACK_CELLS * cell_size_m))
+            turn_rad / (2.0 * half_turn_rad(half_m, radius_m, slack_m))
         } else {
             0.0
         };

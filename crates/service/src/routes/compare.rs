@@ -22,10 +22,10 @@ pub struct CompareAnswer {
     pub distance: PlanAnswer,
     /// Least time.
     pub time: PlanAnswer,
-    /// What the energy-minimal path saves, as a share of the size of the shortest path's energy: above 1 where the
-    /// energy-minimal path returns energy and the shortest takes some, 0 between equal places.
+    /// What the energy-minimal path saves by the `energy_j` of both, as a share of the size of the shortest path's: above 1 where
+    /// the energy-minimal path returns energy and the shortest takes some, 0 between equal places.
     pub saving_fraction: f64,
-    /// The same of the refined paths; absent where one of both is.
+    /// The same by the `refined_energy_j` of both, which the command line and the page show; absent where one of both is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refined_saving_fraction: Option<f64>,
 }

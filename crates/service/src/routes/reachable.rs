@@ -26,6 +26,7 @@ use crate::{
     Engine, Tenant,
     accept::preferred,
     answer::Pieces,
+    antimeridian,
     body::JsonBody,
     contour_file,
     place::Place,
@@ -340,11 +341,18 @@ impl Found {
                 kind: "MultiPolygon".to_owned(),
                 coordinates: polygons
                     .into_iter()
-                    .map(|polygon| self.rings(polygon))
-                    .collect::<Result<_, Problem>>()?,
+                    .map(|polygon| self.placed(polygon))
+                    .collect::<Result<Vec<_>, Problem>>()?
+                    .concat(),
             },
             properties: ContourProperties { kind: self.kind, energy_j, charge, area_m2 },
         })
+    }
+
+    /// A polygon as GeoJSON has it: in degrees cut at the antimeridian.
+    fn placed(&self, polygon: Polygon) -> Result<Vec<Vec<Vec<[f64; 2]>>>, Problem> {
+        let rings = self.rings(polygon)?;
+        Ok(if self.earth.is_some() { antimeridian::cut_polygon(rings) } else { vec![rings] })
     }
 
     /// The rings of a polygon, in longitude and latitude where those are wanted and known.

@@ -76,6 +76,24 @@ mod tests {
     }
 
     #[test]
+    fn longitudes_from_0_to_360_are_those_from_minus_180_to_180() {
+        // By pyproj: EPSG:32701 of 180° east, 17° south is (180 589, 8 118 429).
+        let terrain = ground(Some("EPSG:32701"), [180_569.0, 8_118_414.0]);
+        let earth = terrain.earth().unwrap();
+        let corners = [[180_580.0, 8_118_420.0], [180_600.0, 8_118_420.0], [180_600.0, 8_118_440.0]];
+        let metres = |turned: bool| {
+            let place = |place_m: [f64; 2]| {
+                let [lon, lat] = earth.place_deg(place_m).unwrap();
+                [if turned { lon.rem_euclid(360.0) } else { lon }, lat]
+            };
+            let document = json!({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"keep_out": true},
+                "geometry": {"type": "Polygon", "coordinates": [corners.map(place)]}}]});
+            Areas::of(&document, &terrain).unwrap().areas
+        };
+        assert_eq!(format!("{:.3?}", metres(true)), format!("{:.3?}", metres(false)));
+    }
+
+    #[test]
     fn every_kind_of_geometry_keeps_its_kind() {
         let ring = json!([[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 1.0]]);
         let line = json!([[1.0, 1.0], [3.0, 1.0]]);

@@ -19,6 +19,12 @@ pub(super) enum Placing {
 const DEGREES: [&str; 5] =
     ["urn:ogc:def:crs:OGC:1.3:CRS84", "OGC:CRS84", "CRS84", "urn:ogc:def:crs:EPSG::4326", "EPSG:4326"];
 
+/// The same place with a longitude from −180° to 180°.
+fn within_half_turn([lon_deg, lat_deg]: Point) -> Point {
+    let is_beyond = (180.0..=360.0).contains(&lon_deg);
+    [if is_beyond { lon_deg - 360.0 } else { lon_deg }, lat_deg]
+}
+
 impl Placing {
     /// By the `crs` member, if the document has one as GeoJSON had before RFC 7946; else degrees where the map says where on earth
     /// it lies and all coordinates can be degrees; else the map's metres. Returns a note where that was not plain.
@@ -33,7 +39,8 @@ impl Placing {
             None => {}
         }
         let mut points = points;
-        let are_degrees = points.all(|[x, y]| x.abs() <= 180.0 && y.abs() <= 90.0);
+        // Maps about the antimeridian are often drawn from 0° to 360° of longitude.
+        let are_degrees = points.all(|[x, y]| (-180.0..=360.0).contains(&x) && y.abs() <= 90.0);
         if !are_degrees || terrain.crs.is_none() {
             return Ok((Placing::Map, None));
         }
@@ -76,7 +83,7 @@ impl Placing {
     pub(super) fn place_m(&self, point: Point) -> Result<Point, String> {
         let placed = match self {
             Placing::Map => Ok(point),
-            Placing::Degrees(earth) => earth.place_m(point),
+            Placing::Degrees(earth) => earth.place_m(within_half_turn(point)),
             Placing::Other(earths) => {
                 earths[0].place_deg(point).and_then(|place_deg| earths[1].place_m(place_deg))
             }

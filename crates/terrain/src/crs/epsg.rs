@@ -2,25 +2,28 @@
 //!
 //! The definitions come from `crs-definitions`; a table beside it has what is newer or what definitions of PROJ cannot hold.
 
-use super::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, by_name, mercator};
+mod newer;
 
-/// Codes of Web Mercator outside the EPSG registry: Google's first, OSGeo's, and two of Esri.
-const WEB_MERCATORS: [u32; 4] = [900_913, 41_001, 102_100, 102_113];
+use super::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, by_name, mercator, projection::Projection};
+
+/// Codes of Web Mercator outside the EPSG registry (Google's first, OSGeo's, and two of Esri), and the registry's with heights, which
+/// PROJ's definitions lack a word for.
+const WEB_MERCATORS: [u32; 5] = [900_913, 41_001, 102_100, 102_113, 6871];
 /// Codes of Esri's World Mercator on the ellipsoid: the earlier and the present one.
 const WORLD_MERCATORS: [u32; 2] = [54_004, 3395];
 
-/// Systems in other units than the metre that are newer than the definitions: first and last code, code of the unit (EPSG v12).
-const NEWER: [(u32, u32, u32); 10] = [
-    (3139, 3139, 9098),
-    (9748, 9749, 9003),
-    (10_481, 10_481, 9003),
-    (10_516, 10_516, 9003),
-    (10_622, 10_622, 9003),
-    (10_911, 10_916, 9003),
-    (10_980, 10_987, 9002),
-    (20_050, 20_050, 9002),
-    (22_300, 22_300, 9036),
-    (23_301, 23_333, 9003),
+/// Projections of the world by Esri's codes.
+const OF_ESRI: [(u32, &str); 10] = [
+    (54_008, "+proj=sinu +datum=WGS84"),
+    (54_009, "+proj=moll +datum=WGS84"),
+    (54_010, "+proj=eck6 +datum=WGS84"),
+    (54_012, "+proj=eck4 +datum=WGS84"),
+    (54_016, "+proj=gall +datum=WGS84"),
+    (54_029, "+proj=vandg +datum=WGS84"),
+    (54_030, "+proj=robin +datum=WGS84"),
+    (54_034, "+proj=cea +datum=WGS84"),
+    (54_035, "+proj=eqearth +datum=WGS84"),
+    (54_042, "+proj=wintri +datum=WGS84"),
 ];
 
 /// Heights in other units than the metre: code of the system, code of its unit (EPSG v12).
@@ -79,23 +82,46 @@ pub(super) fn horizontal(code: u32) -> Crs {
         let mercator = Some(mercator::WORLD);
         return Crs { text, unit: Some(LinearUnit::METRE), mercator, ..Crs::default() };
     }
-    if let Some((_, _, unit)) = NEWER.iter().find(|(first, last, _)| (first..=last).contains(&&code)) {
-        return Crs { text, unit: by_epsg_code(*unit), ..Crs::default() };
+    if let Some(unit) = newer::unit(code) {
+        return Crs { text, unit: Some(unit), ..Crs::default() };
     }
-    let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code);
-    let Some(definition) = definition else { return Crs { text, ..Crs::default() } };
+    if let Some((_, definition)) = OF_ESRI.iter().find(|(known, _)| *known == code) {
+        return Crs { text, ..by_definition(definition) };
+    }
+    let Some(definition) = definition(code) else { return Crs { text, ..Crs::default() } };
+    Crs { text, ..by_definition(&definition) }
+}
+
+/// What the registry says of a code as PROJ writes it, with the scale under the name that `proj4rs` reads for every projection.
+pub(super) fn definition(code: u32) -> Option<String> {
+    let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code)?;
+    Some(definition.proj4.replace("+k_0=", "+k="))
+}
+
+/// What a PROJ definition says of axes, unit, heights and projection.
+pub(super) fn by_definition(definition: &str) -> Crs {
     let value = |key: &str| {
-        let mut words = definition.proj4.split_ascii_whitespace();
+        let mut words = definition.split_ascii_whitespace();
         words.find_map(|word| word.strip_prefix('+')?.strip_prefix(key)?.strip_prefix('='))
     };
-    if value("proj") == Some("longlat") {
-        return Crs { text, is_geographic: true, ..Crs::default() };
-    }
-    let unit = match value("to_meter").and_then(|metres| metres.parse().ok()) {
-        Some(metres) => Some(LinearUnit::of_metres(metres)),
-        None => value("units").map_or(Some(LinearUnit::METRE), by_proj_name),
+    let unit = |length: &str, name: &str| match value(length).map(|metres| metres.parse::<f64>()) {
+        Some(Ok(metres)) if metres > 0.0 && metres.is_finite() => Some(LinearUnit::of_metres(metres)),
+        Some(_) => None,
+        None => value(name).map_or(Some(LinearUnit::METRE), by_proj_name),
     };
-    Crs { text, unit, mercator: Mercator::from_proj(value), ..Crs::default() }
+    let says_vertical = value("vto_meter").or(value("vunits")).is_some();
+    let vertical_unit = unit("vto_meter", "vunits").filter(|_| says_vertical);
+    let vertical = vertical_unit.map(|unit| Vertical { unit, is_depth: false });
+    if matches!(value("proj"), Some("longlat" | "latlong")) {
+        return Crs { is_geographic: true, vertical, ..Crs::default() };
+    }
+    if matches!(value("proj"), Some("geocent" | "cart")) {
+        return Crs::default();
+    }
+    let unit = unit("to_meter", "units");
+    let mercator = Mercator::from_proj(value);
+    let projection = mercator.is_none().then(|| Projection::of(definition));
+    Crs { unit, mercator, projection, vertical, ..Crs::default() }
 }
 
 /// The unit that PROJ names so.

@@ -1,8 +1,9 @@
 //! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
 
-use std::sync::Arc;
-
-use super::{Crs, Mercator, mercator::ECCENTRICITY_2};
+use super::{
+    Crs, GroundScale, Mercator, ScaleRefusal, mercator::ECCENTRICITY_2, projection::AxisScale,
+    scale::projected_to_ground,
+};
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
     io::degrees::{Coordinates, utm_epsg},
@@ -43,38 +44,55 @@ impl Affine {
     }
 }
 
-/// Refuses coordinates in degrees; `ending` is that of the file's name. Readers that may warp them do not ask.
-fn refuse_degrees(affine: &Affine, size: Size, crs: &Crs, ending: &'static str) -> Result<(), Error> {
-    if crs.is_geographic { Err(affine.coordinates(size).degrees(ending)) } else { Ok(()) }
-}
-
 /// Refuses a system whose metres are no metres of the ground where a grid lies, of a grid that says that they are. Up to e² of the
 /// ellipsoid, 0.7 %, the metres of a sphere are taken for those of the ground, as they are where a Mercator is brought to it.
 ///
 /// # Errors
 /// [`Error::StretchedCrs`] with the command that mends.
 pub(crate) fn refuse_stretched(grid: &Grid, text: &str) -> Result<(), Error> {
-    let Some(mercator) = Crs::parse(text).and_then(|crs| crs.mercator) else { return Ok(()) };
+    let Some(crs) = Crs::parse(text) else { return Ok(()) };
     let half_m = |cells: usize| cells as f64 * grid.cell_size_m / 2.0;
     let middle_m = [grid.origin_m[0] + half_m(grid.columns), grid.origin_m[1] + half_m(grid.rows)];
-    let scale = mercator.ground_scale(middle_m[1]);
-    let mean = (scale.east * scale.north).sqrt();
-    if (mean - 1.0).abs() <= ECCENTRICITY_2 {
-        return Ok(());
+    let Some((scale, [longitude_deg, latitude_deg])) = scale_at(&crs, middle_m)? else { return Ok(()) };
+    let epsg = utm_epsg(longitude_deg, latitude_deg);
+    let found = || text.chars().take(60).collect::<String>();
+    if crs.projection.is_some_and(|projection| projection.is_south_orientated()) {
+        return Err(ScaleRefusal::SouthOrientated { crs: found(), ending: "tif", epsg }.into());
     }
-    let [longitude_deg, latitude_deg] = mercator.place_deg(middle_m[0], middle_m[1]);
-    Err(Error::StretchedCrs {
-        found: text.chars().take(60).collect(),
-        scale: mean,
-        epsg: utm_epsg(longitude_deg, latitude_deg),
-    })
+    let AxisScale { x, y, shear } = scale;
+    if (scale.mean() - 1.0).abs() > ECCENTRICITY_2 {
+        return Err(Error::StretchedCrs { found: found(), scale: scale.mean(), epsg });
+    }
+    if scale.unevenness() > 2.0 * ECCENTRICITY_2 {
+        let angle_deg = shear.acos().to_degrees();
+        return Err(ScaleRefusal::Uneven { crs: found(), x, y, angle_deg, ending: "tif", epsg }.into());
+    }
+    Ok(())
 }
 
-/// Brings projected coordinates to metres of the ground: by the system's unit and, of a Mercator, by its scale. Returns the text of the
+/// Ground by map at a place, and its longitude and latitude, of a projection that is computed here.
+///
+/// # Errors
+/// A projection of the world that is not.
+fn scale_at(crs: &Crs, place_m: [f64; 2]) -> Result<Option<(AxisScale, [f64; 2])>, ScaleRefusal> {
+    if let Some(mercator) = crs.mercator {
+        let GroundScale { east, north } = mercator.ground_scale(place_m[1]);
+        let scale = AxisScale { x: east, y: north, shear: 0.0 };
+        return Ok(Some((scale, mercator.place_deg(place_m[0], place_m[1]))));
+    }
+    let Some(projection) = &crs.projection else { return Ok(None) };
+    let Some(conversion) = projection.conversion() else {
+        let name = crs.text.clone().unwrap_or_default();
+        return projection.refuse_world(&name, "tif").map(|()| None);
+    };
+    Ok(conversion.axis_scale(place_m).zip(conversion.place_deg(place_m)))
+}
+
+/// Brings projected coordinates to metres of the ground: by the system's unit and by the scale of its projection. Returns the text of the
 /// system that they are in then. What was changed is added to the warnings.
 ///
 /// # Errors
-/// A Mercator whose scale changes over the map by more than its cells can tell.
+/// A scale that changes over the map by more than its cells can tell, or that differs between directions.
 pub(crate) fn to_ground(
     affine: Affine,
     size: Size,
@@ -86,7 +104,7 @@ pub(crate) fn to_ground(
     let affine = affine.scaled(metres, metres);
     match &crs.mercator {
         Some(mercator) => mercator_to_ground(affine, size, mercator, (crs, ending), warnings),
-        None => Ok((affine, crs.text.clone())),
+        None => projected_to_ground(affine, size, crs, ending, warnings),
     }
 }
 
@@ -133,36 +151,32 @@ fn mercator_to_ground(
     Ok((affine.scaled(scale.east, scale.north), None))
 }
 
-impl Terrain {
-    /// This ground with its grid, read as numbers of some system, brought to metres of the ground. Files whose system stands beside
-    /// them, as `.prj` does beside `.asc`, are placed so; `ending` is that of the file's name.
-    ///
-    /// # Errors
-    /// Degrees, which ground that is read already is not warped from, or a Mercator that no one scale brings to the ground.
-    pub fn placed_in(mut self, crs: &Crs, ending: &'static str) -> Result<Self, Error> {
-        let Grid { rows, columns, cell_size_m: cell, origin_m: origin } = self.grid;
-        let size = Size { columns, rows };
-        let affine = Affine { origin, column: [cell, 0.0], row: [0.0, cell] };
-        refuse_degrees(&affine, size, crs, ending)?;
-        let mut warnings = Vec::new();
-        let (affine, text) = to_ground(affine, size, crs, ending, &mut warnings)?;
-        let [width_m, height_m] = affine.edges();
-        let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
-        if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
-            let [longitude_deg, latitude_deg] = mercator.place_deg(origin[0], origin[1]);
-            return Err(Error::MercatorScale {
-                crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
-                south: width_m / cell,
-                north: height_m / cell,
-                ending,
-                epsg: utm_epsg(longitude_deg, latitude_deg),
-            });
-        }
-        self.grid = Terrain::check_size(rows as u64, columns as u64, width_m, affine.origin)?;
-        self.crs = text;
-        // The system says what its unit is.
-        let kept = self.warnings.iter().filter(|warning| warning.kind != WarningKind::UnknownUnit).cloned();
-        self.warnings = Arc::new(kept.collect());
-        Ok(warnings.into_iter().fold(self, Terrain::with_warning))
+/// The grid of upright square cells in some system, brought to metres of the ground, and the text of the system that it is in then;
+/// `ending` is that of the file's name.
+///
+/// # Errors
+/// A projection that no one scale brings to the ground, or a grid that no map may have.
+pub(crate) fn square_cells(
+    affine: Affine,
+    size: Size,
+    crs: &Crs,
+    ending: &'static str,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Grid, Option<String>), Error> {
+    let [cell, _] = affine.edges();
+    let (affine, text) = to_ground(affine, size, crs, ending, warnings)?;
+    let (columns, rows) = (size.columns as u64, size.rows as u64);
+    let [width_m, height_m] = affine.edges();
+    let displaced = (width_m - height_m).abs() / width_m * columns.max(rows) as f64;
+    if let Some(mercator) = crs.mercator.filter(|_| displaced > UNTOLD_CELLS) {
+        let [longitude_deg, latitude_deg] = mercator.place_deg(affine.origin[0], affine.origin[1]);
+        return Err(Error::MercatorScale {
+            crs: crs.text.clone().unwrap_or_else(|| "of the file's own".into()),
+            south: width_m / cell,
+            north: height_m / cell,
+            ending,
+            epsg: utm_epsg(longitude_deg, latitude_deg),
+        });
     }
+    Ok((Terrain::check_size(rows, columns, width_m, affine.origin)?, text))
 }

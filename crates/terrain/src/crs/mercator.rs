@@ -47,7 +47,7 @@ pub(super) const WEB: Mercator = Mercator {
 pub(super) const WORLD: Mercator = Mercator { spacing: Spacing::Conformal, ..WEB };
 
 /// Semi-major axis of WGS 84 [m] (NIMA TR8350.2, table 3.1). Other ellipsoids change a scale by less than 1e-4.
-const SEMI_MAJOR_M: f64 = 6_378_137.0;
+pub(super) const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// First eccentricity squared of WGS 84 (NIMA TR8350.2, table 3.3).
 pub(super) const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
 

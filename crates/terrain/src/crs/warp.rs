@@ -15,7 +15,10 @@ use self::{
     footprint::{bounds_m, edges_m},
     lattice::Lattice,
 };
-pub(crate) use self::{frame::DegreeFrame, unwarped::Unwarped};
+pub(crate) use self::{
+    frame::DegreeFrame,
+    unwarped::{Regridding, Unwarped},
+};
 use rayon::prelude::*;
 
 use super::{Crs, Earth, Size, UTM_SCALE_ERROR};

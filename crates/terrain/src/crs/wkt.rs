@@ -1,6 +1,9 @@
 //! Well-known text: of the tree that it writes, kind, unit, code and projection.
 
-use super::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_name, epsg, geographic, mercator, prj};
+use super::{
+    Crs, Described, LinearUnit, Mercator, Projection, Spacing, Vertical, by_name, epsg, geographic, mercator,
+    multiplied, prj,
+};
 
 /// Deepest nesting that is read; texts of the EPSG registry have 8.
 const DEEPEST: usize = 32;
@@ -21,13 +24,20 @@ struct Node<'a> {
 
 /// What a text says; `None` if it is no WKT and no `.prj`.
 pub(super) fn parse(text: &str) -> Option<Crs> {
-    let Some((node, _)) = Node::read(text, 0) else { return prj::parse_words(text) };
+    let Some((node, rest)) = Node::read(text, 0) else { return prj::parse_words(text) };
     let mut crs = node.crs()?;
+    if let Some(projection) = multiplied::projection(text) {
+        crs.projection = Some(projection);
+    }
+    // Esri writes the vertical system behind the horizontal one, without a compound system around them.
+    let beside = rest.trim_start().strip_prefix(',').and_then(|rest| Node::read(rest, 0));
+    crs.vertical = crs.vertical.or_else(|| beside?.0.vertical());
     crs.text = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
     if let Some(code) = node.horizontal().epsg_code() {
         let of_code = Crs::from_epsg(code);
         // The registry knows its projection by more than a name.
         crs.mercator = crs.mercator.or(of_code.mercator);
+        crs.projection = of_code.projection.or(crs.projection).filter(|_| crs.mercator.is_none());
         crs.text = of_code.text;
     } else if let Some(code) = node.horizontal().geographic_code() {
         crs.text = Some(format!("EPSG:{code}"));
@@ -93,7 +103,7 @@ impl<'a> Node<'a> {
             return Some(crs);
         }
         if self.is(&GEOGRAPHIC) {
-            return Some(Crs { is_geographic: true, ..Crs::default() });
+            return Some(Crs { is_geographic: true, vertical: self.third_axis(), ..Crs::default() });
         }
         if self.is(&["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"]) {
             return Some(Crs { unit: self.unit(), ..Crs::default() });
@@ -101,7 +111,9 @@ impl<'a> Node<'a> {
         if !self.is(&["PROJCS", "PROJCRS", "PROJECTEDCRS"]) {
             return None;
         }
-        Some(Crs { unit: self.unit(), mercator: self.mercator(), ..Crs::default() })
+        let (vertical, mercator) = (self.third_axis(), self.mercator());
+        let projection = if mercator.is_none() { self.projection() } else { None };
+        Some(Crs { unit: self.unit(), mercator, projection, vertical, ..Crs::default() })
     }
 
     fn vertical(&self) -> Option<Vertical> {
@@ -109,9 +121,24 @@ impl<'a> Node<'a> {
             return None;
         }
         let of_code = self.epsg_code().and_then(epsg::vertical);
-        let down = |node: &Node<'_>| node.words.iter().any(|word| word.eq_ignore_ascii_case("down"));
-        let is_depth = self.nodes.iter().any(|node| node.is(&["AXIS"]) && down(node));
-        of_code.or_else(|| self.unit().map(|unit| Vertical { unit, is_depth }))
+        let is_depth = self.nodes.iter().any(Node::counts_down) || of_code.is_some_and(|code| code.is_depth);
+        let unit = self.unit().or(of_code.map(|code| code.unit))?;
+        Some(Vertical { unit, is_depth })
+    }
+
+    /// Whether an axis, or the parameter by which Esri says so, points down.
+    fn counts_down(&self) -> bool {
+        let number = || self.words.get(1).and_then(|word| word.parse::<f64>().ok());
+        let is_direction = self.words.first().is_some_and(|word| word.eq_ignore_ascii_case("Direction"));
+        self.is(&["AXIS"]) && self.words.iter().any(|word| word.eq_ignore_ascii_case("down"))
+            || self.is(&["PARAMETER"]) && is_direction && number().is_some_and(|number| number < 0.0)
+    }
+
+    /// Unit of the ellipsoidal heights of a system of three axes, if it says one.
+    fn third_axis(&self) -> Option<Vertical> {
+        let is_up = |node: &&Node<'_>| node.words.iter().any(|word| word.eq_ignore_ascii_case("up"));
+        let axis = self.nodes.iter().filter(|node| node.is(&["AXIS"])).find(is_up)?;
+        axis.unit().map(|unit| Vertical { unit, is_depth: false })
     }
 
     /// The unit of a system's own axes: its `UNIT`, or that of its first axis.
@@ -151,6 +178,35 @@ impl<'a> Node<'a> {
         (is_degree && is_greenwich).then(|| geographic::code_by_name(named.words.first()?)).flatten()
     }
 
+    /// A parameter of a conversion by one of its names, in letters and digits of lower case.
+    fn parameter(&self, names: &[&str]) -> Option<f64> {
+        let parameters = || self.nodes.iter().filter(|node| node.is(&["PARAMETER"]));
+        names.iter().find_map(|name| {
+            let named = |node: &&Node<'_>| node.words.first().is_some_and(|word| plain(word) == *name);
+            parameters().find(named)?.words.get(1)?.parse::<f64>().ok()
+        })
+    }
+
+    /// Semi-major axis [m] and inverse flattening of the ellipsoid that a projected system is on.
+    fn ellipsoid(&self) -> Option<[f64; 2]> {
+        let datum = self.child(&BASE)?.child(&["DATUM", "ENSEMBLE"])?;
+        let words = &datum.child(&["SPHEROID", "ELLIPSOID"])?.words;
+        Some([words.get(1)?.parse().ok()?, words.get(2)?.parse().ok()?])
+    }
+
+    /// The projection by its method and parameters; `None` for one of another body, and without a method.
+    fn projection(&self) -> Option<Projection> {
+        let conversion = self.child(&["CONVERSION"]).unwrap_or(self);
+        let method = plain(conversion.child(&["PROJECTION", "METHOD"])?.words.first()?);
+        let ellipsoid = self.ellipsoid();
+        if ellipsoid.is_some_and(|[semi_major_m, _]| !mercator::is_of_earth(semi_major_m)) {
+            return None;
+        }
+        let unit_m = self.unit().map_or(1.0, |unit| unit.metres);
+        let number = |names: &[&str]| conversion.parameter(names);
+        Some(Described { method: &method, number: &number, ellipsoid, unit_m }.projection())
+    }
+
     fn mercator(&self) -> Option<Mercator> {
         let conversion = self.child(&["CONVERSION"]).unwrap_or(self);
         let method = conversion.child(&["PROJECTION", "METHOD"])?.words.first()?.to_lowercase();
@@ -160,13 +216,7 @@ impl<'a> Node<'a> {
         if !(method.contains("mercator") || is_even) || variant {
             return None;
         }
-        let number = |names: &[&str]| {
-            let plain = |word: &str| word.to_lowercase().replace([' ', '_'], "");
-            conversion.nodes.iter().filter(|node| node.is(&["PARAMETER"])).find_map(|node| {
-                let name = node.words.first()?;
-                names.contains(&plain(name).as_str()).then(|| node.words.get(1)?.parse::<f64>().ok())?
-            })
-        };
+        let number = |names: &[&str]| conversion.parameter(names);
         let metres = self.unit().map_or(1.0, |unit| unit.metres);
         let true_scale_rad =
             number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0).to_radians();
@@ -175,14 +225,10 @@ impl<'a> Node<'a> {
         let words = |node: &Node<'_>| node.words.iter().any(|word| word.contains("+b=6378137"));
         let is_spherical = spherical.iter().any(|kind| method.contains(kind))
             || self.child(&["EXTENSION"]).is_some_and(words);
-        let base = self.child(&["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"]);
-        let ellipsoid =
-            base.and_then(|base| base.child(&["DATUM", "ENSEMBLE"])?.child(&["SPHEROID", "ELLIPSOID"]));
-        let semi_major_m = ellipsoid.and_then(|ellipsoid| ellipsoid.words.get(1)?.parse::<f64>().ok());
-        if semi_major_m.is_some_and(|semi_major_m| !mercator::is_of_earth(semi_major_m)) {
+        if self.ellipsoid().is_some_and(|[semi_major_m, _]| !mercator::is_of_earth(semi_major_m)) {
             return None;
         }
-        let base = base.and_then(|base| base.words.first());
+        let base = self.child(&BASE).and_then(|base| base.words.first());
         Some(Mercator {
             is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
             spacing: match () {
@@ -198,6 +244,14 @@ impl<'a> Node<'a> {
             ],
         })
     }
+}
+
+/// Keywords of the geographic system that a projected one is on.
+const BASE: [&str; 3] = ["GEOGCS", "BASEGEOGCRS", "BASEGEODCRS"];
+
+/// A name in letters and digits of lower case alone.
+fn plain(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()
 }
 
 #[cfg(test)]

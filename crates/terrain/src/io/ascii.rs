@@ -1,15 +1,21 @@
 //! The ESRI ASCII grid: a header of some lines, then rows from the north.
 
+mod beside;
 mod error;
 mod header;
 mod notation;
 
+pub(crate) use self::beside::ProjectionFile;
 pub use self::error::AsciiError;
 use self::{header::Header, notation::Notation};
-use super::{Options, degrees::Coordinates};
+use super::{
+    Options,
+    degrees::Coordinates,
+    heights::{BandMetadata, Heights},
+};
 use crate::{
-    Error, Grid, Terrain,
-    crs::{Crs, DegreeFrame, Unwarped, Warp},
+    Error, Grid, Terrain, Warning,
+    crs::{Crs, DegreeFrame, Unwarped, Warp, square_cells},
     fill_value,
 };
 
@@ -29,44 +35,67 @@ pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
         columns: header.columns,
     };
     coordinates.refuse_degrees("asc")?;
-    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size, header.origin).map_err(
-        |error| match error {
-            Error::CellSize { value, min, max } => AsciiError::CellSize { value, min, max }.into(),
-            Error::Origin { axis, value, limit } => AsciiError::Corner { axis, value, limit }.into(),
-            other => other,
-        },
-    )?;
-    let terrain = Values::of(&header, notation, options).terrain(text, &header, grid)?;
+    let grid = Terrain::check_size(header.rows, header.columns, header.cell_size, header.origin)
+        .map_err(in_header)?;
+    let heights = Heights::METRES;
+    let terrain = Values::of(&header, notation, heights, options).terrain(text, &header, grid)?;
     Ok(match coordinates.unit_warning() {
         Some(warning) => terrain.with_warning(warning),
         None => terrain,
     })
 }
 
-/// Reads an ESRI ASCII grid whose cells are degrees of a geographic system.
+/// An error of a grid in the words of a header in metres.
+fn in_header(error: Error) -> Error {
+    match error {
+        Error::CellSize { value, min, max } => AsciiError::CellSize { value, min, max }.into(),
+        Error::Origin { axis, value, limit } => AsciiError::Corner { axis, value, limit }.into(),
+        other => other,
+    }
+}
+
+/// Ending of the files in what is said of them.
+const ENDING: &str = "asc";
+
+/// Reads an ESRI ASCII grid whose coordinates and heights are those of a system.
 ///
 /// # Errors
-/// As [`read`], or a grid that is not warped to metres.
-pub(crate) fn read_degrees(text: &str, options: &Options, crs: &Crs) -> Result<Unwarped, Error> {
+/// As [`read`], a grid of degrees that is not warped to metres, a system of depths, or one whose metres are not brought to the ground.
+pub(crate) fn read_in(text: &str, options: &Options, crs: &Crs) -> Result<Unwarped, Error> {
     let notation = Notation::of(text)?;
     let header = Header::read(text, notation)?;
+    let mut warnings = Vec::new();
+    let heights = Heights::of(&BandMetadata::default(), crs, ENDING, &mut warnings)?;
+    let values = Values::of(&header, notation, heights, options);
     let frame = DegreeFrame::checked(header.origin, header.cell_size, [header.columns, header.rows])?;
-    let warp = Warp::plan(frame, crs, "asc", options.most_cells)?;
-    let terrain = Values::of(&header, notation, options).terrain(text, &header, warp.source_grid())?;
-    Ok(Unwarped { terrain, warp: Some(warp) })
+    if crs.is_geographic {
+        let warp = Warp::plan(frame, crs, ENDING, options.most_cells)?;
+        let terrain = values.terrain(text, &header, warp.source_grid())?;
+        return Ok(Unwarped::of(with_warnings(terrain, warnings), Some(warp)));
+    }
+    let is_in_metres = crs.unit.is_none_or(|unit| unit.is_metre());
+    let placed = square_cells(header.affine(), frame.size, crs, ENDING, &mut warnings);
+    let (grid, name) = placed.map_err(|error| if is_in_metres { in_header(error) } else { error })?;
+    let terrain = Terrain { crs: name, ..values.terrain(text, &header, grid)? };
+    Ok(Unwarped::of(with_warnings(terrain, warnings), None))
+}
+
+fn with_warnings(terrain: Terrain, warnings: Vec<Warning>) -> Terrain {
+    warnings.into_iter().fold(terrain, Terrain::with_warning)
 }
 
 /// How the values of a grid are to be read.
 struct Values {
     notation: Notation,
+    heights: Heights,
     /// Values of unknown cells.
     marks: [Option<f64>; 2],
 }
 
 impl Values {
-    fn of(header: &Header, notation: Notation, options: &Options) -> Self {
+    fn of(header: &Header, notation: Notation, heights: Heights, options: &Options) -> Self {
         let given = options.nodata_m.filter(|mark| !Terrain::holds(*mark));
-        Values { notation, marks: [header.nodata, given] }
+        Values { notation, heights, marks: [header.nodata, given] }
     }
 
     /// Ground on a grid of the header's rows and columns.
@@ -79,7 +108,7 @@ impl Values {
         })
     }
 
-    /// So many values below so many lines of header, NaN where unknown.
+    /// So many heights below so many lines of header, NaN where unknown [m].
     fn read(&self, text: &str, header_lines: usize, expected: usize) -> Result<Vec<f64>, AsciiError> {
         // A value takes a digit and a blank at least.
         let mut values = Vec::with_capacity(expected.min(text.len() / 2 + 1));
@@ -100,8 +129,9 @@ impl Values {
         if self.marks.iter().flatten().any(|mark| fill_value::is_mark(value, *mark)) {
             return Ok(f64::NAN);
         }
-        if value.is_nan() || Terrain::holds(value) || fill_value::is_never_ground(value) {
-            return Ok(value);
+        let height_m = self.heights.height_m(value);
+        if height_m.is_nan() || Terrain::holds(height_m) || fill_value::is_never_ground(value) {
+            return Ok(height_m);
         }
         let (min, max) = (Terrain::LOWEST_M, Terrain::HIGHEST_M);
         Err(AsciiError::Elevation { line, column, value, min, max })

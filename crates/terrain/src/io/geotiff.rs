@@ -1,7 +1,7 @@
 //! GeoTIFF elevation as files are: what a file says is honoured, or refused by name.
 //!
 //! The `tiff` crate reads the directories; tags that say how samples are laid out (`layout`), compressed (`codec`), predicted and typed
-//! (`sample`), masked (`masks`) and scaled (`metadata`, `heights`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
+//! (`sample`), masked (`masks`) and scaled (`metadata`), and where they lie (`geokeys`, `frame`, `placement`), are read here.
 
 mod aux_xml;
 mod classes;
@@ -9,7 +9,6 @@ mod codec;
 mod directory;
 mod frame;
 mod geokeys;
-mod heights;
 mod layout;
 mod lerc;
 mod masks;
@@ -27,9 +26,8 @@ pub(crate) use self::classes::ClassRaster;
 use self::{
     directory::TiffFile,
     geokeys::GeoKeys,
-    heights::Heights,
     layout::{Layout, dimensions},
-    metadata::{BandMetadata, NoData},
+    metadata::NoData,
     placement::{Arrangement, Placement},
     raster::Band,
     sample::Number,
@@ -38,7 +36,8 @@ pub use self::{sidecars::Sidecars, write::write};
 use crate::{
     Error, Terrain, Warning, WarningKind,
     crs::{Crs, Size, Unwarped},
-    resample::{Affine, Raster},
+    io::heights::{BandMetadata, Heights},
+    resample::Affine,
     samples::Sample,
 };
 
@@ -80,15 +79,15 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
     let is_named = keys.name_a_system() || beside.aux.crs.is_some();
     let size = Size { columns, rows };
     let placement = Placement::of(affine, size, (is_named, &crs), most_cells, &mut warnings)?;
-    refuse_many(placement.grid.columns as u64, placement.grid.rows as u64)?;
+    placement.refuse_many(most_cells)?;
     layout.refuse_truncation(band, bytes.len() as u64)?;
     let metadata = beside.aux.over(BandMetadata::read(&mut file.tags(image), band)?)?;
-    let heights = Heights::of(&metadata, &crs, &mut warnings)?;
+    let heights = Heights::of(&metadata, &crs, "tif", &mut warnings)?;
     let nodata = match &beside.aux.nodata {
         Some(text) => NoData::parse(text, layout.sample)?,
         None => NoData::read(&mut file.tags(image), layout.sample)?,
     };
-    let warp = placement.warp.clone();
+    let regridding = placement.regridding.clone();
     let reading = Reading { layout, band, nodata, heights, placement, mask: beside.mask.as_deref() };
     let terrain = if reading.layout.sample.is_exact_in_single() {
         reading.terrain::<f32>(&mut file, &mut warnings)?
@@ -96,7 +95,7 @@ pub(crate) fn read_unwarped(bytes: &[u8], most_cells: u64, beside: &Sidecars) ->
         reading.terrain::<f64>(&mut file, &mut warnings)?
     };
     let terrain = sidecars::joined(warnings).into_iter().fold(terrain, Terrain::with_warning);
-    Ok(Unwarped { terrain, warp })
+    Ok(Unwarped { terrain, regridding, is_of_bytes: false })
 }
 
 /// Number of cells of a GeoTIFF, as its head has it; of one in degrees, with those of the grid that it is warped to.
@@ -200,16 +199,8 @@ impl Reading<'_> {
         }
         masks::apply(file, layout, self.mask, &mut samples)?;
         let grid = self.placement.grid;
-        let (columns, rows) = (layout.columns, layout.rows);
-        let samples = match self.placement.arrangement {
-            Arrangement::Cells { rows_from_north, columns_from_east } => {
-                from_south_west(&mut samples, columns, rows_from_north, columns_from_east);
-                samples
-            }
-            Arrangement::Resampled(affine) => {
-                Raster { samples: &samples, columns, rows, affine }.on(&grid, T::from_double)
-            }
-        };
+        let Arrangement { rows_from_north, columns_from_east } = self.placement.arrangement;
+        from_south_west(&mut samples, layout.columns, rows_from_north, columns_from_east);
         let heights = self.heights;
         let mut terrain = if heights.is_height() {
             Terrain::from_samples(grid, samples, |sample| sample)?

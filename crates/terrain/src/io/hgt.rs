@@ -61,7 +61,7 @@ pub(crate) fn read(bytes: &[u8], name: &str, options: &Options) -> Result<Unwarp
         height_m => f32::from(height_m),
     });
     let terrain = Terrain::from_samples(warp.source_grid(), heights.collect(), |height_m| height_m)?;
-    Ok(Unwarped { terrain, warp: Some(warp) })
+    Ok(Unwarped::of(terrain, Some(warp)))
 }
 
 /// Longitude and latitude of the degree lines that a name has [°]: a letter and two digits of latitude, a letter and three of longitude.

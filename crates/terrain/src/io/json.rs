@@ -160,6 +160,18 @@ mod tests {
         }
         assert!(refused(&with(r#""EPSG:4326""#)).contains("crs is `EPSG:4326`"));
         assert!(refused(&with(r#""Minnesota""#)).contains("crs is `Minnesota`"));
+        // A height, two geocentric systems, a unit, a geographic system of three axes, and codes of nothing.
+        for code in [5773, 4978, 4328, 9001, 4979, 1, 99_999] {
+            let found = refused(&with(&format!("\"EPSG:{code}\"")));
+            assert!(
+                found.contains(&format!("crs is `EPSG:{code}`")) && found.contains("projected"),
+                "{found}"
+            );
+        }
+        assert!(
+            read(&with(r#""EPSG:9473", "origin_m": [0, -3000000]"#)).is_ok(),
+            "newer than the definitions"
+        );
         let web = |north_m: f64| with(&format!(r#""EPSG:3857", "origin_m": [0, {north_m}]"#));
         assert!(read(&web(0.0)).is_ok(), "true to scale on the equator");
         let stretched = refused(&web(8_399_737.0));

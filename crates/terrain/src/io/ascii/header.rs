@@ -1,6 +1,7 @@
 //! The header of an ESRI ASCII grid: keys in any order, the last of them before the first line of values.
 
 use super::{AsciiError, excerpt, notation::Notation};
+use crate::resample::Affine;
 
 /// Keys as they are told, with their other spellings in lower case.
 const KEYS: [(&str, &[&str]); 10] = [
@@ -64,6 +65,13 @@ impl Header {
             nodata: fields.nodata()?,
             lines: fields.lines,
         })
+    }
+}
+
+impl Header {
+    /// Where the grid lies, from its south-west corner, in the unit of its coordinates.
+    pub(super) fn affine(&self) -> Affine {
+        Affine { origin: self.origin, column: [self.cell_size, 0.0], row: [0.0, self.cell_size] }
     }
 }
 

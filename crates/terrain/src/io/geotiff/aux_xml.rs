@@ -6,8 +6,8 @@ use quick_xml::{
     events::{BytesStart, Event},
 };
 
-use super::metadata::{BandMetadata, Item};
-use crate::{Error, crs::Crs, resample::Affine};
+use super::metadata::Item;
+use crate::{Error, crs::Crs, io::heights::BandMetadata, resample::Affine};
 
 /// Deepest nesting that is followed; what is looked for lies three deep.
 const DEEPEST: usize = 64;

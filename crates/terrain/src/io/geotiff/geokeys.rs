@@ -5,7 +5,10 @@ use tiff::tags::Tag;
 use super::directory::Tags;
 use crate::{
     Error, Warning, WarningKind,
-    crs::{Crs, LinearUnit, Mercator, Spacing, Vertical, by_epsg_code, is_of_earth, vertical},
+    crs::{
+        Crs, Described, LinearUnit, Mercator, Projection, Spacing, Vertical, by_epsg_code, is_of_earth,
+        vertical,
+    },
 };
 
 pub(super) const MODEL_TYPE: u16 = 1024;
@@ -28,6 +31,40 @@ const FALSE_NORTHING: u16 = 3083;
 const NATURAL_ORIGIN_SCALE: u16 = 3092;
 const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNITS: u16 = 4099;
+
+/// Methods of projection (`CT_*` of GeoTIFF 1.0, which GDAL writes) as WKT names them, in letters and digits of lower case.
+const METHODS: [(u32, &str); 19] = [
+    (1, "transversemercator"),
+    (3, "obliquemercator"),
+    (4, "labordeobliquemercator"),
+    (8, "lambertconformalconic2sp"),
+    (9, "lambertconformalconic1sp"),
+    (10, "lambertazimuthalequalarea"),
+    (11, "albersconicequalarea"),
+    (12, "azimuthalequidistant"),
+    (13, "equidistantconic"),
+    (15, "polarstereographic"),
+    (16, "obliquestereographic"),
+    (18, "cassinisoldner"),
+    (20, "millercylindrical"),
+    (22, "polyconic"),
+    (23, "robinson"),
+    (24, "sinusoidal"),
+    (25, "vandergrinten"),
+    (26, "newzealandmapgrid"),
+    (28, "cylindricalequalarea"),
+];
+
+/// Parameters of projections by the same names, with the keys that may hold them.
+const PARAMETERS: [(&str, &[u16]); 7] = [
+    ("standardparallel1", &[STANDARD_PARALLEL]),
+    ("standardparallel2", &[3079]),
+    ("centralmeridian", &[NATURAL_ORIGIN_LONGITUDE, 3084, 3088, 3095]),
+    ("latitudeoforigin", &[3081, 3085, 3089]),
+    ("falseeasting", &[FALSE_EASTING, 3086, 3090]),
+    ("falsenorthing", &[FALSE_NORTHING, 3087, 3091]),
+    ("scalefactor", &[NATURAL_ORIGIN_SCALE, 3093]),
+];
 
 pub(super) const USER_DEFINED: u16 = 32767;
 const USER_DEFINED_CODE: u32 = USER_DEFINED as u32;
@@ -140,12 +177,12 @@ impl GeoKeys {
             return crs;
         }
         let method = self.code(PROJECTION_METHOD);
-        if method != Some(MERCATOR) && method != Some(EQUIRECTANGULAR) {
-            return Crs::default();
-        }
         let major_m = self.double(SEMI_MAJOR_AXIS);
         if major_m.is_some_and(|major_m| !is_of_earth(major_m)) {
             return Crs::default();
+        }
+        if method != Some(MERCATOR) && method != Some(EQUIRECTANGULAR) {
+            return Crs { projection: method.and_then(|method| self.projection(method)), ..Crs::default() };
         }
         let is_sphere = major_m.is_some() && major_m == self.double(SEMI_MINOR_AXIS)
             || self.double(INVERSE_FLATTENING) == Some(0.0);
@@ -168,6 +205,25 @@ impl GeoKeys {
             ],
         });
         Crs { mercator, ..Crs::default() }
+    }
+
+    /// The projection of a method by its parameters; `None` for a method that is not known here.
+    fn projection(&self, method: u32) -> Option<Projection> {
+        let (_, method) = METHODS.iter().find(|(code, _)| *code == method)?;
+        let number = |names: &[&str]| {
+            let keys = PARAMETERS.iter().filter(|(name, _)| names.contains(name)).flat_map(|(_, keys)| *keys);
+            keys.copied().find_map(|key| self.double(key))
+        };
+        let flattening = self.double(INVERSE_FLATTENING).unwrap_or(0.0);
+        let minor_m = self.double(SEMI_MINOR_AXIS);
+        let ellipsoid = self.double(SEMI_MAJOR_AXIS).map(|major_m| match minor_m {
+            Some(minor_m) if minor_m < major_m && flattening == 0.0 => {
+                [major_m, major_m / (major_m - minor_m)]
+            }
+            _ => [major_m, flattening],
+        });
+        let unit_m = self.linear_unit().ok().flatten().map_or(1.0, |unit| unit.metres);
+        Some(Described { method, number: &number, ellipsoid, unit_m }.projection())
     }
 
     /// Refuses longitudes and latitudes that are counted in another unit than the degree.

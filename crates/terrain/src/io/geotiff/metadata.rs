@@ -4,19 +4,7 @@ use quick_xml::{Reader, XmlVersion, events::Event};
 use tiff::tags::Tag;
 
 use super::{directory::Tags, sample::SampleType};
-use crate::{
-    Error,
-    crs::{LinearUnit, by_name},
-};
-
-/// Scale, offset and unit of a band.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct BandMetadata {
-    pub(super) scale: Option<f64>,
-    pub(super) offset: Option<f64>,
-    /// Unit of what scale and offset give.
-    pub(super) unit: Option<LinearUnit>,
-}
+use crate::{Error, crs::by_name, io::heights::BandMetadata};
 
 impl BandMetadata {
     const GDAL_METADATA: u16 = 42112;
@@ -174,6 +162,7 @@ impl NoData {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::crs::LinearUnit;
 
     #[test]
     fn roles_of_the_band_are_read_and_those_of_others_are_not() {

@@ -2,8 +2,8 @@
 
 use crate::{
     Error, Grid, Terrain, Warning, WarningKind,
-    crs::{Crs, DegreeFrame, Size, UNTOLD_CELLS, Warp, WarpRefusal, to_ground},
-    resample::Affine,
+    crs::{Crs, DegreeFrame, Regridding, Size, UNTOLD_CELLS, Warp, WarpRefusal, to_ground},
+    resample::{Affine, Resampling},
 };
 
 /// Edge below which pixels of a file without a system, within the bounds of degrees, are taken for degrees.
@@ -12,20 +12,19 @@ const DEGREE_PIXEL: f64 = 0.1;
 /// The grid of a map and how pixels come to its cells.
 #[derive(Debug)]
 pub(super) struct Placement {
+    /// The grid of the file's own pixels.
     pub(super) grid: Grid,
     pub(super) arrangement: Arrangement,
     pub(super) crs: Option<String>,
-    /// The way to metres, where the grid is one of degrees.
-    pub(super) warp: Option<Warp>,
+    /// The way to the map's cells, where these are not the file's pixels.
+    pub(super) regridding: Option<Regridding>,
 }
 
-/// How pixels become cells.
-#[derive(Debug, PartialEq)]
-pub(super) enum Arrangement {
-    /// Each pixel is a cell; rows or columns may have to be taken from their other end to begin in the south-west.
-    Cells { rows_from_north: bool, columns_from_east: bool },
-    /// Cells lie between pixels.
-    Resampled(Affine),
+/// From which ends rows and columns have to be taken to begin in the south-west.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Arrangement {
+    pub(super) rows_from_north: bool,
+    pub(super) columns_from_east: bool,
 }
 
 impl Placement {
@@ -47,13 +46,26 @@ impl Placement {
             doubt_nameless(&affine, size, warnings)?;
         }
         let (affine, text) = to_ground(affine, size, crs, "tif", warnings)?;
-        let (grid, arrangement) = lay_out(affine, size, warnings)?;
-        Ok(Placement { grid, arrangement, crs: text, warp: None })
+        lay_out(affine, size, text, warnings)
+    }
+
+    /// Refuses a map of more cells than so many.
+    ///
+    /// # Errors
+    /// [`Error::TooManyCells`].
+    pub(super) fn refuse_many(&self, most_cells: u64) -> Result<(), Error> {
+        let grid = match &self.regridding {
+            Some(Regridding::Resample(resampling)) => resampling.grid,
+            _ => self.grid,
+        };
+        let (rows, columns) = (grid.rows as u64, grid.columns as u64);
+        let too_many = Error::TooManyCells { rows, columns, limit: most_cells };
+        if rows.saturating_mul(columns) > most_cells { Err(too_many) } else { Ok(()) }
     }
 
     /// Numbers that are held at once to read so large a raster and bring it to its cells.
     pub(super) fn numbers(&self, size: Size) -> u64 {
-        self.warp.as_ref().map_or(size.pixels(), Warp::cells)
+        self.regridding.as_ref().map_or(size.pixels(), Regridding::cells)
     }
 
     /// Places pixels of degrees, whose samples are first read onto a grid of their own.
@@ -63,13 +75,19 @@ impl Placement {
             return Err(WarpRefusal::Turned { ending: "tif", epsg }.into());
         };
         let warp = Warp::plan(frame, crs, "tif", most_cells)?;
-        Ok(Placement { grid: warp.source_grid(), arrangement: cells_of(affine), crs: None, warp: Some(warp) })
+        let (grid, arrangement) = (warp.source_grid(), Arrangement::of(affine));
+        Ok(Placement { grid, arrangement, crs: None, regridding: Some(Regridding::Warp(warp)) })
     }
 }
 
-/// The cells that an upright raster's pixels are.
-fn cells_of(affine: &Affine) -> Arrangement {
-    Arrangement::Cells { rows_from_north: affine.row[1] < 0.0, columns_from_east: affine.column[0] < 0.0 }
+impl Arrangement {
+    /// That of an upright raster's pixels; those of a turned one are left as they come.
+    fn of(affine: &Affine) -> Self {
+        if !affine.is_upright() {
+            return Arrangement::default();
+        }
+        Arrangement { rows_from_north: affine.row[1] < 0.0, columns_from_east: affine.column[0] < 0.0 }
+    }
 }
 
 /// Refuses a file without any system whose coordinates are plainly degrees, and doubts one that may be in metres.
@@ -85,7 +103,13 @@ fn doubt_nameless(affine: &Affine, size: Size, warnings: &mut Vec<Warning>) -> R
 }
 
 /// The grid of a raster in metres of the ground.
-fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(Grid, Arrangement), Error> {
+fn lay_out(
+    affine: Affine,
+    size: Size,
+    crs: Option<String>,
+    warnings: &mut Vec<Warning>,
+) -> Result<Placement, Error> {
+    let arrangement = Arrangement::of(&affine);
     /// Relative difference of a pixel's edges that comes of the digits they are written with.
     const WRITTEN_DIGITS: f64 = 1e-6;
     let [west_m, south_m, east_m, north_m] = affine.bounds(size.columns, size.rows);
@@ -104,7 +128,7 @@ fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(G
         }
         let origin_m = [west_m, south_m];
         let grid = Terrain::check_size(rows, columns, cell_size_m, origin_m)?;
-        return Ok((grid, cells_of(&affine)));
+        return Ok(Placement { grid, arrangement, crs, regridding: None });
     }
     let count = |length_m: f64| (length_m / cell_size_m + WRITTEN_DIGITS).floor().max(1.0) as u64;
     let (columns, rows) = (count(east_m - west_m), count(north_m - south_m));
@@ -114,5 +138,12 @@ fn lay_out(affine: Affine, size: Size, warnings: &mut Vec<Warning>) -> Result<(G
         "pixels are {shape} ({width_m:.4} × {height_m:.4} m): elevations were interpolated onto cells of {cell_size_m:.4} m, north up"
     );
     warnings.push(Warning::new(WarningKind::Interpolated, detail));
-    Ok((grid, Arrangement::Resampled(affine)))
+    let from_end = |is_from_end: bool, count: usize| is_from_end.then_some(count);
+    let affine = affine.counted_from(
+        from_end(arrangement.columns_from_east, size.columns),
+        from_end(arrangement.rows_from_north, size.rows),
+    );
+    let resampling = Resampling { affine, grid, crs };
+    let grid = resampling.source_grid(size.columns, size.rows);
+    Ok(Placement { grid, arrangement, crs: None, regridding: Some(Regridding::Resample(resampling)) })
 }

@@ -235,7 +235,7 @@ impl Number for f64 {
 }
 
 /// Whether a mask shows what it lies over.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Shown(pub(super) bool);
 
 impl Number for Shown {

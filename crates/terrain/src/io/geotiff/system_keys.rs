@@ -103,7 +103,11 @@ mod tests {
 
     /// The grid and the system that a written raster is read with.
     fn round_trip(crs: Option<&str>) -> (Grid, Option<String>) {
-        let grid = Grid { rows: 2, columns: 3, cell_size_m: 0.5, origin_m: [300_000.0, 5_000_000.0] };
+        round_trip_at([300_000.0, 5_000_000.0], crs)
+    }
+
+    fn round_trip_at(origin_m: [f64; 2], crs: Option<&str>) -> (Grid, Option<String>) {
+        let grid = Grid { rows: 2, columns: 3, cell_size_m: 0.5, origin_m };
         let terrain = read(&write(&grid, &[1.0; 6], crs).unwrap(), 6).unwrap();
         let off_m = (0..2).map(|axis| (terrain.grid.origin_m[axis] - grid.origin_m[axis]).abs()).sum::<f64>();
         assert!(off_m < 1e-6 && (terrain.grid.cell_size_m - 0.5).abs() < 1e-9, "{:?}", terrain.grid);
@@ -112,8 +116,12 @@ mod tests {
 
     #[test]
     fn codes_are_written_in_their_own_unit_and_read_back() {
-        for crs in ["EPSG:32632", "EPSG:2263", "EPSG:27700"] {
-            assert_eq!(round_trip(Some(crs)).1.as_deref(), Some(crs));
+        for (crs, origin_m) in [
+            ("EPSG:32632", [300_000.0, 5_000_000.0]),
+            ("EPSG:2263", [300_000.0, 60_000.0]),
+            ("EPSG:27700", [336_000.0, 567_000.0]),
+        ] {
+            assert_eq!(round_trip_at(origin_m, Some(crs)).1.as_deref(), Some(crs));
         }
         let zone = "PROJCS[\"NAD_1983_UTM_Zone_15N\",GEOGCS[\"g\"],PROJECTION[\"Transverse_Mercator\"],UNIT[\"Foot_US\",0.3048006096012192]]";
         assert_eq!(round_trip(Some(zone)).1.as_deref(), Some("EPSG:26915"));

@@ -1,11 +1,19 @@
-//! From samples to heights in metres: scale, offset and unit.
+//! From samples to heights in metres: scale, offset and unit, the same for every format that says them.
 
-use super::metadata::BandMetadata;
 use crate::{
     Error, Warning, WarningKind,
     crs::{Crs, LinearUnit},
     fill_value::is_never_ground,
 };
+
+/// Scale, offset and unit of a band.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct BandMetadata {
+    pub(super) scale: Option<f64>,
+    pub(super) offset: Option<f64>,
+    /// Unit of what scale and offset give.
+    pub(super) unit: Option<LinearUnit>,
+}
 
 /// What turns a sample into a height.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,17 +26,22 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    /// By the band's metadata and, where that has no unit, the vertical part of the system. Doubts are added to the warnings.
+    /// Samples that are heights in metres as they stand.
+    pub(super) const METRES: Heights = Heights { scale: 1.0, offset: 0.0, unit_m: 1.0, is_height: true };
+
+    /// By the band's metadata and, where that has no unit, the vertical part of the system. Doubts are added to the warnings;
+    /// `ending` is that of the file's name.
     ///
     /// # Errors
     /// A system that counts depths.
-    pub(super) fn of(band: &BandMetadata, crs: &Crs, warnings: &mut Vec<Warning>) -> Result<Self, Error> {
+    pub(super) fn of(
+        band: &BandMetadata,
+        crs: &Crs,
+        ending: &'static str,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self, Error> {
         if crs.vertical.is_some_and(|vertical| vertical.is_depth) {
-            return Err(Error::TiffValue {
-                tag: "vertical system (VerticalGeoKey)",
-                value: "one of depths".into(),
-                expected: "one of heights; `gdal_calc.py -A in.tif --calc=-A --outfile=out.tif` turns depths over",
-            });
+            return Err(Error::Depths { ending });
         }
         let of_system = crs.vertical.map(|vertical| vertical.unit);
         let doubt = match (band.unit, of_system, crs.unit) {
@@ -38,8 +51,10 @@ impl Heights {
             )),
             (None, None, Some(unit)) if !unit.is_metre() => Some(format!(
                 "the file does not say the unit of its heights, and its coordinates are in {0}: heights were read as metres; \
-                 `gdal_edit.py -units \"{0}\" FILE` says that they are not",
-                unit.name
+                 {1}`gdal_edit.py -units \"{0}\" {2}` says that they are not",
+                unit.name,
+                if ending == "tif" { "" } else { "after `gdal_translate` to a GeoTIFF, " },
+                if ending == "tif" { "FILE" } else { "out.tif" },
             )),
             _ => None,
         };

@@ -1,0 +1,162 @@
+//! Maps in projections whose metres are not metres of the ground are brought to the ground, or refused with what mends them.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fs;
+
+use terrain::{Error, Terrain, Warning, WarningKind, crs::Earth, io};
+
+const WGS_84: &str = r#"GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]"#;
+
+/// A grid of 80 × 80 cells of 2 m about a place in a system.
+fn read(prj: &str, [x_m, y_m]: [f64; 2]) -> Result<Terrain, Error> {
+    read_cells(prj, [x_m, y_m], 80, 2.0)
+}
+
+fn read_cells(prj: &str, [x_m, y_m]: [f64; 2], side: usize, cell_m: f64) -> Result<Terrain, Error> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.asc");
+    let half_m = side as f64 * cell_m / 2.0;
+    let corner = [x_m - half_m, y_m - half_m];
+    let header = format!(
+        "ncols {side}\nnrows {side}\nxllcorner {}\nyllcorner {}\ncellsize {cell_m}\n",
+        corner[0], corner[1]
+    );
+    fs::write(&path, header + &"5 ".repeat(side * side)).unwrap();
+    fs::write(path.with_extension("prj"), prj).unwrap();
+    io::read_path(&path)
+}
+
+fn json(crs: &str, [x_m, y_m]: [f64; 2]) -> Result<Terrain, Error> {
+    let text = serde_json::json!({"cell_size_m": 1, "origin_m": [x_m, y_m], "rows": 1, "columns": 2, "elevation_m": [[1, 2]], "crs": crs});
+    io::json::read(&text.to_string())
+}
+
+fn scale_said(terrain: &Terrain) -> Option<&Warning> {
+    terrain.warnings().iter().find(|warning| warning.kind == WarningKind::ProjectionScale)
+}
+
+#[test]
+fn conformal_maps_are_multiplied_by_their_scale_and_stay_where_they_are_on_earth() {
+    // Places and scales (map by ground) by PROJ 9.5.
+    for (code, place_m, place_deg, by_proj) in [
+        (5041, [2_591_424.98, -1_354_137.74], [10.0, 60.0], 1.065_302),
+        (3413, [0.0, -3_323_160.27], [-45.0, 60.0], 1.039_428),
+        (3031, [-2_457_024.46, 1_595_610.34], [-57.0, -63.5], 1.026_667),
+        (2154, [1_197_656.7, 6_118_854.94], [9.0, 42.0], 1.002_075),
+    ] {
+        let name = format!("EPSG:{code}");
+        let terrain = read(&name, place_m).unwrap();
+        assert!((terrain.grid.cell_size_m * by_proj / 2.0 - 1.0).abs() < 1e-5, "{name}: {:?}", terrain.grid);
+        assert!(scale_said(&terrain).unwrap().detail.contains(&name));
+        let middle_m = [0, 1].map(|axis| terrain.grid.origin_m[axis] + 40.0 * terrain.grid.cell_size_m);
+        let earth = terrain.earth().unwrap();
+        let found_deg = earth.place_deg(middle_m).unwrap();
+        assert!((0..2).all(|axis| (found_deg[axis] - place_deg[axis]).abs() < 1e-6), "{name}: {found_deg:?}");
+        // The text is a system of its own, which is true to scale there and needs no further change.
+        let again = read(terrain.crs.as_deref().unwrap(), middle_m).unwrap();
+        assert_eq!((again.grid.cell_size_m, scale_said(&again)), (2.0, None), "{name}");
+        assert_eq!(again.crs, terrain.crs);
+        assert!(json(terrain.crs.as_deref().unwrap(), middle_m).is_ok());
+    }
+}
+
+#[test]
+fn small_departures_stay_as_they_are() {
+    for (prj, place_m) in [
+        ("EPSG:32632", [500_000.0, 5_423_000.0]),
+        ("EPSG:32632", [833_978.0, 1000.0]),
+        ("EPSG:3035", [4_321_000.0, 2_765_157.5]),
+        ("EPSG:27700", [336_038.76, 567_734.86]),
+        ("EPSG:3067", [175_799.85, 6_777_654.09]),
+        ("EPSG:3375", [800_000.0, 400_000.0]),
+    ] {
+        let terrain = read(prj, place_m).unwrap();
+        assert_eq!((terrain.grid.cell_size_m, terrain.crs.as_deref()), (2.0, Some(prj)));
+        assert_eq!(scale_said(&terrain), None, "{prj}");
+    }
+}
+
+#[test]
+fn maps_that_are_stretched_or_sheared_are_refused_with_the_command_for_their_zone() {
+    let esri = |name: &str| {
+        format!(
+            r#"PROJCS["{name}",{WGS_84},PROJECTION["{name}"],PARAMETER["False_Easting",0.0],PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",0.0],UNIT["Meter",1.0]]"#
+        )
+    };
+    for (prj, place_m, epsg) in [
+        ("EPSG:6933".to_owned(), [964_862.8, 6_351_420.0], "EPSG:32632 "),
+        ("EPSG:6931".to_owned(), [849_024.08, -4_815_054.82], "EPSG:32632 "),
+        ("EPSG:3035".to_owned(), [1_759_253.33, 989_737.76], "EPSG:32628 "),
+        (esri("Cylindrical_Equal_Area"), [11_131_949.08, 5_473_000.0], "EPSG:32647 "),
+        (esri("Mollweide"), [6_485_639.31, 6_876_758.99], "EPSG:32647 "),
+    ] {
+        let refused = read(&prj, place_m).unwrap_err().to_string();
+        assert!(refused.contains("m of ground along x") && refused.contains(epsg), "{refused}");
+        assert!(refused.contains("in.asc"), "{refused}");
+    }
+    for prj in [
+        "EPSG:8857".to_owned(),
+        "EPSG:54008".to_owned(),
+        esri("Sinusoidal"),
+        esri("Robinson"),
+        "+proj=sinu +R=6371007.181".to_owned(),
+    ] {
+        let refused = read(&prj, [1000.0, 2000.0]).unwrap_err().to_string();
+        assert!(refused.contains("projection of the world") && refused.contains("gdalwarp"), "{refused}");
+    }
+}
+
+#[test]
+fn a_scale_that_changes_over_the_map_is_refused() {
+    let refused = read_cells("EPSG:3413", [0.0, -3_323_160.27], 1000, 100.0).unwrap_err().to_string();
+    assert!(refused.contains("m of ground over the map") && refused.contains("-t_srs EPSG:32"), "{refused}");
+}
+
+#[test]
+fn what_is_not_known_of_a_scale_is_said() {
+    for prj in [
+        format!(r#"PROJCS["x",{WGS_84},PROJECTION["Polyconic"],UNIT["Meter",1.0]]"#),
+        format!(r#"PROJCS["x",{WGS_84},PROJECTION["Some_Other"],UNIT["Meter",1.0]]"#),
+    ] {
+        let terrain = read(&prj, [1000.0, 2000.0]).unwrap();
+        assert!(scale_said(&terrain).unwrap().detail.contains("not computed here"), "{prj}");
+    }
+    let beyond = read("EPSG:32632", [4.0e7, 4.0e7]).unwrap();
+    assert!(scale_said(&beyond).unwrap().detail.contains("beyond the area"));
+    let national = format!(r#"PROJCS["x",{WGS_84},PROJECTION["Cassini"],UNIT["Meter",1.0]]"#);
+    assert_eq!(scale_said(&read(&national, [1000.0, 2000.0]).unwrap()), None);
+}
+
+#[test]
+fn cells_of_a_grid_that_are_metres_of_the_ground_are_no_metres_of_such_a_system() {
+    for (crs, place_m, said) in [
+        ("EPSG:6933", [964_862.8, 6_351_420.0], "along x"),
+        ("EPSG:5041", [2_591_424.98, -1_354_137.74], "0.9387 m of ground"),
+        ("EPSG:8857", [7_225_128.0, 6_924_035.0], "projection of the world"),
+    ] {
+        let error = json(crs, place_m).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+        assert_eq!(error.field().as_deref(), Some("crs"));
+    }
+    assert!(
+        json("EPSG:2154", [1_197_656.7, 6_118_854.94]).is_ok(),
+        "0.2 %, less than a sphere and the ellipsoid differ"
+    );
+}
+
+#[test]
+fn systems_whose_coordinates_run_west_and_south_are_refused() {
+    let wkt = format!(
+        r#"PROJCS["Hartebeesthoek94 / Lo29",{WGS_84},PROJECTION["Transverse_Mercator_South_Orientated"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",29],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1],AXIS["Y",WEST],AXIS["X",SOUTH]]"#
+    );
+    for prj in ["EPSG:2053", wkt.as_str()] {
+        let refused = read(prj, [-10_011.77, 2_876_838.4]).unwrap_err().to_string();
+        assert!(
+            refused.contains("run west and south") && refused.contains("-t_srs EPSG:32735 "),
+            "{refused}"
+        );
+        assert!(json(prj, [-10_011.77, 2_876_838.4]).unwrap_err().to_string().contains("run west and south"));
+    }
+    assert!(Earth::of("EPSG:2053").is_ok(), "areas and places of other files may be in it");
+}
