@@ -45,6 +45,7 @@ mod mcap;
 mod merge;
 mod meter;
 mod namespace;
+mod open_quote;
 mod own_clocks;
 mod pages;
 mod parquet;

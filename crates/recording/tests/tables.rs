@@ -58,6 +58,12 @@ fn bad_tables_are_refused_by_place_and_remedy() {
         (SMALL.replace("\n0.2,0.3", "\n\n0.1,0.3"), "line 5: time repeats"),
         (SMALL.replace("\n0.2,0.3", "\n0.1,0.3").replace('\n', "\r\n"), "line 4: time repeats"),
         (SMALL.replace("start", "\"a\nb\"").replace("\n0.2,0.3", "\n0.1,0.3"), "line 5: time repeats"),
+        (SMALL.replace("start", "\"start"), "line 2: a quotation mark opens in column 5"),
+        (
+            SMALL.replace("0.2,0.3", "0.2,\"0.3") + "0.3,0.4,0,50,,1\n",
+            "line 4: a quotation mark opens in column 2",
+        ),
+        (format!("# a remark\n{SMALL}").replace("start", "\"start"), "line 3: a quotation mark opens"),
         (SMALL.replace("51,,2", "51,2"), "line 3: 5 cells, but the header has 6"),
         (SMALL.replace("power_w", "power_kw"), "did you mean `power_kw` for power_w"),
         (SMALL.replace("t_s", "time"), "t_s is missing; found: time, v_left_mps"),
