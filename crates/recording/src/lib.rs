@@ -11,6 +11,7 @@ mod arrow_schema;
 mod bag;
 mod bag_loss;
 mod beginning;
+mod blank_runs;
 mod built_in_map;
 mod bursts;
 mod calendar;

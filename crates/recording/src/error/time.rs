@@ -23,6 +23,22 @@ pub enum TimeError {
         /// The time before it \[s\].
         previous_s: f64,
     },
+    /// Runs whose rows take turns on one clock.
+    #[error(
+        "{position}: the runs {} take turns, so that {counted_s:.1} s would be counted of the {passed_s:.1} s that passed; give all rows of a \
+         drive one name in the column `run`, or remove the column",
+        some_of(runs)
+    )]
+    RunsTakeTurns {
+        /// Line or row at which a run goes on behind another.
+        position: Position,
+        /// The runs.
+        runs: Vec<String>,
+        /// Time of all runs \[s\].
+        counted_s: f64,
+        /// Time from the first row to the last \[s\].
+        passed_s: f64,
+    },
     /// Times of which many are equal.
     #[error(
         "{position}: time repeats {t_s} s in run `{run}`, whose {rows} rows have {}: its times are rounded; write `{column}` with more \
@@ -111,4 +127,13 @@ pub enum TimeError {
         /// The other clock that the map may ask for.
         other: &'static str,
     },
+}
+
+/// The first few names of several.
+fn some_of(names: &[String]) -> String {
+    /// Enough to find the column's mistake by.
+    const MOST_SHOWN: usize = 4;
+    let shown: Vec<String> = names.iter().take(MOST_SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > MOST_SHOWN { " and others" } else { "" };
+    format!("{}{more}", shown.join(", "))
 }
