@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Channel, Combine, Conversion, Error, Quantity, Recording, rate::rates, units};
+use crate::{
+    Channel, Combine, Conversion, Error, Quantity, ReadingReport, Recording, Repair, drawn, rate::rates,
+    units,
+};
 
 /// A checked map. Read from JSON:
 ///
@@ -252,6 +255,20 @@ impl Map {
                 }
             }
         }
+    }
+
+    /// Finds the sign of a current that came of a column and is to be drawn; that of a topic was found before.
+    pub(crate) fn settle_drawn_column(
+        &self,
+        recording: &mut Recording,
+        report: &ReadingReport,
+    ) -> Option<Repair> {
+        let from = &report.channels.iter().find(|used| used.channel == Channel::Current)?.from;
+        let is_read = |source: &&Source| match &source.place {
+            Place::Columns(names) => source.sign == Sign::Drawn && names.join(", ") == *from,
+            Place::Topic { .. } => false,
+        };
+        self.sources.iter().find(is_read).and_then(|_| drawn::settle(recording, &format!("column `{from}`")))
     }
 
     /// Whether any of its sources is a column of a table.
