@@ -422,7 +422,7 @@ mod tests {
                 let lost = |t: f64| t < from_s || t > until_s;
                 power.iter_mut().zip(&t_s).for_each(|(watts, t)| {
                     if lost(*t) {
-                        *watts = f64::NAN
+                        *watts = f64::NAN;
                     }
                 });
                 let (recording, _) = aligned(recording);
