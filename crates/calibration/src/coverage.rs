@@ -154,8 +154,12 @@ impl Places<'_> {
         if let Some(channel) = missing(self.recording, i).or_else(|| missing(self.recording, i - 1)) {
             return (format!("`{}` has no value", channel.name()), Some(channel));
         }
-        if step_s > run.gap_s {
-            return (format!("between rows farther apart than {:.2} s", run.gap_s), None);
+        if self.recording.step_s(run, i - 1).is_none() {
+            let reason = match step_s > run.gap_s {
+                true => format!("between rows farther apart than {:.2} s", run.gap_s),
+                false => "between rows farther apart than those around them".to_owned(),
+            };
+            return (reason, None);
         }
         if self.stretch_of[i] == usize::MAX {
             return ("of a run that repeats another".to_owned(), None);

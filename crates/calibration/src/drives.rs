@@ -152,7 +152,7 @@ impl Drives {
 
     /// Cuts one run where it pauses or the surface changes.
     fn split(&mut self, robot: &Robot, recording: &Recording, run: usize, rows: Range<usize>) {
-        let gap_s = recording.runs[run].gap_s;
+        let of_run = &recording.runs[run];
         let mut open: Option<Stretch> = None;
         let mut ground: Option<(&str, usize)> = None;
         for row in rows {
@@ -169,9 +169,8 @@ impl Drives {
             };
             ground = Some((name, surface));
             if let Some(stretch) = open.as_mut() {
-                let step_s = t_s - self.rows[row - 1].t_s;
-                if step_s <= gap_s && stretch.surface == surface {
-                    self.rows[row].step_s = step_s;
+                if recording.step_s(of_run, row - 1).is_some() && stretch.surface == surface {
+                    self.rows[row].step_s = t_s - self.rows[row - 1].t_s;
                     stretch.rows.end = row + 1;
                     continue;
                 }

@@ -176,7 +176,11 @@ fn predict_drives(robot: &Robot, recording: &Recording, drives: Drives) -> Resul
     let covered = coverage(recording, &drives);
     let of_all = Coverage::of_all(&covered);
     if of_all.used_s <= 0.0 && recording.rows() > 1 {
-        return Err(Error::NothingCounted { why: of_all.words().unwrap_or_default() });
+        let no_time = || {
+            "no run has two rows, between which time passes; name drives in the column `run`, not rows"
+                .to_owned()
+        };
+        return Err(Error::NothingCounted { why: of_all.words().unwrap_or_else(no_time) });
     }
     let runs = order
         .iter()

@@ -6,6 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::gap::Gaps;
+
 /// How values lie between their neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
@@ -20,8 +22,21 @@ pub enum Between {
 /// `t_s` and `at_s` increase, `t_s` has one time per value. Samples that are NaN are none: whether their neighbours may
 /// be joined is then the gap's to say.
 pub fn interpolate(t_s: &[f64], values: &[f64], at_s: &[f64], max_gap_s: f64, between: Between) -> Vec<f64> {
+    interpolate_within(t_s, values, at_s, Some(max_gap_s), between)
+}
+
+/// Values of a stream at other times, joined over gaps that were asked for or by the rhythm of its samples.
+pub(crate) fn interpolate_within(
+    t_s: &[f64],
+    values: &[f64],
+    at_s: &[f64],
+    max_gap_s: Option<f64>,
+    between: Between,
+) -> Vec<f64> {
     let samples: Vec<(f64, f64)> =
         t_s.iter().copied().zip(values.iter().copied()).filter(|(_, value)| !value.is_nan()).collect();
+    let samples_s: Vec<f64> = samples.iter().map(|sample| sample.0).collect();
+    let gaps = Gaps::of(&samples_s, max_gap_s);
     let mut next = 0;
     let mut aligned = Vec::with_capacity(at_s.len());
     for &at in at_s {
@@ -32,7 +47,7 @@ pub fn interpolate(t_s: &[f64], values: &[f64], at_s: &[f64], max_gap_s: f64, be
         let before = next.checked_sub(1).and_then(|last| samples.get(last));
         aligned.push(match (before, after) {
             (_, Some(&(t, value))) if t == at => value,
-            (Some(&(t0, value0)), Some(&(t1, value1))) if t1 - t0 <= max_gap_s => {
+            (Some(&(t0, value0)), Some(&(t1, value1))) if !gaps.is_gap(&samples_s, next - 1) => {
                 let share = (at - t0) / (t1 - t0);
                 match between {
                     Between::Line => value0 + share * (value1 - value0),

@@ -22,6 +22,7 @@ use crate::{
     format::ZSTD_MAGIC,
     layout::Layout,
     mcap,
+    mcap_summary::Summary,
     reading::unwatched,
     rosbag2::db3,
     schema::Schema,
@@ -83,7 +84,7 @@ fn of_topics(source: impl Read, format: Format, watch: &Watch) -> Result<Vec<Beg
     let mut topics = topics(None, &Budget { room: Room::default(), looks: Looks::new(watch) })?;
     topics.looked = Some(Looked::default());
     match format {
-        Format::Mcap => mcap::read_into(source.take(LOOKED_AT_BYTES), &mut topics)?,
+        Format::Mcap => mcap::read_into(source.take(LOOKED_AT_BYTES), Summary::default(), &mut topics)?,
         Format::Bag => bag::read_into(source.take(LOOKED_AT_BYTES), &mut topics)?,
         Format::Ulog => ulog::read_into(source.take(LOOKED_AT_BYTES), &mut topics)?,
         Format::Db3 => db3::read_copy_into(source, &mut topics)?,

@@ -3,12 +3,36 @@
 use crate::{calendar, error::excerpt};
 
 /// Spellings of a value that is missing, in small letters: of pandas, R, MATLAB, Excel, SQL and C libraries.
-const MISSING: [&str; 13] =
-    ["", "nan", "-nan", "+nan", "na", "n/a", "<na>", "null", "none", "nil", "#n/a", "nan(ind)", "-nan(ind)"];
+const MISSING: [&str; 15] = [
+    "",
+    "nan",
+    "-nan",
+    "+nan",
+    "na",
+    "n/a",
+    "<na>",
+    "null",
+    "none",
+    "nil",
+    "#n/a",
+    "#na",
+    "#n/a n/a",
+    "nan(ind)",
+    "-nan(ind)",
+];
+
+/// Errors that spreadsheets write into cells, which begin like a remark.
+const SPREADSHEETS: [&str; 9] =
+    ["#n/a", "#na", "#n/a n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!"];
+
+/// The minus of typography, which word processors and some tables write.
+const MINUS: char = '\u{2212}';
 
 /// Remedy for what is no number of any spelling.
 const EMPTY: &str = "leave the cell empty for a gap";
 const GROUPS: &str = "write it without separators of thousands, and its decimals behind a point";
+const ZEROS: &str =
+    "these are zero bytes, as a loss of power leaves them: remove the line, or what follows from it on";
 const ALONE: &str = "write the number alone, without its unit";
 const ISO_8601: &str =
     "write seconds, or date and time by ISO 8601, year first, as `2023-11-14T22:13:20.5Z` or `22:13:20.5`";
@@ -68,6 +92,8 @@ impl Spelling {
 
     fn any_number(&mut self, cell: &[u8], line: u64) -> Result<f64, String> {
         let text = std::str::from_utf8(cell).unwrap_or("\u{fffd}").trim();
+        let hyphened = text.contains(MINUS).then(|| text.replace(MINUS, "-"));
+        let text = hyphened.as_deref().unwrap_or(text);
         let mark = if text.contains(',') { Mark::Comma } else { Mark::Point };
         let value = match mark {
             Mark::Point => plain(text),
@@ -131,7 +157,8 @@ impl Spelling {
             return Some(value);
         }
         let text = std::str::from_utf8(cell).ok()?.trim();
-        if self.decimal_comma().is_some() { plain(&text.replacen(',', ".", 1)) } else { plain(text) }
+        let text = text.replace(MINUS, "-");
+        if self.decimal_comma().is_some() { plain(&text.replacen(',', ".", 1)) } else { plain(&text) }
     }
 
     fn is_point(&self) -> bool {
@@ -174,6 +201,11 @@ fn short_decimal(cell: &[u8]) -> Option<(f64, bool)> {
     Some((if is_negative { -magnitude } else { magnitude }, point.is_some()))
 }
 
+/// Whether a cell holds what a spreadsheet writes in place of a value.
+pub(crate) fn is_spreadsheets(cell: &[u8]) -> bool {
+    SPREADSHEETS.iter().any(|error| cell.trim_ascii().eq_ignore_ascii_case(error.as_bytes()))
+}
+
 /// Whether a cell says that it has no value.
 pub(crate) fn is_missing(text: &str) -> bool {
     MISSING.iter().any(|missing| text.eq_ignore_ascii_case(missing))
@@ -191,7 +223,9 @@ fn remedy(text: &str) -> String {
     let digits = text.bytes().any(|byte| byte.is_ascii_digit());
     let has_groups = digits && text.bytes().all(|byte| byte.is_ascii_digit() || b",.' -+".contains(&byte));
     let number = text.trim_end_matches(|character: char| !character.is_ascii_digit()).trim();
-    if has_groups {
+    if text.contains('\0') {
+        ZEROS.into()
+    } else if has_groups {
         GROUPS.into()
     } else if digits && number.len() < text.len() && plain(&number.replacen(',', ".", 1)).is_some() {
         ALONE.into()
@@ -219,6 +253,7 @@ mod tests {
         for separator in [b';', b'\t', b' '] {
             assert_eq!(all(separator, &["0,1", "-3", " 1,5e-3 ", ",5"]), Ok(vec![0.1, -3.0, 1.5e-3, 0.5]));
         }
+        assert_eq!(all(b',', &["\u{2212}0.5", "1e\u{2212}3"]), Ok(vec![-0.5, 1e-3]));
         assert_eq!(all(b',', &["0.1", "1e3", "+.5", "5."]), Ok(vec![0.1, 1e3, 0.5, 5.0]));
         assert!(all(b',', &["0,1"]).unwrap_err().contains("decimal comma"));
     }

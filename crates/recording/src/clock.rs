@@ -24,7 +24,7 @@ pub const SHORTEST_STEP_S: f64 = 1e-4;
 pub const GREATEST_TIME_S: f64 = 7.258_118_4e9;
 
 /// Unix times of the years 2000 to 2100 \[s\].
-const UNIX_TIMES_S: [f64; 2] = [946_684_800.0, 4_102_444_800.0];
+pub(crate) const UNIX_TIMES_S: [f64; 2] = [946_684_800.0, 4_102_444_800.0];
 
 /// Steps of most loggers \[s\], 1 kHz to 0.5 Hz: what tells one unit from another by a step alone.
 const USUAL_STEP_S: [f64; 2] = [1e-3, 2.0];

@@ -250,7 +250,7 @@ impl Plan {
         if let (None, Some(surface)) = (&recording.surface, &self.surface) {
             recording.surface = Some(Labels::constant(surface, recording.rows()));
         }
-        let order = divide(&mut recording, runs, name, &mut report, &looks)?;
+        let order = divide(&mut recording, runs, name, &mut report, &position, &looks)?;
         let merged = merge_same_times(&mut recording, &mut report.repairs, &looks)?;
         let before = |row: usize| merged.as_ref().map_or(row, |rows| rows[row]);
         let in_table = |row: usize| order.as_ref().map_or(before(row), |order| order[before(row)]);

@@ -4,10 +4,7 @@ use std::{borrow::Cow, ops::Range};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    align::{Between, interpolate},
-    gap,
-};
+use crate::align::{Between, interpolate_within};
 
 /// How several columns or fields become one value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,14 +82,10 @@ fn filled(t_s: &[f64], values: &[f64]) -> Vec<f64> {
     for rows in increasing(t_s) {
         let samples_s: Vec<f64> =
             rows.clone().filter(|row| !values[*row].is_nan()).map(|row| t_s[row]).collect();
-        let longest_s = if samples_s.len() > 2 { gap::threshold_s(&samples_s) } else { 0.0 };
-        filled.extend(interpolate(
-            &t_s[rows.clone()],
-            &values[rows.clone()],
-            &t_s[rows],
-            longest_s,
-            Between::Line,
-        ));
+        // Two samples show no rhythm.
+        let longest_s = (samples_s.len() <= 2).then_some(0.0);
+        let own = &values[rows.clone()];
+        filled.extend(interpolate_within(&t_s[rows.clone()], own, &t_s[rows], longest_s, Between::Line));
     }
     filled
 }

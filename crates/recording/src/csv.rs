@@ -15,6 +15,10 @@ use crate::{
     watch::Budget,
 };
 
+/// Remedy for words where a row of numbers should stand.
+const ANOTHER_HEADER: &str =
+    "the line looks like another header: give files that were put together one by one";
+
 /// Reads a text table in one pass, whatever it is packed with, encoded in and separated by.
 pub(crate) fn read(
     source: impl Read + 'static,
@@ -63,7 +67,11 @@ pub(crate) fn read(
                     } else {
                         rows.spelling.number(cell, line)
                     };
-                    values.push(read.map_err(|remedy| number_error(&headers[index], cell, line, remedy))?);
+                    values.push(read.map_err(|remedy| {
+                        let is_header = rows.is_another_header(&plan, text.record());
+                        let remedy = if is_header { ANOTHER_HEADER.to_owned() } else { remedy };
+                        number_error(&headers[index], cell, line, remedy)
+                    })?);
                 }
                 Column::Labels(labels) => {
                     let is_room = labels.push(String::from_utf8_lossy(cell).trim());

@@ -4,7 +4,7 @@ use ::csv::ByteRecord;
 
 use crate::{
     Error, Repair,
-    cell::Spelling,
+    cell::{Spelling, is_missing, is_spreadsheets},
     column::{Kind, Plan},
     dialect::{Dialect, Separator, remark},
     units_row::is_units_row,
@@ -54,7 +54,8 @@ impl Rows {
         let is_empty = |cell: &[u8]| cell.iter().all(u8::is_ascii_whitespace);
         let first = record.get(0).unwrap_or_default();
         // A name may begin like a remark, a number may not.
-        let is_name = record.len() == self.headers.len() && plan.kinds.first() != Some(&Kind::Number);
+        let is_whole = record.len() == self.headers.len();
+        let is_name = is_whole && (plan.kinds.first() != Some(&Kind::Number) || is_spreadsheets(first));
         if remark(first).is_some() && !is_name {
             self.remarks += 1;
             return Ok(Role::Passed);
@@ -80,6 +81,17 @@ impl Rows {
         }
         self.rows += 1;
         Ok(Role::Row)
+    }
+
+    /// Whether most cells that have to hold numbers hold words: a header that is not the first, as of files put together.
+    pub(crate) fn is_another_header(&self, plan: &Plan, record: &ByteRecord) -> bool {
+        let is_word = |column: usize| {
+            let text = String::from_utf8_lossy(record.get(column).unwrap_or_default()).into_owned();
+            text.trim().starts_with(char::is_alphabetic) && !is_missing(text.trim())
+        };
+        let needed: Vec<usize> = plan.needed().collect();
+        let words = needed.iter().filter(|column| is_word(**column)).count();
+        words >= 2 && 2 * words >= needed.len()
     }
 
     /// Takes note of a last line that breaks off.
@@ -122,7 +134,12 @@ impl Rows {
         let is_whole =
             |cell: &[u8]| !cell.is_empty() && cell.iter().all(|byte| byte.is_ascii_digit() || *byte == b'-');
         let halves = found > expected && record.iter().filter(|cell| is_whole(cell)).count() > found / 2;
+        // R numbers rows from 1, without a name above.
+        let has_row_names = self.rows == 0 && found == expected + 1 && record.get(0) == Some(b"1");
         let remedy = match self.separator {
+            _ if has_row_names => {
+                "the header is one name short, as R writes it beside row names: write with `row.names = FALSE`, or name the first column"
+            }
             Separator::Byte(b',') if halves => {
                 "if decimals stand behind a comma, write a decimal point, or separate cells by semicolons"
             }

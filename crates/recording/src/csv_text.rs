@@ -1,7 +1,7 @@
 //! The records of a CSV file one after another, each with its line.
 
 use std::{
-    cell::Cell,
+    cell::{Cell, RefCell},
     io::{Chain, Cursor, Error as IoError, ErrorKind as IoErrorKind, Read, Result as IoResult},
     rc::Rc,
 };
@@ -11,6 +11,7 @@ use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 use crate::{
     Error,
     dialect::{Dialect, Separator},
+    open_quote::{OpenQuote, OpenQuotes},
     plain_text::{PlainText, first_line},
 };
 
@@ -26,6 +27,8 @@ pub(crate) struct CsvText {
     reader: Reader<Bounded>,
     /// Bytes read since the last record ended.
     unread: Rc<Cell<usize>>,
+    /// Quotation marks of what was read.
+    quotes: Rc<RefCell<OpenQuotes>>,
     record: ByteRecord,
     /// Cells of a record that spaces separate.
     compact: ByteRecord,
@@ -41,16 +44,20 @@ impl CsvText {
         text.beginning.drain(..dialect.header_at);
         let returns = first_line(&text.beginning).ends_with(b"\r");
         let unread = Rc::new(Cell::new(0));
+        let quotes = Rc::new(RefCell::new(OpenQuotes::new(dialect.separator.byte())));
+        let bounded =
+            Bounded { source: text.whole(), unread: Rc::clone(&unread), quotes: Rc::clone(&quotes) };
         let reader = ReaderBuilder::new()
             .delimiter(dialect.separator.byte())
             .has_headers(false)
             .flexible(true)
             .buffer_capacity(BUFFER_BYTES)
-            .from_reader(Bounded { source: text.whole(), unread: Rc::clone(&unread) });
+            .from_reader(bounded);
         Ok(CsvText {
             dialect,
             reader,
             unread,
+            quotes,
             record: ByteRecord::new(),
             compact: ByteRecord::new(),
             returns,
@@ -114,10 +121,15 @@ impl CsvText {
     fn error(&self, error: &::csv::Error) -> Error {
         let line = self.dialect.lines_before + error.position().map_or(1, ::csv::Position::line);
         match error.kind() {
-            ErrorKind::Io(io) if io.kind() == IoErrorKind::FileTooLarge => Error::Csv {
-                line: self.dialect.lines_before + self.reader.position().line(),
-                message: io.to_string(),
-            },
+            ErrorKind::Io(io) if io.kind() == IoErrorKind::FileTooLarge => {
+                let line = self.dialect.lines_before + self.quotes.borrow().line();
+                Error::Csv { line, message: io.to_string() }
+            }
+            ErrorKind::Io(io)
+                if let Some(open) = io.get_ref().and_then(|inner| inner.downcast_ref::<OpenQuote>()) =>
+            {
+                Error::Csv { line: self.dialect.lines_before + open.line, message: open.to_string() }
+            }
             ErrorKind::Io(io) if io.kind() == IoErrorKind::UnexpectedEof => {
                 let message = "the packed file breaks off behind this line; pack it again, or unpack what is left of it";
                 Error::Csv {
@@ -135,16 +147,22 @@ impl CsvText {
 struct Bounded {
     source: Chain<Cursor<Vec<u8>>, Box<dyn Read>>,
     unread: Rc<Cell<usize>>,
+    quotes: Rc<RefCell<OpenQuotes>>,
 }
 
 impl Read for Bounded {
     fn read(&mut self, buffer: &mut [u8]) -> IoResult<usize> {
         if self.unread.get() > LONGEST_RECORD_BYTES {
-            let reason =
-                "the row that begins here does not end within 64 MiB; is a quotation mark left open?";
-            return Err(IoError::new(IoErrorKind::FileTooLarge, reason));
+            return Err(match self.quotes.borrow().open() {
+                Some(open) => IoError::other(open),
+                None => IoError::new(
+                    IoErrorKind::FileTooLarge,
+                    "this line does not end within 64 MiB; is it a table?",
+                ),
+            });
         }
         let bytes = self.source.read(buffer)?;
+        self.quotes.borrow_mut().follow(&buffer[..bytes]).map_err(IoError::other)?;
         self.unread.set(self.unread.get() + bytes);
         Ok(bytes)
     }

@@ -2,7 +2,13 @@
 
 use std::{mem, ops::Range};
 
-use crate::{Error, Labels, ReadingReport, Recording, Repair, Run, watch::Looks};
+use crate::{
+    Error, Labels, ReadingReport, Recording, Repair, Run, TimeError, blank_runs::fill_blanks,
+    error::Position, watch::Looks,
+};
+
+/// Share by which runs may hold more time than passed in all: where one ends within a step, the next begins.
+const ROUNDING_SHARE: f64 = 0.01;
 
 /// Divides the rows into runs. Rows of one run that lie apart are brought together, in their order; then the place of each
 /// row in the file is returned.
@@ -11,19 +17,19 @@ pub(crate) fn divide(
     runs: Option<Labels>,
     name: &str,
     report: &mut ReadingReport,
+    position: &dyn Fn(usize) -> Position,
     looks: &Looks,
 ) -> Result<Option<Vec<usize>>, Error> {
     let rows = recording.rows();
-    let Some(mut labels) = runs else {
+    let named = runs.and_then(|labels| fill_blanks(labels, &recording.t_s, &mut report.repairs));
+    let Some(mut labels) = named else {
         recording.runs = vec![Run::new(name.to_owned(), 0..rows, &recording.t_s, None)];
         return Ok(None);
     };
-    if labels.index.contains(&Labels::NONE) {
-        let unnamed = u32::try_from(labels.names.len()).unwrap_or(Labels::NONE);
-        labels.names.push("unnamed".into());
-        labels.index.iter_mut().filter(|index| **index == Labels::NONE).for_each(|index| *index = unnamed);
-    }
-    let order = if scattered(&labels) {
+    let scattered_at = scattered_at(&labels);
+    // Rows of several clocks, put together by time, repeat times or are out of order.
+    let is_one_clock = recording.t_s.windows(2).all(|pair| pair[0] < pair[1]);
+    let order = if scattered_at.is_some() {
         let mut order: Vec<usize> = (0..rows).collect();
         order.sort_by_key(|&row| labels.index[row]);
         report.repairs.push(Repair {
@@ -43,13 +49,30 @@ pub(crate) fn divide(
             Run::new(name, rows, &recording.t_s, None)
         })
         .collect();
-    Ok(order)
+    match scattered_at.filter(|_| is_one_clock) {
+        Some(row) => refuse_turns(recording, position(row)).map(|()| order),
+        None => Ok(order),
+    }
 }
 
-fn scattered(labels: &Labels) -> bool {
+/// Refuses runs that take turns on one clock, so that the same seconds would be counted in several of them.
+fn refuse_turns(recording: &Recording, position: Position) -> Result<(), Error> {
+    let of_run = |run: &Run| -> f64 { run.rows.clone().filter_map(|row| recording.step_s(run, row)).sum() };
+    let counted_s: f64 = recording.runs.iter().map(of_run).sum();
+    let times = || recording.t_s.iter().copied();
+    let passed_s = times().fold(f64::NEG_INFINITY, f64::max) - times().fold(f64::INFINITY, f64::min);
+    if counted_s <= (1.0 + ROUNDING_SHARE) * passed_s {
+        return Ok(());
+    }
+    let runs = recording.runs.iter().map(|run| run.name.clone()).collect();
+    Err(TimeError::RunsTakeTurns { position, runs, counted_s, passed_s }.into())
+}
+
+/// The first row of a run whose rows before lie apart from it.
+fn scattered_at(labels: &Labels) -> Option<usize> {
     let mut seen = vec![false; labels.names.len()];
-    stretches(&labels.index)
-        .any(|(index, _)| seen.get_mut(index as usize).is_some_and(|seen| mem::replace(seen, true)))
+    let mut again = |index: u32| seen.get_mut(index as usize).is_some_and(|seen| mem::replace(seen, true));
+    stretches(&labels.index).find(|(index, _)| again(*index)).map(|(_, rows)| rows.start)
 }
 
 /// Stretches of equal indices.

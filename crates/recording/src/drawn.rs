@@ -28,7 +28,7 @@ pub(crate) fn settle(recording: &mut Recording, place: &str) -> Option<Repair> {
     }
     let what = format!(
         "its current is {mean_a:.2} A on average while the wheels turn: what is drawn was taken to be {sign} there, since drivers have both signs; where the \
-         battery was charged on balance, name the topic in a map with `scale` 1 or -1"
+         battery was charged on balance, name it in a map with `scale` 1 or -1"
     );
     Some(Repair { place: place.to_owned(), what })
 }

@@ -116,6 +116,25 @@ pub enum Error {
         /// Its first and last time \[s\].
         second_s: [f64; 2],
     },
+    /// Runs that hold the same seconds of one drive, which would count twice.
+    #[error(
+        "run `{first_run}` of {first} and run `{second_run}` of {second} hold the same drive from {from_s:.1} s to {until_s:.1} s of the latter; \
+         leave one of them out, or cut off what both hold"
+    )]
+    SameDrive {
+        /// A file.
+        first: String,
+        /// Its run.
+        first_run: String,
+        /// The file of the other run.
+        second: String,
+        /// The other run.
+        second_run: String,
+        /// First time that both hold, by the clock of the latter \[s\].
+        from_s: f64,
+        /// Last time that both hold, by the clock of the latter \[s\].
+        until_s: f64,
+    },
     /// Tables to be joined that give the same channel.
     #[error("both {first} and {second} give {channel}; remove or rename one of the columns")]
     GivenTwice {
@@ -193,7 +212,7 @@ pub enum Error {
         message: String,
     },
     /// The Parquet library refused the file.
-    #[error("not a readable Parquet file: {0}; was it closed by its writer?")]
+    #[error("not a readable Parquet file: {}", parquet_reason(.0))]
     Parquet(#[from] parquet::errors::ParquetError),
     /// The file is not of the format that its name says.
     #[error("this is no {format} file: {reason}")]
@@ -343,6 +362,18 @@ impl Error {
             *unread = reasons;
         }
         self
+    }
+}
+
+/// What the Parquet library says, and how to mend it.
+fn parquet_reason(error: &parquet::errors::ParquetError) -> String {
+    let said = error.to_string();
+    match said.split_once("Disabled feature at compile time: ") {
+        Some((_, codec)) => format!(
+            "its columns are compressed with {codec}, which is not read here; write it with zstd, snappy, gzip or none"
+        ),
+        None if said.contains("checksum") => said,
+        None => format!("{said}; was it closed by its writer?"),
     }
 }
 

@@ -1,20 +1,29 @@
 //! What a log holds, and which map would read it: columns or topics with rate and range, and guesses with their reasons.
 
+mod choice;
 mod guess;
+mod time_column;
 
-use std::path::Path;
+use std::{fs::File, path::Path};
 
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use self::guess::{guess, time_unit};
+use self::{
+    choice::sources,
+    guess::{Guess, guess},
+    time_column::{TimeColumn, time_column},
+};
 use crate::{
-    Channel, Error, Map, Recording,
+    Channel, Conversion, Error, Map, Quantity, Recording,
+    beginning::beginning,
     format::Format,
     map::Place,
-    reading::{Reading, read_part, read_path},
+    reading::{Reading, read_path, unwatched},
     report::ReadingReport,
 };
+
+pub(crate) use self::guess::Side;
 
 /// What a log holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,7 +81,10 @@ fn names(path: &Path) -> Result<Vec<String>, Error> {
         }
         Err(error) => match error.found() {
             Some(found) => Ok(found.to_vec()),
-            None => Err(error),
+            None => match beginning(File::open(path)?, Format::of(path)?, &unwatched()) {
+                Ok(columns) => Ok(columns.into_iter().map(|column| column.name).collect()),
+                Err(_) => Err(error),
+            },
         },
     }
 }
@@ -80,8 +92,7 @@ fn names(path: &Path) -> Result<Vec<String>, Error> {
 fn table(path: &Path) -> Result<Inspection, Error> {
     let names = names(path)?;
     let mut notes = Vec::new();
-    let time = names.iter().find_map(|name| time_unit(name).map(|unit| (name.clone(), unit)));
-    let Some((time, time_unit)) = time else {
+    let Some(time) = time_column(path, &names)? else {
         notes.push(format!(
             "none of the columns {} is named as a time: name the one that is `t_s`",
             names.join(", ")
@@ -93,23 +104,33 @@ fn table(path: &Path) -> Result<Inspection, Error> {
             notes,
         });
     };
-    let of_time = json!({"channel": "t_s", "column": time, "unit": time_unit});
-    let only_time = Map::from_value(&json!({"name": "inspected", "sources": [of_time]}))?;
-    let recording = read_part(path, &only_time)?;
-    let mut fields = vec![InspectedField {
-        name: time.clone(),
-        samples: recording.rows(),
-        rate_hz: rate_hz(&recording, |_| true),
-        range: range(&recording.t_s),
-        channel: Some("t_s".into()),
-        unit: Some(time_unit.into()),
-        reason: "by its name".into(),
-    }];
+    let TimeColumn { name: time, unit: time_unit, reason, recording } = time;
+    let mut fields = Vec::new();
     let columns = recording.channels.iter().map(|(channel, values)| (channel.name().to_owned(), values));
     for (name, values) in columns.chain(recording.aside.iter().map(|(name, values)| (name.clone(), values))) {
         fields.push(field(&recording, name, values));
     }
-    let sources = sources(&time, time_unit, &fields);
+    let chosen = sources(&mut fields);
+    notes.extend(
+        fields
+            .iter()
+            .filter(|field| field.reason.starts_with("left out"))
+            .map(|field| format!("column `{}` is {}", field.name, field.reason)),
+    );
+    let of_time = json!({"channel": "t_s", "column": time, "unit": time_unit});
+    let sources: Vec<Value> = std::iter::once(of_time).chain(chosen).collect();
+    fields.insert(
+        0,
+        InspectedField {
+            name: time,
+            samples: recording.rows(),
+            rate_hz: rate_hz(&recording, |_| true),
+            range: range(&recording.t_s),
+            channel: Some("t_s".into()),
+            unit: Some(time_unit.into()),
+            reason,
+        },
+    );
     for channel in [Channel::LeftSpeed, Channel::RightSpeed] {
         if !fields.iter().any(|field| field.channel.as_deref() == Some(channel.name())) {
             notes.push(format!("no column was recognised as `{}`: name it in the map", channel.name()));
@@ -130,32 +151,54 @@ fn table(path: &Path) -> Result<Inspection, Error> {
 fn field(recording: &Recording, name: String, values: &[f64]) -> InspectedField {
     let range = range(values);
     let greatest = range.map_or(0.0, |[low, high]| high.abs().max(low.abs()));
-    let found = guess(&name, greatest);
+    let is_contracts = Channel::from_name(&name).is_some();
+    let found =
+        guess(&name, greatest).and_then(|found| if is_contracts { Ok(found) } else { agree(found, values) });
     InspectedField {
         samples: values.iter().filter(|value| !value.is_nan()).count(),
         rate_hz: rate_hz(recording, |row| !values[row].is_nan()),
         range,
-        channel: found.as_ref().map(|found| found.channel.name().to_owned()),
-        unit: found.as_ref().map(|found| found.unit.to_owned()),
-        reason: found.map_or_else(|| "nothing in its name is known".into(), |found| found.reason),
+        channel: found.as_ref().ok().map(|found| found.channel.name().to_owned()),
+        unit: found.as_ref().ok().map(|found| found.unit.to_owned()),
+        reason: found.map_or_else(|reason| reason, |found| found.reason),
         name,
     }
 }
 
-/// Sources of a map of what was recognised; several columns of one channel, as of both wheels of a side, are its mean.
-fn sources(time: &str, time_unit: &str, fields: &[InspectedField]) -> Vec<Value> {
-    let mut sources = vec![json!({"channel": "t_s", "column": time, "unit": time_unit})];
-    for field in &fields[1..] {
-        let (Some(channel), Some(unit)) = (&field.channel, &field.unit) else { continue };
-        let known = sources
-            .iter_mut()
-            .find(|source| source["channel"] == json!(channel) && source["unit"] == json!(unit));
-        match known.and_then(|source| source["columns"].as_array_mut()) {
-            Some(columns) => columns.push(json!(field.name)),
-            None => sources.push(json!({"channel": channel, "columns": [field.name], "unit": unit})),
-        }
+/// The guess if its numbers may be those of its channel in its unit, or why they are not.
+fn agree(guess: Guess, values: &[f64]) -> Result<Guess, String> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+    if is_counted_up(&sorted)
+        && matches!(guess.channel.quantity(), Quantity::Speed | Quantity::Power | Quantity::Current)
+    {
+        return Err(format!(
+            "left out: it never falls, as an energy or a count of ticks, and {} does",
+            guess.channel
+        ));
     }
-    sources
+    // Wheels of any radius a robot has turn as their angular rates say.
+    let Some(unit) = Conversion::from_unit(guess.channel.quantity(), guess.unit, None) else {
+        return Ok(guess);
+    };
+    sorted.iter_mut().for_each(|value| *value = unit.apply(*value).abs());
+    sorted.sort_unstable_by(f64::total_cmp);
+    let Some(&high) = sorted.get(sorted.len().saturating_sub(1) * 99 / 100) else { return Ok(guess) };
+    let [least, most] = guess.channel.plausible_magnitude();
+    if high > most || (high > 0.0 && high < least) {
+        let Guess { channel, unit, .. } = guess;
+        return Err(format!(
+            "left out: as {channel} in {unit} its numbers reach {high:.4}, and a robot's lie between {least} and {most}; name its unit in the map"
+        ));
+    }
+    Ok(guess)
+}
+
+/// Whether numbers rise all the way, as those of counters do.
+fn is_counted_up(values: &[f64]) -> bool {
+    /// More rises in a row than any drive begins with.
+    const RISES: usize = 100;
+    let rises = values.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    rises >= RISES && values.windows(2).all(|pair| pair[1] >= pair[0])
 }
 
 fn range(values: &[f64]) -> Option<[f64; 2]> {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Channel, Combine, Conversion, Error, Quantity, Recording,
+    Channel, Combine, Conversion, Error, Quantity, ReadingReport, Recording, Repair, drawn,
     rate::{beyond_wrap, rates},
     units,
 };
@@ -278,6 +278,20 @@ impl Map {
             }
         }
         Ok(())
+    }
+
+    /// Finds the sign of a current that came of a column and is to be drawn; that of a topic was found before.
+    pub(crate) fn settle_drawn_column(
+        &self,
+        recording: &mut Recording,
+        report: &ReadingReport,
+    ) -> Option<Repair> {
+        let from = &report.channels.iter().find(|used| used.channel == Channel::Current)?.from;
+        let is_read = |source: &&Source| match &source.place {
+            Place::Columns(names) => source.sign == Sign::Drawn && names.join(", ") == *from,
+            Place::Topic { .. } => false,
+        };
+        self.sources.iter().find(is_read).and_then(|_| drawn::settle(recording, &format!("column `{from}`")))
     }
 
     /// Whether any of its sources is a column of a table.

@@ -10,6 +10,7 @@ use crate::{
     compression::{LONGEST_BYTES, decompress},
     container::{BREAKS_OFF, ENDS_EARLY, UNPACKABLE, opened, topics},
     cursor::{Cursor, Short},
+    mcap_summary::Summary,
     reading::{Reading, read_up_to},
     schema::{Described, Schema},
     topic::Topics,
@@ -23,15 +24,15 @@ pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 pub(crate) const FORMAT: &str = "MCAP";
 
 /// Opcodes of the records that matter here.
-const FOOTER: u8 = 0x02;
-const SCHEMA: u8 = 0x03;
-const CHANNEL: u8 = 0x04;
+pub(crate) const FOOTER: u8 = 0x02;
+pub(crate) const SCHEMA: u8 = 0x03;
+pub(crate) const CHANNEL: u8 = 0x04;
 const MESSAGE: u8 = 0x05;
 const CHUNK: u8 = 0x06;
-const DATA_END: u8 = 0x0F;
+pub(crate) const DATA_END: u8 = 0x0F;
 
 /// A record's opcode and length.
-const FRAME_BYTES: u64 = 9;
+pub(crate) const FRAME_BYTES: u64 = 9;
 
 /// Name, encoding and text of a schema.
 struct StoredSchema {
@@ -44,27 +45,33 @@ struct Reader<'t, 'm> {
     schemas: BTreeMap<u16, StoredSchema>,
     topics: &'t mut Topics<'m>,
     plain: Vec<u8>,
+    /// What the summary says of schemas and channels, until a chunk is left out.
+    summary: Summary,
 }
 
 /// Reads an MCAP file.
 pub(crate) fn read(
     source: impl Read,
+    summary: Summary,
     name: &str,
     map: Option<&Map>,
     budget: &Budget,
 ) -> Result<Reading, Error> {
     let mut topics = topics(map, budget)?;
-    read_into(source, &mut topics)?;
+    read_into(source, summary, &mut topics)?;
     topics.finish(name, FORMAT)
 }
 
 /// Reads an MCAP file, and those that were put behind it with `cat`.
-pub(crate) fn read_into(source: impl Read, topics: &mut Topics<'_>) -> Result<(), Error> {
+pub(crate) fn read_into(source: impl Read, summary: Summary, topics: &mut Topics<'_>) -> Result<(), Error> {
     let mut source = opened(source, MAGIC, FORMAT, "it does not begin with the MCAP magic")?;
     let mut bytes = Vec::new();
     let mut at = MAGIC.len() as u64;
+    // Only that of a single file was found, which is the first.
+    let mut of_first = Some(summary);
     loop {
-        let mut reader = Reader { schemas: BTreeMap::new(), topics, plain: Vec::new() };
+        let summary = of_first.take().unwrap_or_default();
+        let mut reader = Reader { schemas: BTreeMap::new(), topics, plain: Vec::new(), summary };
         if !reader.file(&mut source, &mut bytes, &mut at)? || !behind_end(&mut source, &mut at)? {
             return Ok(());
         }
@@ -144,7 +151,7 @@ fn cost([first_ns, last_ns]: [u64; 2]) -> String {
     )
 }
 
-fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
+pub(crate) fn frame_of(cursor: &mut Cursor<'_>) -> Result<(u8, u64), Short> {
     let [opcode] = cursor.number::<1>()?;
     Ok((opcode, cursor.u64()?))
 }
@@ -265,15 +272,31 @@ impl Reader<'_, '_> {
         let packed = cursor.rest();
         let packed = packed.get(..packed_bytes).unwrap_or(packed);
         let mut plain = std::mem::take(&mut self.plain);
-        match decompress(compression, packed, claimed_bytes, &mut plain, self.topics.looks())? {
-            Err(reason) => self.tell(at, &format!("{reason}; the chunk was left out{}", cost(times_ns))),
+        let left_out = match decompress(compression, packed, claimed_bytes, &mut plain, self.topics.looks())?
+        {
+            Err(reason) => Some(format!("{reason}; the chunk was left out")),
             Ok(true) if checksum != 0 && crc32fast::hash(&plain) != checksum => {
-                self.tell(at, &format!("a chunk fails its checksum; it was left out{}", cost(times_ns)));
+                Some("a chunk fails its checksum; it was left out".to_owned())
             }
-            Ok(false) if whole => self.tell(at, &format!("{UNPACKABLE}{}", cost(times_ns))),
-            Ok(_) => self.records(&plain, at)?,
+            Ok(false) if whole => Some(UNPACKABLE.to_owned()),
+            Ok(_) => None,
+        };
+        match left_out {
+            Some(why) => {
+                self.tell(at, &format!("{why}{}", cost(times_ns)));
+                self.recall_summary(at)?;
+            }
+            None => self.records(&plain, at)?,
         }
         self.plain = plain;
+        Ok(())
+    }
+
+    /// Takes schemas and channels from the summary, since those of a chunk are lost.
+    fn recall_summary(&mut self, at: u64) -> Result<(), Error> {
+        for (opcode, body) in std::mem::take(&mut self.summary).records() {
+            self.record(*opcode, body, at, true)?;
+        }
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{
     Channel, Error, Ignored, Labels, Map, Recording, Repair, Run, Sign, TimeError,
-    align::{Between, interpolate},
+    align::{Between, interpolate_within},
     clock::implausible_steps,
     clock_offset, drawn, gap,
     map::{Place, Target},
@@ -207,7 +207,7 @@ impl Topics<'_> {
                 } else {
                     Between::Line
                 };
-                interpolate(&own_s, values, &t_s, max_gap_s, between)
+                interpolate_within(&own_s, values, &t_s, self.map.max_gap_s, between)
             };
             if values.iter().all(|value| value.is_nan()) {
                 let reason = format!("its stamps do not meet those of {}", streams[base].topic);

@@ -4,7 +4,7 @@
 //! moment, and has to be compared with the mean of what is predicted over that period: rows stay as dense as the wheels' samples, each
 //! reading holds over the rows of its period, and [`Recording::reading_ends`](crate::Recording::reading_ends) tells where each ends.
 
-use crate::gap;
+use crate::gap::{self, Gaps};
 
 /// Readings that are at least so far apart are held over their period \[s\]: half of the second over which power is compared, so that no mean over
 /// one would have two readings inside it.
@@ -30,11 +30,12 @@ pub(crate) struct Held {
 /// Holds every reading over the rows since the reading before it, or over one median step where that is farther away than a gap.
 pub(crate) fn held(readings: &[(f64, f64)], at_s: &[f64]) -> Held {
     let own_s: Vec<f64> = readings.iter().map(|reading| reading.0).collect();
-    let (gap_s, step_s) = (gap::threshold_s(&own_s), gap::median_step_s(&own_s).unwrap_or(0.0));
+    let (gaps, step_s) = (Gaps::of(&own_s, None), gap::median_step_s(&own_s).unwrap_or(0.0));
     let mut held = Held { values: vec![f64::NAN; at_s.len()], ends: vec![false; at_s.len()] };
     let (mut first, mut before_s) = (0, f64::NEG_INFINITY);
-    for (t_s, value) in readings {
-        let begins_s = if t_s - before_s > gap_s { t_s - step_s } else { before_s };
+    for (reading, (t_s, value)) in readings.iter().enumerate() {
+        let is_behind_gap = reading == 0 || gaps.is_gap(&own_s, reading - 1);
+        let begins_s = if is_behind_gap { t_s - step_s } else { before_s };
         while at_s.get(first).is_some_and(|at| *at <= begins_s) {
             first += 1;
         }

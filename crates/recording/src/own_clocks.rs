@@ -5,10 +5,13 @@
 //! for the topics of a bag, the rows are the stamps of the slowest channel that power is computed from, or those of the wheels where
 //! that is a meter which is slower than robots move (`meter`).
 
+use std::ops::Range;
+
 use crate::{
     Channel, Error, Labels, PowerForm, Recording, Repair, Run,
-    align::{Between, interpolate},
-    gap, meter,
+    align::{Between, interpolate_within},
+    gap::{self, Gaps},
+    meter,
     watch::Looks,
 };
 
@@ -17,6 +20,9 @@ const ROWS_OWN_SHARE: f64 = 0.7;
 
 /// Share of the empty cells that have to lie between samples of one rhythm for a channel to have its own.
 const RHYTHM_SHARE: f64 = 0.8;
+
+/// Rounding of times that steps are compared with, as a share of a step.
+const STEP_ROUNDING: f64 = 1e-3;
 
 /// Fewer samples show no rhythm.
 const LEAST_SAMPLES: usize = 5;
@@ -151,7 +157,9 @@ impl Clock {
     fn of(recording: &Recording, run: &Run, max_gap_s: Option<f64>) -> Clock {
         let all = || Clock { run: run.clone(), rows: run.rows.clone().collect(), base: None, meter: None };
         let Some((base, samples)) = slowest_of_power(recording, run) else { return all() };
-        let is_dense = samples.len() as f64 >= ROWS_OWN_SHARE * run.rows.len() as f64;
+        // Rows before its first and behind its last sample show nothing of its rhythm.
+        let spanned = samples.first().zip(samples.last()).map_or(0, |(first, last)| last - first + 1);
+        let is_dense = samples.len() as f64 >= ROWS_OWN_SHARE * spanned as f64;
         if is_dense || !has_rhythm(&recording.t_s, &samples) {
             return all();
         }
@@ -164,9 +172,11 @@ impl Clock {
         {
             let is_all = wheels.len() == run.rows.len();
             let meter = Some((base, own_s));
-            return Clock { run: run.clone(), rows: wheels, base: (!is_all).then_some(wheel), meter };
+            let rows = with_ends(&recording.t_s, run, wheels);
+            return Clock { run: run.clone(), rows, base: (!is_all).then_some(wheel), meter };
         }
-        Clock { run: run.clone(), rows: samples, base: Some(base), meter: None }
+        let rows = with_ends(&recording.t_s, run, samples);
+        Clock { run: run.clone(), rows, base: Some(base), meter: None }
     }
 
     fn told(&self, recording: &Recording) -> Option<Repair> {
@@ -208,11 +218,10 @@ impl Clock {
             moved.extend(kept);
             return 0;
         }
-        let max_gap_s = max_gap_s.unwrap_or_else(|| gap::threshold_s(&samples));
         let at_s: Vec<f64> = self.rows.iter().map(|row| t_s[*row]).collect();
         let before = kept.filter(|value| is_empty(*value)).count();
         let start = moved.len();
-        moved.extend(interpolate(&t_s[rows.clone()], &values[rows], &at_s, max_gap_s, between));
+        moved.extend(interpolate_within(&t_s[rows.clone()], &values[rows], &at_s, max_gap_s, between));
         before - moved[start..].iter().copied().filter(|value| is_empty(*value)).count()
     }
 
@@ -243,6 +252,36 @@ impl Clock {
             kept.push(last);
         }
         kept
+    }
+}
+
+/// Rows of samples, and at about their step those of the run before the first and behind the last: a channel that ends before the drive
+/// leaves seconds that are told, not fewer seconds.
+fn with_ends(t_s: &[f64], run: &Run, samples: Vec<usize>) -> Vec<usize> {
+    let own_s: Vec<f64> = samples.iter().map(|row| t_s[*row]).collect();
+    let ends = samples.first().zip(samples.last()).zip(gap::median_step_s(&own_s));
+    let Some(((&first, &last), step_s)) = ends else { return samples };
+    // Within a gap of the ends is where any two rhythms begin and end.
+    let is_far = |one: usize, other: usize| t_s[other] - t_s[one] > gap::GAP_STEPS * step_s;
+    let mut rows = Vec::with_capacity(samples.len());
+    if is_far(run.rows.start, first) {
+        thin(t_s, run.rows.start..first, step_s, &mut rows);
+    }
+    rows.extend(&samples);
+    if is_far(last, run.rows.end - 1) {
+        thin(t_s, last + 1..run.rows.end, step_s, &mut rows);
+    }
+    rows
+}
+
+/// Appends rows no closer to one another than a step, the last of them in any case.
+fn thin(t_s: &[f64], rows: Range<usize>, step_s: f64, kept: &mut Vec<usize>) {
+    let end = rows.end;
+    for row in rows {
+        let is_next = kept.last().is_none_or(|last| t_s[row] - t_s[*last] >= (1.0 - STEP_ROUNDING) * step_s);
+        if is_next || row + 1 == end {
+            kept.push(row);
+        }
     }
 }
 
@@ -281,12 +320,12 @@ pub(crate) fn meter_words(meter: &str, step_s: f64) -> String {
 /// Whether most rows between samples lie within steps that are no gaps of the samples' own rhythm.
 fn has_rhythm(t_s: &[f64], samples: &[usize]) -> bool {
     let own_s: Vec<f64> = samples.iter().map(|row| t_s[*row]).collect();
-    let longest_s = gap::threshold_s(&own_s);
+    let gaps = Gaps::of(&own_s, None);
     let (mut within, mut between) = (0, 0);
-    for pair in samples.windows(2) {
+    for (at, pair) in samples.windows(2).enumerate() {
         let rows = pair[1] - pair[0] - 1;
         between += rows;
-        within += if t_s[pair[1]] - t_s[pair[0]] <= longest_s { rows } else { 0 };
+        within += if gaps.is_gap(&own_s, at) { 0 } else { rows };
     }
     within as f64 >= RHYTHM_SHARE * between as f64
 }
@@ -376,6 +415,32 @@ mod tests {
         assert_eq!((recording.rows(), empty.first(), empty.last()), (600, Some(&200), Some(&300)));
         assert!(repairs[0].what.starts_with("11 of power_w were interpolated"), "{repairs:?}");
         assert!(repairs[1].what.starts_with("101 of 600 rows have no value"), "{repairs:?}");
+    }
+
+    #[test]
+    fn a_channel_that_ends_before_the_drive_does_leaves_its_seconds_in_the_recording() {
+        for (step_s, offset_s) in [(0.1, 0.0), (0.1, 0.043), (0.2, 0.043), (1.0, 0.043), (0.02, 0.003)] {
+            for (from_s, until_s) in [(0.0, 30.0), (30.0, 60.0), (20.0, 40.0)] {
+                let mut recording = joined(step_s, offset_s);
+                let t_s = recording.t_s.clone();
+                let power = recording.channels.get_mut(&Channel::Power).unwrap();
+                let lost = |t: f64| t < from_s || t > until_s;
+                power.iter_mut().zip(&t_s).for_each(|(watts, t)| {
+                    if lost(*t) {
+                        *watts = f64::NAN;
+                    }
+                });
+                let (recording, _) = aligned(recording);
+                let power = recording.channel(Channel::Power).unwrap();
+                let counted = |row: &usize| !power[*row].is_nan() && !power[*row + 1].is_nan();
+                let counted_s: f64 = (0..recording.rows() - 1)
+                    .filter(counted)
+                    .filter_map(|row| recording.step_s(&recording.runs[0], row))
+                    .sum();
+                assert_relative_eq!(recording.duration_s(), DURATION_S, epsilon = 1.5);
+                assert_relative_eq!(counted_s, until_s - from_s, epsilon = 2.5 * step_s.max(0.1));
+            }
+        }
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub(crate) struct Pages {
 
 impl PageReader for Pages {
     fn get_next_page(&mut self) -> Result<Option<Page>> {
-        let page = self.source.get_next_page()?;
+        let page = self.source.get_next_page().map_err(|error| self.of_column(error))?;
         match &page {
             Some(Page::DictionaryPage { buf, num_values, .. }) if *num_values as usize > buf.len() => {
                 let reason = format!(
@@ -35,6 +35,19 @@ impl PageReader for Pages {
 
     fn skip_next_page(&mut self) -> Result<()> {
         self.source.skip_next_page()
+    }
+}
+
+impl Pages {
+    /// What the library refuses, with the column: a page that fails its checksum holds numbers that nobody recorded.
+    fn of_column(&self, error: ParquetError) -> ParquetError {
+        match error {
+            ParquetError::General(reason) if reason.contains("CRC") => ParquetError::General(format!(
+                "a page of column `{}` fails its checksum, so that its numbers are not those that were written: copy the file again",
+                self.name
+            )),
+            other => other,
+        }
     }
 }
 

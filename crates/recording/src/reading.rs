@@ -12,8 +12,11 @@ use crate::{
     Channel, Error, Format, Ignored, Map, PowerForm, ReadingReport, Recording, Room, Watch, bag, csv,
     format::{self, ZSTD_MAGIC, ending_of, run_name},
     joined::{join_in_time, tables_of},
-    mcap, parquet,
+    mcap,
+    mcap_summary::Summary,
+    parquet,
     rosbag2::{db3, folder, storage},
+    same_drive::refuse_same_drives,
     suspicion::suspicions_watched,
     ulog,
     unused_runs::tell_unused_runs,
@@ -80,13 +83,14 @@ fn read_path_within(path: &Path, map: Option<&Map>, watch: &Watch, room: Room) -
 /// # Errors
 /// What is wrong, with line, row or topic; [`Error::Stopped`] when the watch breaks.
 pub fn read_file(
-    file: File,
+    mut file: File,
     format: Format,
     name: &str,
     map: Option<&Map>,
     watch: &Watch,
     room: Room,
 ) -> Result<Reading, Error> {
+    let summary = if format == Format::Mcap { Summary::of(&mut file) } else { Summary::default() };
     let file = Watched::new(file, Arc::clone(watch));
     let stopped = file.stopped();
     let budget = Budget { room, looks: Looks::new(watch) };
@@ -94,7 +98,7 @@ pub fn read_file(
     let reading = match format {
         Format::Csv => csv::read(file, name, of_columns(map), &budget).and_then(finish),
         Format::Parquet => parquet::read(file, name, of_columns(map), &budget).and_then(finish),
-        Format::Mcap => mcap::read(file, name, map, &budget),
+        Format::Mcap => mcap::read(file, summary, name, map, &budget),
         Format::Bag => bag::read(file, name, map, &budget),
         Format::Db3 => db3::read_copy(file, name, map, &budget),
         Format::Ulog => ulog::read(file, name, map, &budget),
@@ -141,7 +145,7 @@ pub fn unwatched() -> Watch {
 /// `wheels.csv+power.csv`, become one recording on one clock.
 ///
 /// # Errors
-/// The first file's that cannot be read.
+/// The first file's that cannot be read; [`Error::SameDrive`] where two runs hold the same seconds of a drive.
 pub fn read_paths<P: AsRef<Path>>(
     paths: &[P],
     map: Option<&Map>,
@@ -177,6 +181,7 @@ pub fn read_paths_watched<P: AsRef<Path>>(
         reports.push(reading.report);
     }
     let joined = Recording::join(recordings);
+    refuse_same_drives(&joined, &reports, &Looks::new(watch))?;
     tell_unused_runs(&joined, &mut reports);
     Ok((joined, reports))
 }
@@ -214,7 +219,11 @@ pub(crate) fn read_within(
             parquet::read(bytes::Bytes::from(bytes), name, of_columns(map), &budget).and_then(finish)
         }
         Format::Csv => csv::read(Cursor::new(bytes), name, of_columns(map), &budget).and_then(finish),
-        Format::Mcap => mcap::read(Cursor::new(bytes), name, map, &budget),
+        Format::Mcap => {
+            let mut source = Cursor::new(bytes);
+            let summary = Summary::of(&mut source);
+            mcap::read(source, summary, name, map, &budget)
+        }
         Format::Bag => bag::read(Cursor::new(bytes), name, map, &budget),
         Format::Db3 => db3::read_copy(Cursor::new(bytes), name, map, &budget),
         Format::Ulog => ulog::read(Cursor::new(bytes), name, map, &budget),
@@ -273,6 +282,7 @@ impl Reading {
         report.map = map.map(|map| map.name.clone());
         report.channels.sort_by_key(|used| used.channel);
         map.iter().try_for_each(|map| map.derive_columns(&mut recording))?;
+        report.repairs.extend(map.and_then(|map| map.settle_drawn_column(&mut recording, &report)));
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })

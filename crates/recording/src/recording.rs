@@ -7,7 +7,10 @@ use std::{
 
 use serde::Serialize;
 
-use crate::{Channel, gap};
+use crate::{
+    Channel,
+    gap::{self, Gaps},
+};
 
 /// Drives of a robot as rows of channels in SI units. Made by the readers, which check it: every column has as many
 /// values as there are times, runs cover the rows in order, times are finite and increase within a run.
@@ -35,7 +38,8 @@ pub struct Run {
     pub name: String,
     /// Its rows.
     pub rows: Range<usize>,
-    /// Steps of time longer than this are gaps, over which nothing may be integrated or interpolated \[s\].
+    /// Steps of time longer than this are gaps, over which nothing may be integrated or interpolated, unless the rhythm around them is as slow
+    /// \[s\]; [`Recording::step_s`] judges each.
     pub gap_s: f64,
     /// Unix time of `t_s = 0`, where the source tells \[s\].
     pub start_unix_s: Option<f64>,
@@ -112,13 +116,16 @@ impl Recording {
         self.reading_ends.get(run.rows.clone()).is_some_and(|ends| ends.contains(&true))
     }
 
-    /// The time from a row of a run to the next \[s\]; `None` for its last row and before a gap.
+    /// The time from a row of a run to the next \[s\]; `None` for its last row and before a gap. A gap is told by the rhythm around it: a
+    /// robot that reports once a minute while it is parked has no gaps there, and one of 100 s where it drives.
     pub fn step_s(&self, run: &Run, row: usize) -> Option<f64> {
         if row + 1 >= run.rows.end || row < run.rows.start {
             return None;
         }
         let step_s = self.t_s.get(row + 1)? - self.t_s.get(row)?;
-        (step_s <= run.gap_s).then_some(step_s)
+        let t_s = self.t_s.get(run.rows.clone())?;
+        let is_gap = Gaps::OutOfRhythm(run.gap_s).is_gap(t_s, row - run.rows.start);
+        (!is_gap).then_some(step_s)
     }
 
     /// The same drives with some of their runs alone.

@@ -188,8 +188,9 @@ impl ReadingReport {
 impl RunReport {
     fn new(recording: &Recording, run: &crate::Run) -> RunReport {
         let t_s = recording.t_s.get(run.rows.clone()).unwrap_or_default();
-        let steps = t_s.windows(2).map(|pair| pair[1] - pair[0]);
-        let gaps: Vec<f64> = steps.filter(|step| *step > run.gap_s).collect();
+        let rows = run.rows.start..run.rows.end.saturating_sub(1);
+        let before_gaps = rows.filter(|row| recording.step_s(run, *row).is_none());
+        let gaps: Vec<f64> = before_gaps.map(|row| recording.t_s[row + 1] - recording.t_s[row]).collect();
         RunReport {
             run: run.name.clone(),
             rows: t_s.len(),

@@ -3,8 +3,11 @@
 use std::f64::consts::TAU;
 
 use crate::{
-    Channel, Error, Repair, Source, Stamp, Target, TimeError, bursts::Bursts, clock_offset::offset_ns,
-    coarse::Coarse, gap,
+    Channel, Error, Repair, Source, Stamp, Target, TimeError,
+    bursts::Bursts,
+    clock_offset::offset_ns,
+    coarse::Coarse,
+    gap::{self, Gaps},
 };
 
 /// A clock that moves by so much against the logging clock from one message to the next was set, not delayed \[s\]:
@@ -170,7 +173,8 @@ fn refuse_jumps(
     sorted.sort_unstable();
     let sorted_s = seconds(&sorted);
     let (step_s, even_s) = (gap::median_step_s(&sorted_s).unwrap_or(0.0), gap::threshold_s(&sorted_s));
-    let is_even = by_header && sorted_s.windows(2).all(|pair| pair[1] - pair[0] <= even_s);
+    let gaps = Gaps::of(&sorted_s, None);
+    let is_even = by_header && (1..sorted_s.len()).all(|at| !gaps.is_gap(&sorted_s, at - 1));
     let since_s = |ns: &[i64], at: usize| ns[at].saturating_sub(ns[at - 1]) as f64 / NS_PER_S;
     // What was held up is written in a burst, with what came meanwhile among it.
     let is_recorders = |at: usize| {

@@ -117,3 +117,30 @@ proptest! {
         let _ = read(bytes, Format::Parquet, "damaged", None);
     }
 }
+
+#[test]
+fn a_page_that_fails_its_checksum_is_refused_with_its_column() {
+    // As pyarrow 26 writes them with `write_page_checksum`.
+    let whole = include_bytes!("files/checksummed.parquet").to_vec();
+    assert_eq!(read(whole.clone(), Format::Parquet, "drive", None).unwrap().recording.rows(), 20);
+    let watts = [85.0f64, 86.0].map(f64::to_le_bytes).concat();
+    let at = whole.windows(watts.len()).position(|bytes| bytes == watts).unwrap();
+    let mut damaged = whole;
+    damaged[at + 7] = 0x41;
+    let message = read(damaged, Format::Parquet, "drive", None).unwrap_err().to_string();
+    assert!(
+        message.contains("column `power_w` fails its checksum") && message.contains("copy the file"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_compression_that_is_not_read_is_named_with_those_that_are() {
+    let brotli = include_bytes!("files/brotli.parquet").to_vec();
+    let message = read(brotli, Format::Parquet, "drive", None).unwrap_err().to_string();
+    assert!(
+        message.contains("compressed with brotli") && message.contains("write it with zstd"),
+        "{message}"
+    );
+    assert!(!message.contains("closed by its writer"), "{message}");
+}

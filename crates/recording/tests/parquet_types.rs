@@ -128,12 +128,13 @@ fn runs_in_doubles_are_named_by_their_whole_numbers() {
     );
     let mut gaps = runs;
     gaps[..4].fill(f64::NAN);
-    assert_eq!(names(table::<DoubleType>("required double run", &gaps, None)), ["unnamed", "2"]);
-    let levels = [1, 1, 1, 1, 0, 0, 0, 0];
     assert_eq!(
-        names(table::<DoubleType>("optional double run", &runs[..4], Some(&levels))),
-        ["1", "unnamed"]
+        names(table::<DoubleType>("required double run", &gaps, None)),
+        ["2"],
+        "blank rows take the run beside them"
     );
+    let levels = [1, 1, 1, 1, 0, 0, 0, 0];
+    assert_eq!(names(table::<DoubleType>("optional double run", &runs[..4], Some(&levels))), ["1"]);
     let broken = table::<DoubleType>("required double run", &[1.5; ROWS], None);
     let message = parquet(broken, None).unwrap_err().to_string();
     assert!(

@@ -58,11 +58,25 @@ fn bad_tables_are_refused_by_place_and_remedy() {
         (SMALL.replace("\n0.2,0.3", "\n\n0.1,0.3"), "line 5: time repeats"),
         (SMALL.replace("\n0.2,0.3", "\n0.1,0.3").replace('\n', "\r\n"), "line 4: time repeats"),
         (SMALL.replace("start", "\"a\nb\"").replace("\n0.2,0.3", "\n0.1,0.3"), "line 5: time repeats"),
+        (SMALL.replace("start", "\"start"), "line 2: a quotation mark opens in column 5"),
+        (
+            SMALL.replace("0.2,0.3", "0.2,\"0.3") + "0.3,0.4,0,50,,1\n",
+            "line 4: a quotation mark opens in column 2",
+        ),
+        (format!("# a remark\n{SMALL}").replace("start", "\"start"), "line 3: a quotation mark opens"),
         (SMALL.replace("51,,2", "51,2"), "line 3: 5 cells, but the header has 6"),
         (SMALL.replace("power_w", "power_kw"), "did you mean `power_kw` for power_w"),
         (SMALL.replace("t_s", "time"), "t_s is missing; found: time, v_left_mps"),
         (SMALL.replace("v_left_mps", "v_left_kmph"), "`v_left_kmph` for v_left_mps"),
         (SMALL.replace("power_w", "power_left_w"), "power_right_w is missing"),
+        (
+            SMALL.replace("v_left_mps", "speed"),
+            "v_left_mps is missing; found: t_s, speed, v_right_mps, power_w, note, gear; rename",
+        ),
+        (
+            SMALL.replace("v_left_mps", "v_rechts_mps").replace("v_right_mps", "vr_right_mps"),
+            "`v_rechts_mps` for v_left_mps, `vr_right_mps` for v_right_mps",
+        ),
         (SMALL.replace("power_w", "voltage_v"), "power (power_left_w and power_right_w, or power_w, or"),
         (SMALL.replace("power_w", "current_a"), "voltage_v is missing"),
         (SMALL.replace("gear", "note"), "two columns give note"),
@@ -70,10 +84,36 @@ fn bad_tables_are_refused_by_place_and_remedy() {
         ("t_s,v_left_mps,v_right_mps,power_w\n".into(), "no row"),
         (String::new(), "empty file"),
         ("\u{1}\u{2}\n".into(), "t_s is missing"),
+        (SMALL.replace("0.1,0.2,,51", "#DIV/0!,0.2,,51"), "line 3, column `t_s`: `#DIV/0!`"),
+        (SMALL.replace("\n0.1,0.2", "\ntime,left"), "the line looks like another header"),
+        (SMALL.replace("0.1,0.2,,51", "0.1,\0\0\0,,51"), "zero bytes, as a loss of power leaves them"),
+        (SMALL.replace("\n0.", "\n1,0."), "row.names = FALSE"),
     ] {
         let message = csv(&text).unwrap_err().to_string();
         assert!(message.contains(said), "{text}\n  said: {message}");
     }
+}
+
+#[test]
+fn a_missing_value_in_the_first_column_is_no_remark() {
+    let swapped =
+        "power_w,t_s,v_left_mps,v_right_mps\n50,0,1,1\n#N/A,1,1,1\n52,2,1,1\n# a remark\n#53,3,1,1\n";
+    let Reading { recording, report } = csv(swapped).unwrap();
+    assert!(recording.rows() == 3 && recording.channel(Channel::Power).unwrap()[1].is_nan(), "{report}");
+    assert!(report.repairs.iter().any(|repair| repair.what.starts_with("2 are remarks")), "{report}");
+}
+
+#[test]
+fn the_sign_of_a_drawn_current_is_found_in_tables() {
+    let map = Map::from_json(
+        r#"{"name": "lab", "sources": [{"channel": "current_a", "column": "cur", "unit": "A", "sign": "drawn"}]}"#,
+    )
+    .unwrap();
+    let mut text = "t_s,v_left_mps,v_right_mps,cur,voltage_v\n".to_owned();
+    (0..50).for_each(|row| text += &format!("{row},0.5,0.5,-{}.5,24\n", row % 3));
+    let Reading { recording, report } = read(text.into(), Format::Csv, "drive", Some(&map)).unwrap();
+    assert!(recording.channel(Channel::Current).unwrap().iter().all(|current_a| *current_a > 0.0));
+    assert!(report.repairs.iter().any(|repair| repair.place == "column `cur`"), "{report}");
 }
 
 #[test]

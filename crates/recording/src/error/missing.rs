@@ -1,7 +1,7 @@
 //! Names that a file lacks, with those in it that come nearest.
 
 use super::{Error, excerpt};
-use crate::Channel;
+use crate::{Channel, inspect::Side};
 
 impl Error {
     /// The missing channels that a recording cannot do without, with the names in the file that come nearest.
@@ -22,7 +22,12 @@ impl Error {
     /// Missing names, whatever they stand for.
     pub(crate) fn missing_names(missing: &[String], wanted: &[&str], found: &[String]) -> Error {
         let near = |name: &&str| {
-            let is_free = |other: &&String| other != name && !wanted.contains(&other.as_str());
+            // A channel's own name is no slip, and one side is never the other.
+            let is_free = |other: &&String| {
+                Channel::from_name(other).is_none()
+                    && !wanted.contains(&other.as_str())
+                    && !are_opposite(other, name)
+            };
             let best = found.iter().filter(is_free).map(|f| (strsim::normalized_levenshtein(f, name), f));
             let (likeness, best) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
             (likeness >= WORTH_NAMING).then(|| (best.clone(), (*name).to_owned()))
@@ -36,6 +41,12 @@ impl Error {
             unread: Vec::new(),
         }
     }
+}
+
+/// Whether two names are of different sides of the robot.
+fn are_opposite(one: &str, other: &str) -> bool {
+    let sides = [one, other].map(Side::of_name);
+    matches!(sides, [Some(one), Some(other)] if one != other)
 }
 
 /// Names that share at least so much of their letters are worth naming as a likely slip (`power_kw` for `power_w`: 0.88).

@@ -9,9 +9,9 @@ use crate::clock::{TimeEvidence, remedy};
 pub enum TimeError {
     /// Time that does not increase within a run.
     #[error(
-        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; {}, or number the drives in a column `run`",
+        "{position}: time {} from {previous_s} s to {t_s} s in run `{run}`; {}",
         if t_s == previous_s { "repeats" } else { "goes back" },
-        if t_s == previous_s { "remove one of the rows" } else { "sort the rows" }
+        order_remedy(*t_s, *previous_s)
     )]
     TimeOrder {
         /// Line or row.
@@ -22,6 +22,22 @@ pub enum TimeError {
         t_s: f64,
         /// The time before it \[s\].
         previous_s: f64,
+    },
+    /// Runs whose rows take turns on one clock.
+    #[error(
+        "{position}: the runs {} take turns, so that {counted_s:.1} s would be counted of the {passed_s:.1} s that passed; give all rows of a \
+         drive one name in the column `run`, or remove the column",
+        some_of(runs)
+    )]
+    RunsTakeTurns {
+        /// Line or row at which a run goes on behind another.
+        position: Position,
+        /// The runs.
+        runs: Vec<String>,
+        /// Time of all runs \[s\].
+        counted_s: f64,
+        /// Time from the first row to the last \[s\].
+        passed_s: f64,
     },
     /// Times of which many are equal.
     #[error(
@@ -111,4 +127,44 @@ pub enum TimeError {
         /// The other clock that the map may ask for.
         other: &'static str,
     },
+}
+
+/// The first few names of several.
+fn some_of(names: &[String]) -> String {
+    /// Enough to find the column's mistake by.
+    const MOST_SHOWN: usize = 4;
+    let shown: Vec<String> = names.iter().take(MOST_SHOWN).map(|name| format!("`{name}`")).collect();
+    let more = if names.len() > MOST_SHOWN { " and others" } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// The remedy for a time that is not later than the one before \[s\].
+///
+/// Where a clock was set or a drive begins anew, rows are in order as they stand, and sorting would mix what happened at different times.
+fn order_remedy(t_s: f64, previous_s: f64) -> String {
+    /// How far a step back may be from the length that explains it \[s\]: a step of the slowest log, and a pause.
+    const NEAR_S: f64 = 60.0;
+    /// Lengths after which clocks begin anew, and what then mends it \[s\].
+    const ANEW: [(f64, &str); 4] = [
+        (3600.0, "an hour back is the end of summer time: write times in UTC or with their offset, "),
+        (86_400.0, "a day back is midnight: write the date with the time, "),
+        (
+            4_294.967_296,
+            "a counter of 32 bits in microseconds begins anew there: add 4294.967296 s from this line on, ",
+        ),
+        (
+            4_294_967.296,
+            "a counter of 32 bits in milliseconds begins anew there: add 4294967.296 s from this line on, ",
+        ),
+    ];
+    let back_s = previous_s - t_s;
+    if back_s == 0.0 {
+        return "remove one of the rows, or number the drives in a column `run`".to_owned();
+    }
+    let anew =
+        ANEW.iter().find(|(length_s, _)| (back_s - length_s).abs() <= NEAR_S).map_or("", |found| found.1);
+    format!(
+        "{anew}where a clock was set back or a drive begins, cut the file there or give the rows from this line on a `run` of their own; \
+         sort the rows only where their order is wrong"
+    )
 }

@@ -17,11 +17,16 @@ struct Words {
     none: &'static [&'static str],
 }
 
-const LEFT: &[&str] = &["left", "l", "fl", "rl", "lf", "lr", "lhs"];
-const RIGHT: &[&str] = &["right", "r", "fr", "rr", "rf", "rhs"];
+pub(super) const LEFT: &[&str] = &["left", "l", "fl", "rl", "lf", "lr", "lhs"];
+pub(super) const RIGHT: &[&str] = &["right", "r", "fr", "rr", "rf", "rhs"];
 const SPEED: &[&str] = &["speed", "vel", "velocity", "rpm", "v", "wheel", "encoder"];
 const POWER: &[&str] = &["power", "watt", "watts", "w", "p", "pwr"];
 const CURRENT: &[&str] = &["current", "amp", "amps", "a", "ma", "i"];
+/// What takes or gives power beside the battery of the drive, and what is asked of it.
+const NO_BATTERY: &[&str] = &[
+    "cmd", "command", "target", "setpoint", "desired", "limit", "left", "right", "cpu", "gpu", "solar",
+    "charge", "charger", "charging",
+];
 const COMMAND: &[&str] = &[
     "cmd",
     "command",
@@ -72,12 +77,12 @@ const KNOWN: [Words; 16] = [
     Words {
         channel: Channel::Power,
         all: &[POWER, &["battery", "bat", "batt", "total", "power", "pack", "watt", "watts"]],
-        none: &["cmd", "left", "right"],
+        none: NO_BATTERY,
     },
     Words {
         channel: Channel::Current,
         all: &[CURRENT, &["battery", "bat", "batt", "total", "current", "pack", "amps"]],
-        none: &["cmd", "left", "right"],
+        none: NO_BATTERY,
     },
     Words {
         channel: Channel::Voltage,
@@ -90,7 +95,7 @@ const KNOWN: [Words; 16] = [
 ];
 
 /// Spellings of units, by quantity.
-const SPELLED: [(Quantity, &str, &[&str]); 17] = [
+const SPELLED: [(Quantity, &str, &[&str]); 24] = [
     (Quantity::Speed, "rpm", &["rpm"]),
     (Quantity::Speed, "rad/s", &["rad/s", "radps", "rad_s", "rads", "rad_per_s", "radpersec"]),
     (Quantity::Speed, "deg/s", &["deg/s", "degps", "deg_s", "dps"]),
@@ -100,18 +105,52 @@ const SPELLED: [(Quantity, &str, &[&str]); 17] = [
     (Quantity::Speed, "cm/s", &["cm/s", "cmps", "cm_s"]),
     (Quantity::Speed, "m/s", &["m/s", "mps", "m_s"]),
     (Quantity::AngularRate, "deg/s", &["deg/s", "degps", "deg_s", "dps", "deg"]),
-    (Quantity::Angle, "deg", &["deg", "°"]),
+    (Quantity::AngularRate, "rad/s", &["rad/s", "radps", "rad_s", "rads"]),
+    (Quantity::Angle, "deg", &["deg", "°", "degrees"]),
     (Quantity::Angle, "mrad", &["mrad"]),
+    (Quantity::Angle, "rad", &["rad", "radians"]),
     (Quantity::Power, "kW", &["kw"]),
-    (Quantity::Power, "mW", &["mw", "milliwatt"]),
-    (Quantity::Current, "mA", &["ma", "milliamp"]),
-    (Quantity::Voltage, "mV", &["mv", "millivolt"]),
-    (Quantity::Temperature, "K", &["kelvin"]),
-    (Quantity::Temperature, "degF", &["degf", "fahrenheit"]),
+    (Quantity::Power, "mW", &["mw", "milliwatt", "milliwatts"]),
+    (Quantity::Power, "W", &["w", "watt", "watts"]),
+    (Quantity::Current, "mA", &["ma", "milliamp", "milliamps"]),
+    (Quantity::Current, "A", &["a", "amp", "amps"]),
+    (Quantity::Voltage, "mV", &["mv", "millivolt", "millivolts"]),
+    (Quantity::Voltage, "V", &["volt", "volts"]),
+    (Quantity::Temperature, "K", &["k", "kelvin"]),
+    (Quantity::Temperature, "degF", &["f", "degf", "fahrenheit"]),
+    (Quantity::Temperature, "degC", &["c", "degc", "celsius"]),
+    (Quantity::Length, "m", &["m"]),
 ];
 
+/// Words of names that say a unit of which no quantity here is measured: energies, charges, counts, and units that maps do not know.
+const UNKNOWN_UNITS: [&str; 35] = [
+    "wh", "kwh", "mwh", "j", "kj", "joule", "joules", "energy", "ah", "mah", "coulomb", "hp", "bhp", "ps",
+    "cv", "va", "dbm", "kn", "kt", "kts", "knot", "knots", "fps", "ftps", "ips", "ua", "percent", "pct",
+    "adc", "count", "counts", "tick", "ticks", "pwm", "duty",
+];
+
+/// A side of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    /// The side that a name says; `None` where it says none or both.
+    pub(crate) fn of_name(name: &str) -> Option<Side> {
+        let words = words(name);
+        let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
+        match (has(LEFT), has(RIGHT)) {
+            (true, false) => Some(Side::Left),
+            (false, true) => Some(Side::Right),
+            _ => None,
+        }
+    }
+}
+
 /// Lower-case words of a name, cut at signs, digits and changes of case.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut before_lower = false;
     let mut characters = name.chars().peekable();
@@ -132,22 +171,32 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// What a column of a name and a greatest magnitude may be.
-pub(crate) fn guess(name: &str, greatest: f64) -> Option<Guess> {
+/// What a column of a name and a greatest magnitude may be, or why it is none.
+pub(crate) fn guess(name: &str, greatest: f64) -> Result<Guess, String> {
     if let Some(channel) = Channel::from_name(name) {
         let unit = si_unit(channel.quantity());
-        return Some(Guess { channel, unit, reason: "its name is that of the channel".into() });
+        return Ok(Guess { channel, unit, reason: "its name is that of the channel".into() });
     }
     let words = words(name);
     let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
-    let known = KNOWN.iter().find(|known| known.all.iter().all(|any| has(any)) && !has(known.none))?;
+    let known = KNOWN.iter().find(|known| known.all.iter().all(|any| has(any)) && !has(known.none));
+    let Some(known) = known else { return Err("nothing in its name is known".into()) };
+    if let Some(unit) = words.iter().find(|word| UNKNOWN_UNITS.contains(&word.as_str())) {
+        return Err(format!(
+            "left out: its name says `{unit}`, which is no unit that maps know of {}; convert it, or name it with a `scale`",
+            known.channel
+        ));
+    }
     let quantity = known.channel.quantity();
     let lower = name.to_lowercase();
     // The longer spelling first: `mrad` holds `rad`, and a word of a name is no unit within another.
     let spelled = SPELLED.iter().find(|(of, _, spellings)| {
         *of == quantity
             && spellings.iter().any(|s| {
-                if s.chars().all(char::is_alphabetic) {
+                if s.len() == 1 {
+                    // An `f` before the end is as likely the front.
+                    words.last().is_some_and(|last| last == s)
+                } else if s.chars().all(char::is_alphabetic) {
                     words.iter().any(|w| w == s)
                 } else {
                     lower.contains(s)
@@ -158,7 +207,7 @@ pub(crate) fn guess(name: &str, greatest: f64) -> Option<Guess> {
         Some((_, unit, _)) => (*unit, "its unit stands in its name".to_owned()),
         None => by_range(quantity, greatest),
     };
-    Some(Guess { channel: known.channel, unit, reason: format!("by its name; {why}") })
+    Ok(Guess { channel: known.channel, unit, reason: format!("by its name; {why}") })
 }
 
 /// The unit that a range of numbers asks for.
@@ -178,19 +227,23 @@ fn by_range(quantity: Quantity, greatest: f64) -> (&'static str, String) {
     }
 }
 
-/// The unit of a column of time by its name, where it may be one.
-pub(crate) fn time_unit(name: &str) -> Option<&'static str> {
+/// The unit of a column of time that its name says, where the name may be one of a time.
+pub(crate) fn time_unit(name: &str) -> Option<Option<&'static str>> {
     let words = words(name);
     let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
     if !has(&["t", "time", "stamp", "timestamp", "secs", "seconds", "elapsed", "clock"]) {
         return None;
     }
     let units = [
-        ("ns", &["ns", "nanoseconds"][..]),
-        ("us", &["us", "micros", "usec"]),
+        ("ns", &["ns", "nsec", "nsecs", "nanosec", "nanos", "nanoseconds"][..]),
+        ("us", &["us", "µs", "micros", "usec", "microseconds"]),
         ("ms", &["ms", "millis", "msec", "milliseconds"]),
+        ("s", &["s", "sec", "secs", "seconds"]),
+        ("min", &["min", "mins", "minutes"]),
+        ("h", &["h", "hr", "hrs", "hours"]),
+        ("d", &["days"]),
     ];
-    Some(units.iter().find(|(_, any)| has(any)).map_or("s", |(unit, _)| unit))
+    Some(units.iter().find(|(_, any)| has(any)).map(|(unit, _)| *unit))
 }
 
 #[cfg(test)]
@@ -199,7 +252,7 @@ mod tests {
 
     #[test]
     fn names_and_ranges_tell_channels_and_units() {
-        let of = |name: &str, greatest: f64| guess(name, greatest).map(|g| (g.channel, g.unit));
+        let of = |name: &str, greatest: f64| guess(name, greatest).ok().map(|g| (g.channel, g.unit));
         assert_eq!(of("Left wheel [rad/s]", 9.0), Some((Channel::LeftSpeed, "rad/s")));
         assert_eq!(of("fr_rpm", 80.0), Some((Channel::RightSpeed, "rpm")));
         assert_eq!(of("wheelSpeedLeft", 0.9), Some((Channel::LeftSpeed, "m/s")));
@@ -214,7 +267,29 @@ mod tests {
         assert_eq!(of("note", 1.0), None);
         assert_eq!(
             [time_unit("Stamp (ns)"), time_unit("stamp_ms"), time_unit("t_s"), time_unit("speed")],
-            [Some("ns"), Some("ms"), Some("s"), None]
+            [Some(Some("ns")), Some(Some("ms")), Some(Some("s")), None]
         );
+        assert_eq!([time_unit("time"), time_unit("time_min")], [Some(None), Some(Some("min"))]);
+    }
+
+    #[test]
+    fn units_of_other_quantities_and_unknown_ones_are_left_out() {
+        for name in [
+            "power_Wh",
+            "power_hp",
+            "vel_left_kn",
+            "left_wheel_ticks",
+            "battery_current_Ah",
+            "left wheel (fps)",
+        ] {
+            let refused = guess(name, 3.0).unwrap_err();
+            assert!(refused.contains("no unit that maps know"), "{name}: {refused}");
+        }
+        for name in ["cpu_power_W", "solar_power_W", "charge_current_A"] {
+            assert!(guess(name, 3.0).is_err(), "{name}");
+        }
+        assert_eq!(guess("motor_temp_left_F", 77.0).unwrap().unit, "degF");
+        assert_eq!(guess("ambient_temp_K", 290.0).unwrap().unit, "K");
+        assert_eq!(guess("discharge_current_A", 9.0).unwrap().channel, Channel::Current);
     }
 }

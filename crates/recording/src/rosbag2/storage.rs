@@ -12,6 +12,7 @@ use crate::{
     Error, Format, Map, Watch, bag, container,
     format::{HEAD_BYTES, ZSTD_MAGIC, head},
     mcap,
+    mcap_summary::Summary,
     reading::{Reading, read_up_to},
     topic::Topics,
     watch::{Budget, Watched},
@@ -37,11 +38,13 @@ pub(crate) fn read_into(path: &Path, topics: &mut Topics<'_>, watch: &Watch) -> 
     if Format::of_content(&head) == Some(Format::Db3) {
         return db3::read_into(path, topics).map(|()| db3::FORMAT);
     }
+    let is_mcap = Format::of_content(&head) == Some(Format::Mcap);
+    let summary = if is_mcap { Summary::of(&mut file) } else { Summary::default() };
     let file = Watched::new(file, watch.clone());
     let stopped = file.stopped();
     let read = match head.starts_with(&ZSTD_MAGIC) {
         true => unpacked(file, topics),
-        false => records(file, &head, topics),
+        false => records(file, &head, summary, topics),
     };
     if stopped.load(Ordering::Relaxed) { Err(Error::Stopped) } else { read }
 }
@@ -66,13 +69,18 @@ fn unpacked(packed: impl Read, topics: &mut Topics<'_>) -> Result<&'static str, 
     let whole = Cursor::new(head.clone()).chain(plain);
     match Format::of_content(&head) {
         Some(Format::Db3) => db3::read_copy_into(whole, topics).map(|()| db3::FORMAT),
-        _ => records(whole, &head, topics),
+        _ => records(whole, &head, Summary::default(), topics),
     }
 }
 
-fn records(source: impl Read, head: &[u8], topics: &mut Topics<'_>) -> Result<&'static str, Error> {
+fn records(
+    source: impl Read,
+    head: &[u8],
+    summary: Summary,
+    topics: &mut Topics<'_>,
+) -> Result<&'static str, Error> {
     match Format::of_content(head) {
-        Some(Format::Mcap) => mcap::read_into(source, topics).map(|()| mcap::FORMAT),
+        Some(Format::Mcap) => mcap::read_into(source, summary, topics).map(|()| mcap::FORMAT),
         Some(Format::Bag) => bag::read_into(source, topics).map(|()| bag::FORMAT),
         _ => {
             let reason =

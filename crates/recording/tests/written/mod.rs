@@ -49,20 +49,48 @@ pub(crate) const DRIVE: Type<'static> = Type {
     definition: DEFINITION.as_bytes(),
 };
 
-/// A whole MCAP file of topic `/drive`, by its specification: magic, schema, channel, messages, end of data, footer, magic.
-pub(crate) fn mcap(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> Vec<u8> {
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// Records of the schema and the channel of topic `/drive`, and of its messages.
+fn mcap_records(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> (Vec<u8>, Vec<u8>) {
     let id = 1u16.to_le_bytes();
     let schema =
         [&id[..], &text(of.name.as_bytes()), &text(of.schema_encoding.as_bytes()), &text(of.definition)];
     let channel =
         [&id[..], &id, &text(b"/drive"), &text(of.message_encoding.as_bytes()), &0u32.to_le_bytes()];
-    let magic = b"\x89MCAP0\r\n".to_vec();
-    let mut file = [magic.clone(), record(3, &schema.concat()), record(4, &channel.concat())].concat();
+    let mut records = Vec::new();
     for (row, (at_ns, message)) in (0u32..).zip(messages) {
         let head = [&id[..], &row.to_le_bytes(), &at_ns.to_le_bytes(), &at_ns.to_le_bytes()].concat();
-        file.extend(record(5, &[&head[..], message].concat()));
+        records.extend(record(5, &[&head[..], message].concat()));
     }
-    [file, record(15, &[0; 4]), record(2, &[0; 20]), magic].concat()
+    ([record(3, &schema.concat()), record(4, &channel.concat())].concat(), records)
+}
+
+/// A whole MCAP file of topic `/drive`, by its specification: magic, schema, channel, messages, end of data, footer, magic.
+pub(crate) fn mcap(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> Vec<u8> {
+    let (described, records) = mcap_records(of, messages);
+    [MAGIC, &described, &records, &record(15, &[0; 4]), &record(2, &[0; 20]), MAGIC].concat()
+}
+
+/// The same in two chunks, of which the first alone describes the topic, with the summary that repeats it; where the first chunk stands.
+pub(crate) fn mcap_of_two_chunks(messages: &[(u64, Vec<u8>)]) -> (Vec<u8>, std::ops::Range<usize>) {
+    let chunk = |plain: &[u8], times_ns: [u64; 2]| {
+        let sizes = (plain.len() as u64).to_le_bytes();
+        let checksum = crc32fast::hash(plain).to_le_bytes();
+        let times = times_ns.map(u64::to_le_bytes).concat();
+        record(6, &[&times[..], &sizes, &checksum, &text(b""), &sizes, plain].concat())
+    };
+    let (first, second) = messages.split_at(messages.len() / 2);
+    let times = |messages: &[(u64, Vec<u8>)]| [messages[0].0, messages[messages.len() - 1].0];
+    let (described, first_records) = mcap_records(DRIVE, first);
+    let (_, second_records) = mcap_records(DRIVE, second);
+    let first_chunk = chunk(&[&described[..], &first_records].concat(), times(first));
+    let ends = MAGIC.len() + first_chunk.len();
+    let data = [MAGIC, &first_chunk, &chunk(&second_records, times(second)), &record(15, &[0; 4])].concat();
+    let mut footer = [&(data.len() as u64).to_le_bytes()[..], &[0; 8]].concat();
+    let begun = [&[2][..], &20u64.to_le_bytes(), &footer].concat();
+    footer.extend(crc32fast::hash(&[&described[..], &begun].concat()).to_le_bytes());
+    ([&data[..], &described, &record(2, &footer), MAGIC].concat(), MAGIC.len()..ends)
 }
 
 /// A SQLite file of topic `/drive` with the tables that rosbag2 makes since Iron; without a definition those of Humble.
