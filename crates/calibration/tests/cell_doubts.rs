@@ -115,6 +115,20 @@ fn meters_that_rest_at_zero_are_not_doubted() {
 }
 
 #[test]
+fn currents_without_a_sign_are_zero_where_their_force_turns_round() {
+    let robot = robot();
+    let mut recording = healthy();
+    let powers =
+        [Channel::LeftPower, Channel::RightPower].map(|side| recording.channels.remove(&side).unwrap());
+    for (side, power_w) in [Channel::LeftMotorCurrent, Channel::RightMotorCurrent].into_iter().zip(powers) {
+        let current_a = |(row, w): (usize, &f64)| if row % 60 == 7 { 0.0 } else { (w / 24.0).abs() };
+        recording.channels.insert(side, power_w.iter().enumerate().map(current_a).collect());
+    }
+    let found = doubts(&robot, &recording, &unwatched()).unwrap();
+    assert!(found.iter().all(|doubt| doubt.name != "placeholders"), "{found:?}");
+}
+
+#[test]
 fn cells_beyond_what_the_robot_can_do_are_told_by_row_and_energy_and_nothing_is_fitted_to_them() {
     let rows = |wanted: &'static [usize]| move |row: usize| wanted.contains(&row);
     let cases: [(Recording, Channel, f64, &[usize], &str); 6] = [

@@ -166,10 +166,18 @@ fn value_at(recording: &Recording, run: &Run, values: &[f64], at_s: f64) -> Opti
 
 /// Whether one of two runs is the other from its first row on, row by row.
 fn repeats(recording: &Recording, one: &Run, other: &Run) -> bool {
-    let rows = one.rows.len().min(other.rows.len());
-    let is_same = |values: &Vec<f64>| {
-        (0..rows)
-            .all(|row| values[one.rows.start + row].to_bits() == values[other.rows.start + row].to_bits())
-    };
-    recording.channels.values().all(is_same)
+    same_rows(recording, [one.rows.start, other.rows.start], one.rows.len().min(other.rows.len()))
+}
+
+/// Whether wheel speeds and power are the same to the last digit in so many rows from two of them on, whatever other sensors read.
+pub fn same_rows(recording: &Recording, [a, b]: [usize; 2], count: usize) -> bool {
+    let told = [
+        Channel::LeftSpeed,
+        Channel::RightSpeed,
+        Channel::LeftMotorCurrent,
+        Channel::Power,
+        Channel::LeftPower,
+    ];
+    let is_same = |values: &[f64]| (0..count).all(|i| values[a + i].to_bits() == values[b + i].to_bits());
+    told.into_iter().filter_map(|channel| recording.channel(channel)).all(is_same)
 }

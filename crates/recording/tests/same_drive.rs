@@ -84,3 +84,20 @@ fn a_run_that_no_model_uses_counts_nothing_twice() {
     let (recording, _) = read_paths(&[tilted, lean], None).unwrap();
     assert_eq!(recording.unused_runs().len(), 1);
 }
+
+#[test]
+fn rows_whose_wheels_and_power_are_equal_are_a_copy_whatever_other_sensors_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let with_yaw = |name: &str, copy: Copy, yaw: &str| {
+        let path = write(&folder, name, copy);
+        let text = fs::read_to_string(&path).unwrap();
+        let of = |(row, line): (usize, &str)| {
+            format!("{line},{}\n", if row == 0 { "yaw_rate_radps" } else { yaw })
+        };
+        fs::write(&path, text.lines().enumerate().map(of).collect::<String>()).unwrap();
+        path
+    };
+    let paths =
+        [with_yaw("one.csv", WHOLE, "0.01"), with_yaw("other.csv", Copy { rows: [0, 500], ..WHOLE }, "0.02")];
+    assert_eq!(read_paths(&paths, None).unwrap().0.runs.len(), 2);
+}

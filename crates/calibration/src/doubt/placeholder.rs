@@ -36,7 +36,10 @@ pub(super) fn placeholders(robot: &Robot, recording: &Recording) -> Vec<(f64, Ce
     let channels = power_channels(recording).into_iter().chain(wheels);
     let of = |channel: Channel| {
         let values = recording.channel(channel)?;
-        candidates(values).into_iter().find_map(|value| {
+        let is_folded = matches!(channel, Channel::LeftMotorCurrent | Channel::RightMotorCurrent)
+            && values.iter().all(|current_a| current_a.is_nan() || *current_a >= 0.0);
+        // A current without a sign passes through zero wherever its force turns round, between values far from it.
+        candidates(values).into_iter().filter(|value| !(is_folded && *value == 0.0)).find_map(|value| {
             let cells = Looked { robot, recording, channel, values, value }.cells()?;
             Some((value, cells))
         })
