@@ -6,6 +6,7 @@ use recording::{PowerForm, Recording, Watch};
 use super::Doubt;
 use crate::{
     Drives, Error,
+    drives::Stretch,
     field::with_new_ground,
     power::{columns_by_row, seen_w},
 };
@@ -67,7 +68,8 @@ fn doubt(drives: &Drives, all: &[Follows]) -> Option<Doubt> {
     let evidence = driven_s / ALIKE_S * ((1.0 - given.r2) / (1.0 - best.r2)).ln();
     let is_inner = best.delay_s.abs() < MOST_S - STEP_S;
     let is_clear = evidence >= EVIDENCE && 1.0 - best.r2 < CLEARLY_BETTER * (1.0 - given.r2);
-    if best.delay_s.abs() <= USUAL_S || best.r2 < FOLLOWS || !is_inner || !is_clear {
+    // Delays are told to a row: readings in one may be a row apart.
+    if best.delay_s.abs() - row_s(drives) <= USUAL_S || best.r2 < FOLLOWS || !is_inner || !is_clear {
         return None;
     }
     let way = if best.delay_s > 0.0 { "lags behind" } else { "runs ahead of" };
@@ -84,6 +86,18 @@ fn doubt(drives: &Drives, all: &[Follows]) -> Option<Doubt> {
             -best.delay_s
         ),
     })
+}
+
+/// Mean time between rows [s].
+fn row_s(drives: &Drives) -> f64 {
+    let of = |stretch: &Stretch| {
+        let t_s = |row: usize| drives.rows[row].t_s;
+        let last = stretch.rows.end.max(stretch.rows.start + 1) - 1;
+        [t_s(last) - t_s(stretch.rows.start), (last - stretch.rows.start) as f64]
+    };
+    let all = drives.stretches.iter().filter(|stretch| !stretch.rows.is_empty()).map(of);
+    let [lasts_s, steps] = all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+    if steps > 0.0 { lasts_s / steps } else { 0.0 }
 }
 
 /// Squared correlation of what was recorded a delay later with what is predicted, over rows of the same stretch, signed; sides about means of
