@@ -20,7 +20,7 @@ const SLACK_M: f64 = 1e-3;
 /// The least distance along a route between the area that the robot's outline sweeps and the next blocked ground or the map's edge [m]; the
 /// distance that is looked at where nothing is nearer, which is [`Clearance::FARTHEST`] cells less the robot's own half diagonal.
 ///
-/// It is never more than the true one: straights are covered exactly, turns by rectangles that reach at most [`SLACK_M`] too far.
+/// It is never more than the true one: straights are covered exactly, turns by rectangles that reach a millimetre too far at most.
 ///
 /// `None` when patience ends first.
 pub fn least_room_m(lattice: &Lattice, route: &Route, patience: &Patience) -> Option<f64> {
