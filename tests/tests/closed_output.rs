@@ -37,7 +37,12 @@ fn folder() -> tempfile::TempDir {
     let map =
         json!({ "cell_size_m": 1.0, "rows": 20, "columns": 20, "elevation_m": vec![vec![0.5; 20]; 20] });
     write("map.json", map.to_string());
-    write("drive.csv", drive_csv(3, 400));
+    // With pitch there is nothing to be said of the ground.
+    let pitched = |(row, line): (usize, &str)| match row {
+        0 => format!("{line},pitch_rad\n"),
+        _ => format!("{line},{:.5}\n", 0.01 * (0.05 * row as f64).sin()),
+    };
+    write("drive.csv", drive_csv(3, 400).lines().enumerate().map(pitched).collect());
     write(
         "world.json",
         json!({"terrain": {"rolling": {"grade": 0.04}}, "seed": 1, "robot_seed": 5, "effects": []})

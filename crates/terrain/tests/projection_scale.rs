@@ -43,7 +43,6 @@ fn conformal_maps_are_multiplied_by_their_scale_and_stay_where_they_are_on_earth
         (5041, [2_591_424.98, -1_354_137.74], [10.0, 60.0], 1.065_302),
         (3413, [0.0, -3_323_160.27], [-45.0, 60.0], 1.039_428),
         (3031, [-2_457_024.46, 1_595_610.34], [-57.0, -63.5], 1.026_667),
-        (2154, [1_197_656.7, 6_118_854.94], [9.0, 42.0], 1.002_075),
     ] {
         let name = format!("EPSG:{code}");
         let terrain = read(&name, place_m).unwrap();
@@ -74,6 +73,21 @@ fn small_departures_stay_as_they_are() {
         let terrain = read(prj, place_m).unwrap();
         assert_eq!((terrain.grid.cell_size_m, terrain.crs.as_deref()), (2.0, Some(prj)));
         assert_eq!(scale_said(&terrain), None, "{prj}");
+    }
+}
+
+/// Places that people have are in these coordinates: UTM far beyond its zone, a national grid at its edge, equal areas off their middle.
+#[test]
+fn departures_below_a_hundredth_stay_and_are_said() {
+    for (prj, place_m, said) in [
+        ("EPSG:2154", [1_197_656.7, 6_118_854.94], "0.21 %"),
+        ("EPSG:32632", [500.0, 860.0], "0.27 %"),
+        ("EPSG:25832", [920_000.0, 5_680_000.0], "0.18 %"),
+    ] {
+        let terrain = read(prj, place_m).unwrap();
+        assert_eq!((terrain.grid.cell_size_m, terrain.crs.as_deref()), (2.0, Some(prj)));
+        let detail = &scale_said(&terrain).unwrap().detail;
+        assert!(detail.contains(said) && detail.contains("coordinates stay"), "{detail}");
     }
 }
 
