@@ -184,6 +184,26 @@ fn held() -> Held {
     Held { server, recording, pipe, _folder: folder }
 }
 
+/// A copy with every second row.
+#[test]
+fn seconds_that_two_recordings_hold_fail_the_job_with_both_names() {
+    let server = Server::start();
+    let whole = drive_csv(RUNS, ROWS);
+    let mut lines = whole.lines();
+    let header = lines.next().unwrap();
+    let copy: String =
+        std::iter::once(header).chain(lines.step_by(2)).map(|line| format!("{line}\n")).collect();
+    let ids = [&whole, &copy].map(|text| {
+        let answer = server.post("/v1/recordings", "text/csv", text.as_bytes());
+        answer.json()["id"].as_str().unwrap().to_owned()
+    });
+    let job = ended(&server, &started(&server, &json!({ "robot": "husky-a200", "recordings": ids })));
+    let problem = &job["problem"];
+    assert_eq!((&job["state"], &problem["type"]), (&json!("failed"), &json!("invalid-recording")), "{job}");
+    assert!(problem["detail"].as_str().unwrap().contains("hold the same drive from"), "{job}");
+    assert!(problem["errors"][0]["pointer"].as_str().unwrap().starts_with("/recordings"), "{job}");
+}
+
 #[test]
 fn who_comes_back_to_the_events_of_a_job_is_told_the_rest() {
     let Held { server, recording, pipe, _folder } = held();

@@ -8,6 +8,7 @@ mod cells;
 mod change;
 mod charging;
 mod delay;
+mod driving;
 mod follow;
 mod frozen;
 mod heights;

@@ -94,7 +94,7 @@ pub use report::{
     SuspicionKind,
 };
 pub use room::Room;
-pub use same_drive::same_rows;
+pub use same_drive::{join_drives, same_rows};
 pub use suspicion::suspicions;
 pub use units::{Conversion, unit_names};
 pub use watch::Watch;

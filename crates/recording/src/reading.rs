@@ -16,7 +16,7 @@ use crate::{
     mcap_summary::Summary,
     parquet,
     rosbag2::{db3, folder, storage},
-    same_drive::refuse_same_drives,
+    same_drive::join_drives,
     suspicion::suspicions_watched,
     ulog,
     unused_runs::tell_unused_runs,
@@ -180,8 +180,8 @@ pub fn read_paths_watched<P: AsRef<Path>>(
         recordings.push(reading.recording);
         reports.push(reading.report);
     }
-    let joined = Recording::join(recordings);
-    refuse_same_drives(&joined, &reports, &Looks::new(watch))?;
+    let sources = reports.iter().map(|report: &ReadingReport| report.source.clone());
+    let joined = join_drives(sources.zip(recordings).collect(), watch)?;
     tell_unused_runs(&joined, &mut reports);
     Ok((joined, reports))
 }

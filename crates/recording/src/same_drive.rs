@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::{Channel, Error, PowerForm, ReadingReport, Recording, Run, clock::UNIX_TIMES_S, watch::Looks};
+use crate::{Channel, Error, PowerForm, Recording, Run, Watch, clock::UNIX_TIMES_S, watch::Looks};
 
 /// Rows that two runs are compared in, spread evenly over the time that both hold.
 const SAMPLES: usize = 200;
@@ -20,39 +20,37 @@ const COPY_AGREES: f64 = 0.998;
 /// The same where both clocks count from 1970: stamps of a bag and its table differ by some milliseconds, in which power changes.
 const SAME_CLOCK_AGREES: f64 = 0.95;
 
-/// Refuses runs of which two hold the same seconds of one drive.
-pub(crate) fn refuse_same_drives(
-    recording: &Recording,
-    reports: &[ReadingReport],
-    looks: &Looks,
-) -> Result<(), Error> {
+/// Drives of several sources behind one another, each with the name of its source.
+///
+/// # Errors
+/// [`Error::SameDrive`] where two runs hold the same seconds of one drive; [`Error::Stopped`] when the watch breaks.
+pub fn join_drives(parts: Vec<(String, Recording)>, watch: &Watch) -> Result<Recording, Error> {
+    let named = |(source, part): &(String, Recording)| vec![source.clone(); part.runs.len()];
+    let sources: Vec<String> = parts.iter().flat_map(named).collect();
+    let joined = Recording::join(parts.into_iter().map(|(_, part)| part));
+    refuse_same_drives(&joined, &sources, &Looks::new(watch))?;
+    Ok(joined)
+}
+
+/// Refuses runs of which two hold the same seconds of one drive, with the source of each run.
+fn refuse_same_drives(recording: &Recording, sources: &[String], looks: &Looks) -> Result<(), Error> {
     // What no model uses counts nothing, and is told elsewhere.
     let unused: Vec<usize> = recording.unused_runs().into_iter().map(|(run, _)| run).collect();
-    let used: Vec<&Run> = (0..recording.runs.len())
-        .filter(|run| !unused.contains(run))
-        .map(|run| &recording.runs[run])
-        .collect();
-    for (index, run) in used.iter().copied().enumerate() {
+    let used: Vec<usize> = (0..recording.runs.len()).filter(|run| !unused.contains(run)).collect();
+    let source = |run: usize| sources.get(run).cloned().unwrap_or_default();
+    for (index, second) in used.iter().copied().enumerate() {
         looks.go_on()?;
-        for other in used[..index].iter().copied() {
-            let Some([from_s, until_s]) = Clock::shared(recording, other, run) else { continue };
-            if repeats(recording, other, run) {
+        for first in used[..index].iter().copied() {
+            let [one, other] = [first, second].map(|run| &recording.runs[run]);
+            let Some([from_s, until_s]) = Clock::shared(recording, one, other) else { continue };
+            if repeats(recording, one, other) {
                 continue;
             }
-            let source = |run: &Run| -> String {
-                let at = recording.runs.iter().position(|known| known.rows == run.rows).unwrap_or(0);
-                let mut ends = reports.iter().scan(0, |end, report| {
-                    *end += report.runs.len();
-                    Some(*end)
-                });
-                let file = ends.position(|end| at < end).and_then(|file| reports.get(file));
-                file.map_or_else(String::new, |report| report.source.clone())
-            };
             return Err(Error::SameDrive {
-                first: source(other),
-                first_run: other.name.clone(),
-                second: source(run),
-                second_run: run.name.clone(),
+                first: source(first),
+                first_run: one.name.clone(),
+                second: source(second),
+                second_run: other.name.clone(),
                 from_s,
                 until_s,
             });

@@ -4,10 +4,8 @@ use std::collections::BTreeSet;
 
 use recording::{Channel, Recording};
 
-use super::{Doubt, cells::recorded_j};
+use super::{Doubt, cells::recorded_j, driving::TURNING_MPS};
 
-/// Difference of rim speeds with which a robot turns \[m/s\]: sides draw unlike power then.
-const TURNING_MPS: f64 = 0.08;
 /// Share of such rows in which two meters are alike to the last digit: with noise of their own they never are.
 const ALIKE: f64 = 0.99;
 /// Different values, and rows of turning, that tell something.

@@ -99,7 +99,8 @@ fn most_side_w(robot: &Robot) -> Sides<f64> {
     let force_n = GRIP * robot.mass_kg * STANDARD_GRAVITY_MPS2;
     let rim_mps = FASTEST * robot.max_wheel_speed_mps;
     let driving = |motor: &model::robot::Motor| {
-        motor.k1_w_per_n2 * force_n * force_n + motor.k2 * force_n * rim_mps + robot.drive_electronics_w
+        let motor = motor.at_temperature(&robot.motors, robot.motors.reference_temperature_c);
+        motor.printed_power_w(force_n, rim_mps) + robot.drive_electronics_w
     };
     Sides { left: driving(&robot.motors.left), right: driving(&robot.motors.right) }
 }

@@ -3,7 +3,7 @@
 use model::Robot;
 use recording::{PowerForm, Recording, Watch};
 
-use super::Doubt;
+use super::{Doubt, driving::ALIKE_S};
 use crate::{
     Drives, Error,
     drives::Stretch,
@@ -23,8 +23,6 @@ const FOLLOWS: f64 = 0.5;
 const EVIDENCE: f64 = 10.0;
 /// And when what is not followed shrinks to this share: a delay that hardly changes it is none that matters.
 const CLEARLY_BETTER: f64 = 0.9;
-/// Time over which errors of power are alike \[s\]: a manoeuvre. Rows within one tell nothing of their own.
-const ALIKE_S: f64 = 4.0;
 /// Rows that are looked at, in pieces spread over all drives.
 const MOST_ROWS: usize = 20_000;
 

@@ -8,13 +8,12 @@ use recording::{Channel, Recording, Run};
 use super::{
     Doubt,
     cells::{Expected, power_channels},
+    driving::STANDS_MPS,
     second::median,
 };
 
 /// Time for which a measured value does not stay the same to its last digit while the robot drives \[s\]: as for sensors of one side.
 const LEAST_S: f64 = 10.0;
-/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
-const STANDS_MPS: f64 = 0.016;
 /// Different values of what lives beside it.
 const LEAST_VALUES: usize = 10;
 /// How many times longer than any ordinary stay a frozen one lasts: a decade apart, it is of another kind. Steps of coarse encoders and

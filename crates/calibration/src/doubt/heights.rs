@@ -3,7 +3,7 @@
 use model::Robot;
 use recording::{Channel, PowerForm, Recording, Watch};
 
-use super::Doubt;
+use super::{Doubt, driving::ALIKE_S};
 use crate::{
     Drives, Error,
     field::with_new_ground,
@@ -17,8 +17,6 @@ const LEAST_SHARE: f64 = 0.5;
 const SIGMAS: f64 = 3.0;
 /// Shares in which power follows slopes of another unit or sign; of what is error alone it follows less.
 const FOLLOWED: f64 = 0.2;
-/// Time over which errors of power are alike \[s\]: a manoeuvre.
-const ALIKE_S: f64 = 4.0;
 
 /// Tells of heights that are no ground.
 ///

@@ -4,7 +4,9 @@ use model::Robot;
 use recording::{Recording, SuspicionKind, suspicions};
 
 use super::{
-    Doubt, scale,
+    Doubt,
+    driving::TURNING_MPS,
+    scale,
     second::{Second, mean, median, total_s},
 };
 
@@ -12,8 +14,6 @@ use super::{
 const LEAST_S: f64 = 10.0;
 /// Rims that turn \[m/s\]: a tenth of what a Husky drives at most.
 const TURNS_MPS: f64 = 0.1;
-/// Difference of rim speeds with which a robot turns \[m/s\]: as for wheels that are stuck.
-const TURNING_MPS: f64 = 0.08;
 /// Share of the motion that wheels mean below which nothing moves.
 const STILL: f64 = 0.1;
 /// Share of the predicted power that wheels draw at most in the air while nothing moves: wheels that dig in draw more than wheels that roll.

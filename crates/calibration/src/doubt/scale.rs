@@ -3,7 +3,7 @@
 use model::Robot;
 use recording::{Channel, Recording};
 
-use super::{Doubt, follow::Followed};
+use super::{Doubt, driving::STANDS_MPS, follow::Followed};
 
 /// Slip tracks over the track of the robot: skid-steered robots turn as with 1 to 2.3 times their track (Mandow et al., IROS 2007: 1.5 to
 /// 2.3 on hard ground; BorealTC's Husky: 1.5 to 1.8).
@@ -16,8 +16,6 @@ pub(super) const FASTEST: f64 = 1.5;
 const LEAST_R2: f64 = 0.5;
 /// Fewer rows tell nothing.
 const LEAST_ROWS: usize = 50;
-/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
-const STANDS_MPS: f64 = 0.016;
 /// How far a factor may be from that of a unit.
 pub(super) const LIKE_UNIT: f64 = 1.6;
 /// Ratios of recorded to predicted power that no friction explains: of what a real Husky draws on flooring it draws 0.30 on ice, and twice as

@@ -5,13 +5,11 @@ use std::{collections::BTreeSet, ops::Range};
 use model::Robot;
 use recording::{Channel, Recording, SuspicionKind, suspicions};
 
-use super::Doubt;
+use super::{Doubt, driving::STANDS_MPS};
 
 /// Time for which a measured value does not stay the same to its last digit while the robot drives \[s\]: manoeuvres are shorter, and sensors
 /// have noise.
 const LEAST_S: f64 = 10.0;
-/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
-const STANDS_MPS: f64 = 0.016;
 /// Different values of the other side by which it lives: more than a commanded speed has that is logged in the place of a measured one.
 const LEAST_VALUES: usize = 10;
 

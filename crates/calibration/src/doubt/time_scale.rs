@@ -5,7 +5,7 @@ use std::ops::Range;
 use model::{Robot, STANDARD_GRAVITY_MPS2};
 use recording::{Channel, Recording, Run};
 
-use super::{Doubt, scale, second::median};
+use super::{Doubt, driving::STANDS_MPS, scale, second::median};
 
 /// Times over seconds that logs are written with.
 const UNITS: [(&str, f64); 5] = [
@@ -39,8 +39,6 @@ const MANOEUVRE_S: f64 = 10.0;
 const SLOW_ROWS: usize = 10;
 /// Steps from which times may be too long \[s\]: one, of row numbers and tenths of ten rows a second.
 const SLOW_STEP_S: f64 = 0.99;
-/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds.
-const STANDS_MPS: f64 = 0.016;
 
 /// Tells of times in another unit than seconds, where wheel speeds are as they should be: what robot and gyroscope say of them has no times.
 pub(super) fn times(robot: &Robot, recording: &Recording) -> Option<Doubt> {

@@ -5,11 +5,10 @@ use recording::{Channel, Recording, SuspicionKind, suspicions};
 
 use super::{
     Doubt,
+    driving::TURNING_MPS,
     second::{Second, total_s},
 };
 
-/// Turning with which a robot turns \[m/s at its track\]: as for wheels that are stuck.
-const TURNING_MPS: f64 = 0.08;
 /// Share of the turning that no wheels drive: moments of sliding and of delays are fewer. Of five real drives on asphalt to ice 0 to 3 %.
 const MOST_SHARE: f64 = 0.1;
 /// Share of the difference of speeds that a turn takes at least with which wheels may have driven it: encoders of unlike scales and gyroscopes

@@ -3,17 +3,16 @@
 /// Factors by which a prior standard deviation may be too small.
 pub(crate) const WIDTHS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// Log priors of the widths: each is half as likely as the one before, which is twice as narrow.
+/// Log priors of the widths, which are twice as wide each.
 pub(crate) fn log_priors() -> [f64; WIDTHS.len()] {
-    let total: f64 = WIDTHS.iter().map(|by| WIDTHS[0] / by).sum();
-    WIDTHS.map(|by| (WIDTHS[0] / by / total).ln())
+    halving_log_priors()
 }
 
 /// Log priors of so many amplitudes, each half as likely as the one before.
-pub(crate) fn halving_log_priors(count: usize) -> Vec<f64> {
-    let halves: Vec<f64> = (0..count).map(|i| 0.5_f64.powi(i as i32)).collect();
-    let total: f64 = halves.iter().sum();
-    halves.into_iter().map(|by| (by / total).ln()).collect()
+pub(crate) fn halving_log_priors<const COUNT: usize>() -> [f64; COUNT] {
+    let half = |i: usize| 0.5_f64.powi(i as i32);
+    let total: f64 = (0..COUNT).map(half).sum();
+    std::array::from_fn(|i| (half(i) / total).ln())
 }
 
 /// The likeliest width of sizes together, its log prior, and the log density of the sizes with it, all in prior standard deviations and but for

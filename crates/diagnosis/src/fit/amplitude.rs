@@ -27,7 +27,7 @@ const RUN_VARIATIONS: [f64; 4] = [0.0, 0.04, 0.12, 0.36];
 /// Amplitude of the discrepancy beside which that is chosen.
 const RUN_MODEL_ERROR: f64 = 0.02;
 
-/// Rows of healthy drives, whitened and tempered as where no drives tell.
+/// Rows of drives in which nothing is taken to act, whitened and tempered as where no drives tell.
 #[derive(Clone)]
 pub(crate) struct Healthy<'a> {
     pub(crate) observed: &'a Observations<'a>,
@@ -49,7 +49,7 @@ pub(crate) struct RunSpread {
 impl RunSpread {
     fn new(units: Vec<Vec<f64>>, share: f64) -> Self {
         let amplitude = share.max(RUN_VARIATIONS[1]);
-        let priors = width::halving_log_priors(RUN_VARIATIONS.len());
+        let priors: [f64; RUN_VARIATIONS.len()] = width::halving_log_priors();
         let mut factors: Vec<(f64, f64)> =
             RUN_VARIATIONS.iter().zip(priors).map(|(one, log)| (one / amplitude, log)).collect();
         let likeliest = RUN_VARIATIONS.iter().position(|one| *one == share).unwrap_or(0);

@@ -12,7 +12,7 @@ use axum::extract::State;
 use calibration::{Method, Options, lift};
 use diagnosis::taught;
 use model::Robot;
-use recording::{Map, Recording, Room, Watch};
+use recording::{Map, Recording, Room, Watch, join_drives};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use utoipa::ToSchema;
@@ -207,9 +207,11 @@ pub(super) fn read(
         let watch = watch(job, step, note.bytes);
         let reading =
             engine.recordings().read(note, map, &watch, Room::default().share(note.bytes, all_bytes));
-        parts.push(reading.map_err(|problem| problem.at(format!("{field}/{i}")))?.recording);
+        let reading = reading.map_err(|problem| problem.at(format!("{field}/{i}")))?;
+        parts.push((note.name.clone(), reading.recording));
     }
-    Ok(Recording::join(parts))
+    let watch = watch(job, "joining recordings".into(), all_bytes);
+    join_drives(parts, &watch).map_err(|error| Problem::invalid_recording(&error).at(field.to_owned()))
 }
 
 /// Tells the job, by whole percents, how much of a recording has been read; stops reading when the job is called off.
