@@ -8,7 +8,7 @@ use std::fmt;
 use crate::{
     Error, Recording, Run, TimeError,
     error::Position,
-    gap::{median, median_step_s},
+    gap::{STEP_ROUNDING, median, median_step_s},
     repeats::Repeats,
 };
 
@@ -28,9 +28,6 @@ pub(crate) const UNIX_TIMES_S: [f64; 2] = [946_684_800.0, 4_102_444_800.0];
 
 /// Steps of most loggers \[s\], 1 kHz to 0.5 Hz: what tells one unit from another by a step alone.
 const USUAL_STEP_S: [f64; 2] = [1e-3, 2.0];
-
-/// Rounding of the clock's numbers that steps are accepted with, as a share of a step.
-const STEP_ROUNDING: f64 = 1e-3;
 
 /// Steps that tell the rhythm of a run: of fewer, half may be pauses.
 const LEAST_STEPS: usize = 3;

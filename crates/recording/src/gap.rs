@@ -4,6 +4,9 @@
 /// stays below three, so three mean that at least two samples are missing.
 pub(crate) const GAP_STEPS: f64 = 3.0;
 
+/// Rounding of a clock's numbers that steps are compared with, as a share of a step.
+pub(crate) const STEP_ROUNDING: f64 = 1e-3;
+
 /// Steps in a row that are a rhythm: so many pauses of one length do not come by chance.
 const RHYTHM_STEPS: usize = 10;
 

@@ -61,6 +61,7 @@ mod repeats;
 mod report;
 mod room;
 mod rosbag2;
+mod rows;
 mod same_drive;
 mod same_time;
 mod schema;

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Channel, Error, Ignored, Labels, Map, Recording, Repair, Run, Sign, TimeError,
+    Channel, Error, Ignored, Labels, Recording, Repair, Run, Sign,
     align::{Between, interpolate_within},
-    clock::implausible_steps,
     clock_offset, drawn, gap,
     map::{Place, Target},
     meter,
@@ -14,7 +13,8 @@ use crate::{
     rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
-    stream::{BY_HEADER, Stream},
+    rows::check_steps,
+    stream::Stream,
     topic::{Topic, Topics},
 };
 
@@ -135,33 +135,6 @@ impl Topics<'_> {
         chosen
     }
 
-    /// The stream whose stamps become the rows: the map's, or the slowest of those that tell power.
-    fn base(&self, streams: &[Named], chosen: &[(usize, usize, usize)]) -> Result<usize, Error> {
-        if let Some(base) = &self.map.base {
-            let named = streams.iter().position(|named| Map::topic_matches(base, &named.topic));
-            return named.ok_or_else(|| {
-                Error::missing_names(&[format!("the map's base {base}")], &[base], &self.names)
-            });
-        }
-        let power =
-            |source: usize| matches!(&self.map.sources[source].target, Target::Channel(c) if c.tells_power());
-        let tells = chosen.iter().filter(|(source, ..)| power(*source)).map(|(_, stream, _)| *stream);
-        let slowest = tells.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s));
-        Ok(slowest.or(chosen.first().map(|(_, stream, _)| *stream)).unwrap_or(0))
-    }
-
-    /// The stream of wheel speeds whose stamps become the rows, where the base is a power meter that is slower.
-    fn slow_meter(&self, streams: &[Named], chosen: &[(usize, usize, usize)], base: usize) -> Option<usize> {
-        if self.map.base.is_some() {
-            return None;
-        }
-        let is_wheel = |source: usize| self.map.sources[source].target.is_wheel_speed();
-        let wheels = chosen.iter().filter(|(source, ..)| is_wheel(*source)).map(|(_, stream, _)| *stream);
-        let slowest = wheels.max_by(|a, b| streams[*a].step_s.total_cmp(&streams[*b].step_s))?;
-        let is_slow = meter::is_slow(streams[base].step_s, streams[slowest].step_s, self.map.max_gap_s);
-        (slowest != base && is_slow && streams[base].step_s.is_finite()).then_some(slowest)
-    }
-
     /// Brings all streams onto the stamps of a base; power of a meter that is slower is held over its periods.
     fn align(
         &mut self,
@@ -171,8 +144,9 @@ impl Topics<'_> {
         name: &str,
         report: &mut ReadingReport,
     ) -> Result<Recording, Error> {
-        let origin_ns = streams[base].stream.t_ns.first().copied().unwrap_or(0);
-        let t_s = streams[base].stream.t_s(origin_ns);
+        let rows = self.rows(streams, chosen, base);
+        self.repairs.extend(rows.told(&streams[base].topic, streams[base].stream.t_ns.len()));
+        let (origin_ns, t_s) = rows.t_s();
         let mut recording = Recording::default();
         let mut max_gaps = BTreeMap::new();
         for &(source, at, column) in chosen {
@@ -183,7 +157,7 @@ impl Topics<'_> {
                 && matches!(&source.target, Target::Channel(c) if c.tells_power() && *c != Channel::Voltage)
                 && meter::is_slow(named.step_s, streams[base].step_s, self.map.max_gap_s);
             let values = if at == base {
-                values.clone()
+                rows.of_base(values)
             } else if is_held {
                 let own_s = named.stream.t_s(origin_ns);
                 let known = own_s.iter().zip(values).filter(|(_, value)| !value.is_nan());
@@ -248,18 +222,6 @@ impl Topics<'_> {
     }
 }
 
-/// Refuses stamps whose steps are not those of a drive log.
-fn check_steps(base: &Named) -> Result<(), Error> {
-    let origin_ns = base.stream.t_ns.first().copied().unwrap_or(0);
-    match implausible_steps(&base.stream.t_s(origin_ns), |at| base.stream.weight(at)) {
-        None => Ok(()),
-        Some(evidence) => {
-            let other = if base.stream.clock == BY_HEADER { "log" } else { "header" };
-            Err(TimeError::TopicSteps { topic: base.topic.clone(), evidence, other }.into())
-        }
-    }
-}
-
 /// Times at which there is a number.
 fn with_numbers(t_s: &[f64], values: &[f64]) -> Vec<f64> {
     t_s.iter().zip(values).filter(|(_, value)| !value.is_nan()).map(|(t, _)| *t).collect()
@@ -271,7 +233,7 @@ pub(crate) struct Named {
     pub(crate) sources: Vec<(usize, usize)>,
     pub(crate) stream: Stream,
     /// Its median step \[s\]; infinite for a single message.
-    step_s: f64,
+    pub(crate) step_s: f64,
 }
 
 #[cfg(test)]

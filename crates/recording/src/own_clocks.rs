@@ -21,9 +21,6 @@ const ROWS_OWN_SHARE: f64 = 0.7;
 /// Share of the empty cells that have to lie between samples of one rhythm for a channel to have its own.
 const RHYTHM_SHARE: f64 = 0.8;
 
-/// Rounding of times that steps are compared with, as a share of a step.
-const STEP_ROUNDING: f64 = 1e-3;
-
 /// Fewer samples show no rhythm.
 const LEAST_SAMPLES: usize = 5;
 
@@ -278,7 +275,8 @@ fn with_ends(t_s: &[f64], run: &Run, samples: Vec<usize>) -> Vec<usize> {
 fn thin(t_s: &[f64], rows: Range<usize>, step_s: f64, kept: &mut Vec<usize>) {
     let end = rows.end;
     for row in rows {
-        let is_next = kept.last().is_none_or(|last| t_s[row] - t_s[*last] >= (1.0 - STEP_ROUNDING) * step_s);
+        let is_next =
+            kept.last().is_none_or(|last| t_s[row] - t_s[*last] >= (1.0 - gap::STEP_ROUNDING) * step_s);
         if is_next || row + 1 == end {
             kept.push(row);
         }

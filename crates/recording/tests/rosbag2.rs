@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 use recording::{Channel, Format, Map, Reading, read, read_path, read_paths};
 use tempfile::TempDir;
-use written::{DRIVE, MAP, Type, db3, drive, mcap, metadata};
+use written::{DRIVE, MAP, Type, db3, drive, mcap, mcap_of_topics, metadata};
 
 fn map() -> Map {
     Map::from_json(MAP).unwrap()
@@ -236,4 +236,30 @@ fn a_summary_that_was_cut_off_loses_nothing_and_is_not_told() {
             read(whole[..length].to_vec(), Format::Mcap, "cut", Some(&map())).unwrap();
         assert_eq!((recording.rows(), report.repairs.len()), (10, 0), "{length}: {report}");
     }
+}
+
+#[test]
+fn power_that_begins_late_and_ends_early_leaves_the_seconds_of_the_wheels() {
+    let text = MAP.replace(r#""power_w", "topic": "/drive""#, r#""power_w", "topic": "/battery""#);
+    let map = Map::from_json(&text).unwrap();
+    let folder = folder();
+    let read_of = |battery: &[(u64, Vec<u8>)]| {
+        let bytes = mcap_of_topics(&[("/drive", DRIVE, &drive(100, 1..=200)), ("/battery", DRIVE, battery)]);
+        read_path(&write(&folder, "x.mcap", &bytes), Some(&map)).unwrap()
+    };
+    // Every second stamp of the wheels, from 4 s on and up to 13.8 s.
+    let battery: Vec<(u64, Vec<u8>)> = drive(104, 1..=99).into_iter().step_by(2).collect();
+    let Reading { recording, report } = read_of(&battery);
+    assert_eq!((recording.t_s[0], recording.t_s.last().copied()), (0.0, Some(19.8)), "{report}");
+    let power = recording.channel(Channel::Power).unwrap();
+    let known: Vec<usize> = (0..power.len()).filter(|row| !power[*row].is_nan()).collect();
+    assert_eq!((power.len(), known.len(), known[0]), (100, 50, 20), "{report}");
+    assert!(recording.channel(Channel::LeftSpeed).unwrap().iter().all(|v_mps| *v_mps == 1.0), "{report}");
+    let told = report.repairs.iter().find(|repair| repair.place == "topic /battery").unwrap();
+    let says = "it begins 4.0 s after /drive and ends 6.0 s before /drive";
+    assert!(told.what.starts_with(says), "{}", told.what);
+
+    // Within a gap of its own rhythm any two topics begin and end.
+    let Reading { recording, report } = read_of(&drive(100, 1..=198));
+    assert_eq!((recording.rows(), report.repairs.len()), (198, 0), "{report}");
 }

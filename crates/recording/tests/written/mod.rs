@@ -66,6 +66,29 @@ fn mcap_records(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> (Vec<u8>, Vec<u8>)
     ([record(3, &schema.concat()), record(4, &channel.concat())].concat(), records)
 }
 
+/// A whole MCAP file of these topics, each of one type: (topic, type, messages).
+pub(crate) fn mcap_of_topics(topics: &[(&str, Type<'_>, &[(u64, Vec<u8>)])]) -> Vec<u8> {
+    let mut records = Vec::new();
+    for (id, (topic, of, messages)) in (1u16..).zip(topics) {
+        let id = id.to_le_bytes();
+        let schema =
+            [&id[..], &text(of.name.as_bytes()), &text(of.schema_encoding.as_bytes()), &text(of.definition)];
+        let channel = [
+            &id[..],
+            &id,
+            &text(topic.as_bytes()),
+            &text(of.message_encoding.as_bytes()),
+            &0u32.to_le_bytes(),
+        ];
+        records.extend([record(3, &schema.concat()), record(4, &channel.concat())].concat());
+        for (at_ns, message) in *messages {
+            let head = [&id[..], &[0; 4], &at_ns.to_le_bytes(), &at_ns.to_le_bytes()].concat();
+            records.extend(record(5, &[&head[..], message].concat()));
+        }
+    }
+    [MAGIC, &records, &record(15, &[0; 4]), &record(2, &[0; 20]), MAGIC].concat()
+}
+
 /// A whole MCAP file of topic `/drive`, by its specification: magic, schema, channel, messages, end of data, footer, magic.
 pub(crate) fn mcap(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> Vec<u8> {
     let (described, records) = mcap_records(of, messages);
