@@ -186,7 +186,8 @@ impl Looked {
         numbers_of(&definition, definition.root(), "", 0, &mut paths);
         paths.truncate(MOST_COLUMNS.saturating_sub(self.columns));
         let wanted: Vec<&str> = paths.iter().map(String::as_str).collect();
-        let layout = Layout::new(&definition, &wanted, schema.encoding).ok().filter(|_| !paths.is_empty())?;
+        let layout =
+            Layout::new(&definition, &wanted, false, schema.encoding).ok().filter(|_| !paths.is_empty())?;
         self.columns += paths.len();
         let (name, type_name) = (topic.to_owned(), schema.type_name.to_owned());
         let cells = vec![Vec::new(); paths.len()];

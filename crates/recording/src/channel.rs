@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// A rim slower than this stands still \[m/s\]: twice the step of a Husky's encoder speeds (0.0079 m/s).
+pub const STANDS_MPS: f64 = 0.016;
+
 /// What kind of quantity a channel is; decides which units it may come in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {

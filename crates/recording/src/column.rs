@@ -1,9 +1,9 @@
 //! From the columns of a table to a recording: which column is what, and what must hold of the rows.
 
-use std::mem;
+use std::{borrow::Cow, mem};
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, TimeError,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair, TimeError,
     bursts::spread_bursts,
     clock::{TimeSource, check_time},
     coarse::period,
@@ -12,8 +12,10 @@ use crate::{
     label_column::LabelColumn,
     map::{Place, Target},
     own_clocks::onto_one_clock,
+    rate::{beyond_wrap, rates, unwrapped},
     report::{ChannelReport, ReadingReport},
     same_time::merge_same_times,
+    stuck_part,
     table::Table,
     units,
 };
@@ -58,6 +60,10 @@ struct Entry {
     unit: String,
     /// Whether a map names the unit.
     is_unit_given: bool,
+    /// Whether its columns are positions, whose rate of change is meant.
+    is_derivative: bool,
+    /// Where these begin again, in the unit of the channel.
+    wraps_at: Option<f64>,
 }
 
 impl Plan {
@@ -114,6 +120,8 @@ impl Plan {
                         conversion: source.conversion,
                         unit: source.unit.clone(),
                         is_unit_given: source.is_unit_given,
+                        is_derivative: source.derivative,
+                        wraps_at: source.wraps_at,
                     });
                     continue;
                 }
@@ -157,6 +165,8 @@ impl Plan {
                 conversion,
                 unit,
                 is_unit_given: false,
+                is_derivative: false,
+                wraps_at: None,
             });
         }
         Ok(())
@@ -227,7 +237,7 @@ impl Plan {
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             looks.go_on()?;
-            match self.combined(&entry, &mut columns, &recording.t_s) {
+            match self.combined(&entry, &mut columns, &recording.t_s, &mut report.repairs) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
                     runs = Some(labels.into_labels());
                 }
@@ -303,7 +313,7 @@ impl Plan {
         };
         let entry = self.entries.remove(at);
         let name = self.names(&entry);
-        match self.combined(&entry, columns, &[]) {
+        match self.combined(&entry, columns, &[], &mut Vec::new()) {
             Ok(Column::Numbers(t_s)) => Ok((t_s, name, entry.is_unit_given.then_some(entry.unit))),
             Ok(Column::Unusable(reason)) | Err(reason) => Err(Error::Field {
                 topic: "of the table".into(),
@@ -320,7 +330,13 @@ impl Plan {
     }
 
     /// The one column that an entry makes of its columns, in rows of these times.
-    fn combined(&self, entry: &Entry, columns: &mut [Column], t_s: &[f64]) -> Result<Column, String> {
+    fn combined(
+        &self,
+        entry: &Entry,
+        columns: &mut [Column],
+        t_s: &[f64],
+        repairs: &mut Vec<Repair>,
+    ) -> Result<Column, String> {
         if let &[only] = entry.columns.as_slice() {
             // One column is moved, which spares a copy of the whole file.
             let taken = mem::replace(&mut columns[only], Column::Unusable("it is used twice".into()));
@@ -341,7 +357,30 @@ impl Plan {
                 _ => return Err(format!("column `{}` holds no numbers", self.headers[column])),
             }
         }
+        let parts = self.unwrapped(entry, parts)?;
         let values = entry.combine.of_columns(t_s, &parts, entry.separation_m);
-        Ok(Column::Numbers(values.into_iter().map(|value| entry.conversion.apply(value)).collect()))
+        let mut values: Vec<f64> = values.into_iter().map(|value| entry.conversion.apply(value)).collect();
+        if entry.combine == Combine::Mean && entry.target.is_wheel_speed() {
+            let names: Vec<String> = entry.columns.iter().map(|&at| self.headers[at].clone()).collect();
+            let speed_mps = if entry.is_derivative { rates(t_s, &values, None) } else { values.clone() };
+            let lone = stuck_part::lone_of_columns(&parts);
+            repairs.extend(stuck_part::leave_out(t_s, &lone, &speed_mps, &names, &mut values));
+        }
+        Ok(Column::Numbers(values))
+    }
+
+    /// Counters that go on where they begin again, so that a mean of several does not jump by a part of a turn.
+    fn unwrapped<'c>(&self, entry: &Entry, parts: Vec<&'c [f64]>) -> Result<Vec<Cow<'c, [f64]>>, String> {
+        let Some(wraps_at) = entry.wraps_at.map(|at| at / entry.conversion.factor.abs()) else {
+            return Ok(parts.into_iter().map(Cow::Borrowed).collect());
+        };
+        let of = |(part, column): (&[f64], &usize)| match beyond_wrap(part, wraps_at) {
+            None => Ok(Cow::Owned(unwrapped(part, wraps_at))),
+            Some(farthest) => Err(format!(
+                "column `{}` goes as far as {farthest}, and is said to begin anew at {wraps_at}",
+                self.headers[*column]
+            )),
+        };
+        parts.into_iter().zip(&entry.columns).map(of).collect()
     }
 }

@@ -22,6 +22,8 @@ pub enum Combine {
     LeftOfTwist,
     /// That of the right side: v + ω b/2.
     RightOfTwist,
+    /// Time of whole seconds and of nanoseconds beside them, as `secs` and `nsecs` of a ROS stamp.
+    SecondsAndNanoseconds,
 }
 
 impl Combine {
@@ -37,6 +39,9 @@ impl Combine {
             Combine::RightOfTwist => 0.5 * separation_m,
             _ => 0.0,
         };
+        if self == Combine::SecondsAndNanoseconds {
+            return values.zip([1.0, 1e-9]).map(|(value, by)| by * value).sum();
+        }
         if self.is_of_twist() {
             return values.zip([1.0, half_m]).map(|(value, by)| by * value).sum();
         }
@@ -50,15 +55,22 @@ impl Combine {
             Combine::Mean => sum / count,
             Combine::Sum => sum,
             Combine::Product => product,
-            Combine::LeftOfTwist | Combine::RightOfTwist => f64::NAN,
+            Combine::LeftOfTwist | Combine::RightOfTwist | Combine::SecondsAndNanoseconds => f64::NAN,
         }
     }
 }
 
 impl Combine {
+    /// One column of several of the same rows, none of which is a twist's.
+    pub(crate) fn of_rows(self, parts: &[Vec<f64>]) -> Vec<f64> {
+        let rows = parts.iter().map(Vec::len).min().unwrap_or(0);
+        (0..rows).map(|row| self.of(parts.iter().map(|part| part[row]), f64::NAN)).collect()
+    }
+
     /// One column of several of the same rows. Where they have samples in different rows, as topics joined on the union of their stamps
     /// have, those of the column with most are the result's, at which the others are interpolated linearly over three of their own steps.
-    pub(crate) fn of_columns(self, t_s: &[f64], parts: &[&[f64]], separation_m: f64) -> Vec<f64> {
+    pub(crate) fn of_columns<P: AsRef<[f64]>>(self, t_s: &[f64], parts: &[P], separation_m: f64) -> Vec<f64> {
+        let parts: Vec<&[f64]> = parts.iter().map(AsRef::as_ref).collect();
         let samples = |part: &[f64]| part.iter().filter(|value| !value.is_nan()).count();
         let most = parts.iter().map(|part| samples(part)).max().unwrap_or(0);
         let base = parts.iter().position(|part| samples(part) == most).unwrap_or(0);

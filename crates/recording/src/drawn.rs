@@ -1,16 +1,13 @@
 //! The sign of a battery's current where drivers of one topic have both: `sensor_msgs/BatteryState` has what is drawn negative, and some
 //! publish it positive.
 
-use crate::{Channel, Recording, Repair};
-
-/// A wheel whose rim is faster than this turns \[m/s\]: twice the step of a Husky's encoder speeds (0.0079 m/s).
-const TURNS_MPS: f64 = 0.016;
+use crate::{Channel, Recording, Repair, STANDS_MPS};
 
 /// Turns the current so that it is drawn on the whole while the wheels turn, and says which sign it had.
 pub(crate) fn settle(recording: &mut Recording, place: &str) -> Option<Repair> {
     let [left, right] = [Channel::LeftSpeed, Channel::RightSpeed].map(|side| recording.channel(side));
     let turns =
-        |row: usize| [left, right].into_iter().flatten().any(|speed_mps| speed_mps[row].abs() > TURNS_MPS);
+        |row: usize| [left, right].into_iter().flatten().any(|speed_mps| speed_mps[row].abs() > STANDS_MPS);
     let current_a = recording.channel(Channel::Current)?;
     let driven = (0..current_a.len()).filter(|row| current_a[*row].is_finite() && turns(*row));
     let (sum_a, count) = driven.fold((0.0, 0), |(sum, count), row| (sum + current_a[row], count + 1));

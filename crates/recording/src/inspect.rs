@@ -104,7 +104,7 @@ fn table(path: &Path) -> Result<Inspection, Error> {
             notes,
         });
     };
-    let TimeColumn { name: time, unit: time_unit, reason, recording } = time;
+    let TimeColumn { name: time, unit: time_unit, source: of_time, reason, recording } = time;
     let mut fields = Vec::new();
     let columns = recording.channels.iter().map(|(channel, values)| (channel.name().to_owned(), values));
     for (name, values) in columns.chain(recording.aside.iter().map(|(name, values)| (name.clone(), values))) {
@@ -117,7 +117,6 @@ fn table(path: &Path) -> Result<Inspection, Error> {
             .filter(|field| field.reason.starts_with("left out"))
             .map(|field| format!("column `{}` is {}", field.name, field.reason)),
     );
-    let of_time = json!({"channel": "t_s", "column": time, "unit": time_unit});
     let sources: Vec<Value> = std::iter::once(of_time).chain(chosen).collect();
     fields.insert(
         0,

@@ -4,6 +4,7 @@ use crate::{
     cursor::{Cursor, Dialect, Encoding, Short, Wide},
     definition::{Base, Count, Definition, Field, Primitive},
     field::{Angle, Pick, Resolved, Segment, resolve},
+    packs,
     walk::{Found, Node, Picked},
 };
 
@@ -40,6 +41,8 @@ struct Value {
 #[derive(Clone, Copy, Debug)]
 enum ValueKind {
     Slot(usize),
+    /// Texts, as one number.
+    Texts([Option<usize>; packs::NAMES.len()]),
     Angle([usize; 4], Angle),
 }
 
@@ -51,10 +54,11 @@ struct Want<'p> {
 }
 
 impl Layout {
-    /// Plans the walk; every path must exist in the definition.
+    /// Plans the walk; every path must exist in the definition. With `names`, one number more tells which pack a message is of.
     pub(crate) fn new(
         definition: &Definition,
         paths: &[&str],
+        names: bool,
         encoding: Encoding,
     ) -> Result<Layout, (String, String)> {
         let mut plan: Vec<(Vec<Segment>, [usize; 2])> = Vec::new();
@@ -86,6 +90,10 @@ impl Layout {
             };
             let covariance = root.and_then(|root| covariance(definition, &root.name));
             values.push(Value { kind, unknown_when_negative: covariance.map(&mut slot) });
+        }
+        if names {
+            let texts = packs::NAMES.map(|path| text(definition, path).map(&mut slot));
+            values.push(Value { kind: ValueKind::Texts(texts), unknown_when_negative: None });
         }
         let stamp = has_stamp(definition).then(|| {
             let names = ["header", "stamp"];
@@ -178,11 +186,34 @@ impl Value {
         }
         let value = match self.kind {
             ValueKind::Slot(slot) => slots[slot],
+            // Texts that are told one by one: places keep them apart.
+            ValueKind::Texts(texts) => {
+                let told = texts.iter().flatten().zip(1..);
+                told.map(|(slot, place)| f64::from(place) * slots[*slot])
+                    .filter(|text| text.is_finite())
+                    .sum()
+            }
             ValueKind::Angle(parts, angle) => angle.of(parts.map(|slot| slots[slot])),
         };
         // An infinity is no measurement: drivers use it as NaN.
         if value.is_finite() { value } else { f64::NAN }
     }
+}
+
+/// The path of a text in a definition, where it has one.
+fn text(definition: &Definition, path: &str) -> Option<Vec<Segment>> {
+    let mut fields = Some(definition.root());
+    let mut segments = Vec::new();
+    for name in path.split('.') {
+        let field = fields?.iter().find(|field| field.name == name && field.count == Count::One)?;
+        segments.push(Segment { name: name.to_owned(), pick: None });
+        fields = match &field.base {
+            Base::Text => return Some(segments),
+            Base::Message(name) => definition.fields(name),
+            _ => return None,
+        };
+    }
+    None
 }
 
 /// The path of the first element of the covariance that belongs to a field of the message.
@@ -285,7 +316,7 @@ impl Builder<'_> {
         let slots = wants.iter().find(|want| want.path.is_empty()).map(|want| want.slots);
         Ok(match base {
             Base::Number(primitive) => Node::Number(*primitive, slots.map(|slots| slots[0])),
-            Base::Text => Node::Text,
+            Base::Text => Node::Text(slots.map(|slots| slots[0])),
             Base::WideText => {
                 self.is_wide = true;
                 Node::WideText

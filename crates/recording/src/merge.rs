@@ -6,15 +6,16 @@ use crate::{
     Channel, Error, Ignored, Labels, Recording, Repair, Run, Sign,
     align::{Between, interpolate_within},
     clock_offset, drawn, gap,
-    map::{Place, Target},
+    map::Target,
     meter,
     namespace::{self, Others},
-    own_clocks, publishers,
+    own_clocks, packs, publishers,
     rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
     rows::check_steps,
-    stream::Stream,
+    stream::{Samples, Stream},
+    stuck_part,
     topic::{Topic, Topics},
 };
 
@@ -33,15 +34,8 @@ impl Topics<'_> {
                 continue;
             }
             let messages = topic.samples.messages();
-            let mut stream = topic.samples.into_stream(&topic.name, self.map.stamp, &mut self.repairs)?;
-            let t_s = stream.t_s(stream.t_ns.first().copied().unwrap_or(0));
-            for (column, (index, _)) in stream.columns.iter_mut().zip(&topic.sources) {
-                let source = &self.map.sources[*index];
-                if source.derivative {
-                    source.check_wraps(*index, column)?;
-                    *column = rates(&t_s, column, source.wraps_at);
-                }
-            }
+            let mut stream = self.stream(&topic.name, topic.samples, (&topic.sources, &topic.widths))?;
+            self.combine(&topic.name, (&topic.sources, &topic.widths), &mut stream)?;
             let is_wheel = |(source, _): &(usize, usize)| self.map.sources[*source].target.is_wheel_speed();
             let wheels: Vec<bool> = topic.sources.iter().map(is_wheel).collect();
             self.repairs.extend(publishers::leave_zeros_out(&topic.name, &mut stream, &wheels));
@@ -88,6 +82,57 @@ impl Topics<'_> {
         Reading::finish(part, name, Some(self.map), &looks).map_err(|error| error.with_unread(unread))
     }
 
+    /// The samples of a topic in the order of their clock, those of several packs together.
+    fn stream(
+        &mut self,
+        topic: &str,
+        samples: Samples,
+        (sources, widths): (&[(usize, usize)], &[usize]),
+    ) -> Result<Stream, Error> {
+        let packs = packs::apart(samples);
+        let of_pack = |pack: Samples| pack.into_stream(topic, self.map.stamp, &mut self.repairs);
+        let streams = packs.into_iter().map(of_pack).collect::<Result<Vec<_>, _>>()?;
+        let of_source = |((index, _), width): (&(usize, usize), &usize)| {
+            std::iter::repeat_n(&self.map.sources[*index].target, *width)
+        };
+        let targets: Vec<&Target> = sources.iter().zip(widths).flat_map(of_source).collect();
+        let (stream, told) = packs::together(topic, &targets, streams, self.map);
+        self.repairs.extend(told);
+        Ok(stream)
+    }
+
+    /// Makes one column of those that a source has, rates of positions among them.
+    fn combine(
+        &mut self,
+        topic: &str,
+        (sources, widths): (&[(usize, usize)], &[usize]),
+        stream: &mut Stream,
+    ) -> Result<(), Error> {
+        let t_s = stream.t_s(stream.t_ns.first().copied().unwrap_or(0));
+        let mut columns = std::mem::take(&mut stream.columns).into_iter();
+        for ((index, _), width) in sources.iter().zip(widths) {
+            let source = &self.map.sources[*index];
+            let mut parts: Vec<Vec<f64>> = columns.by_ref().take(*width).collect();
+            let lone = stuck_part::lone_of_columns(&parts);
+            if source.derivative {
+                for part in &mut parts {
+                    source.check_wraps(*index, part)?;
+                    *part = rates(&t_s, part, source.wraps_at);
+                }
+            }
+            let mut column = match parts.as_slice() {
+                [_] => parts.swap_remove(0),
+                _ => source.combine.of_rows(&parts),
+            };
+            let speed_mps = column.clone();
+            let names =
+                source.place.names().iter().map(|field| format!("{topic} {field}")).collect::<Vec<_>>();
+            self.repairs.extend(stuck_part::leave_out(&t_s, &lone, &speed_mps, &names, &mut column));
+            stream.columns.push(column);
+        }
+        Ok(())
+    }
+
     fn refuse_or_tell(&mut self, topic: &Topic, reason: &str) -> Result<(), Error> {
         if topic.samples.log_ns.is_empty() {
             return Err(Error::Undecodable {
@@ -116,7 +161,7 @@ impl Topics<'_> {
                 let taken = chosen.iter().any(|(other, ..)| self.map.sources[*other].target == source.target);
                 let holds = named.stream.columns[column].iter().any(|value| !value.is_nan());
                 if let Some(reason) = other.and_then(|other| other.why_not(&named.topic)) {
-                    let name = format!("{}, {}", named.topic, fields(&source.place));
+                    let name = format!("{}, {}", named.topic, source.place.names().join(", "));
                     self.ignored.push(Ignored { name, reason });
                     continue;
                 }
@@ -128,7 +173,7 @@ impl Topics<'_> {
                     (true, true) => "an earlier source gives the same channel",
                     (false, _) => "it holds no number",
                 };
-                let name = format!("{}, {}", named.topic, fields(&source.place));
+                let name = format!("{}, {}", named.topic, source.place.names().join(", "));
                 self.ignored.push(Ignored { name, reason: reason.into() });
             }
         }
@@ -197,7 +242,7 @@ impl Topics<'_> {
             }
             match &source.target {
                 Target::Channel(channel) => {
-                    let from = format!("{} {}", named.topic, fields(&source.place));
+                    let from = format!("{} {}", named.topic, source.place.names().join(", "));
                     report.channels.push(ChannelReport::new(*channel, from, source.unit.clone()));
                     recording.channels.insert(*channel, values);
                 }
@@ -240,13 +285,6 @@ pub(crate) struct Named {
 impl Named {
     pub(crate) fn new(topic: String, stream: Stream) -> Named {
         Named { topic, sources: Vec::new(), stream, step_s: 0.1 }
-    }
-}
-
-fn fields(place: &Place) -> String {
-    match place {
-        Place::Topic { fields, .. } => fields.join(", "),
-        Place::Columns(names) => names.join(", "),
     }
 }
 

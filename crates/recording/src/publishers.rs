@@ -52,7 +52,7 @@ mod tests {
 
     fn stream(speed_mps: &[f64]) -> Stream {
         let ns: Vec<i64> = (1..=speed_mps.len() as i64).map(|i| i * 50_000_000).collect();
-        let mut samples = Samples::new(std::iter::empty());
+        let mut samples = Samples::new(std::iter::empty(), false);
         (samples.log_ns, samples.stamp_ns, samples.columns) = (ns.clone(), ns, vec![speed_mps.to_vec()]);
         samples.into_stream("/joints", crate::Stamp::Header, &mut Vec::new()).unwrap()
     }

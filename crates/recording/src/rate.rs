@@ -27,6 +27,21 @@ pub(crate) fn rates(t_s: &[f64], positions: &[f64], wraps_at: Option<f64>) -> Ve
     rates
 }
 
+/// Positions of a counter that goes on where it begins again.
+pub(crate) fn unwrapped(positions: &[f64], wraps_at: f64) -> Vec<f64> {
+    let (mut last, mut turns) = (f64::NAN, 0.0);
+    let mut go_on = |position: f64| {
+        if !position.is_nan() {
+            if !last.is_nan() {
+                turns -= ((position - last) / wraps_at).round();
+            }
+            last = position;
+        }
+        position + wraps_at * turns
+    };
+    positions.iter().map(|position| go_on(*position)).collect()
+}
+
 /// A counter's value that it cannot have, where it begins again before: those of a counter from zero lie below `wraps_at`, and those of one with
 /// a sign within half of it.
 pub(crate) fn beyond_wrap(positions: &[f64], wraps_at: f64) -> Option<f64> {
@@ -40,6 +55,13 @@ pub(crate) fn beyond_wrap(positions: &[f64], wraps_at: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_counter_goes_on_where_it_begins_again() {
+        let nan = f64::NAN;
+        let on = unwrapped(&[8.0, 9.0, nan, 1.0, 9.0, 8.0], 10.0);
+        assert_eq!([on[0], on[1], on[3], on[4], on[5]], [8.0, 9.0, 11.0, 9.0, 8.0]);
+    }
 
     #[test]
     fn an_even_motion_has_its_rate_everywhere_across_holes_and_wraps() {

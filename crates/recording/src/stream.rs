@@ -35,12 +35,14 @@ pub(crate) struct Samples {
     pub(crate) columns: Vec<Vec<f64>>,
     /// Where a column's numbers begin again, as headings do.
     periods: Vec<Option<f64>>,
+    /// Whether the last column tells which pack a message is of.
+    has_packs: bool,
     /// How a message stands for several of the file.
     coarse: Coarse,
 }
 
 /// Samples in increasing order of time.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Stream {
     pub(crate) t_ns: Vec<i64>,
     pub(crate) columns: Vec<Vec<f64>>,
@@ -52,11 +54,32 @@ pub(crate) struct Stream {
 }
 
 impl Samples {
-    /// None yet, of these sources.
-    pub(crate) fn new<'m>(sources: impl Iterator<Item = &'m Source>) -> Samples {
+    /// None yet, of these sources, and where asked of the pack that each message is of.
+    pub(crate) fn new<'m>(sources: impl Iterator<Item = &'m Source>, has_packs: bool) -> Samples {
         let heading = |source: &Source| source.target == Target::Channel(Channel::Heading);
-        let periods: Vec<Option<f64>> = sources.map(|source| heading(source).then_some(TAU)).collect();
-        Samples { columns: vec![Vec::new(); periods.len()], periods, ..Samples::default() }
+        let of_sources = sources.map(|source| heading(source).then_some(TAU));
+        let periods: Vec<Option<f64>> = of_sources.chain(has_packs.then_some(None)).collect();
+        Samples { columns: vec![Vec::new(); periods.len()], periods, has_packs, ..Samples::default() }
+    }
+
+    /// Which pack each message is of, where that was asked for.
+    pub(crate) fn take_packs(&mut self) -> Option<Vec<f64>> {
+        let asked = std::mem::take(&mut self.has_packs);
+        self.periods.truncate(self.periods.len() - usize::from(asked));
+        if asked { self.columns.pop() } else { None }
+    }
+
+    /// Some of the messages.
+    pub(crate) fn picked(&self, rows: &[usize]) -> Samples {
+        let of = |ns: &[i64]| rows.iter().filter_map(|row| ns.get(*row).copied()).collect();
+        let columns = self.columns.iter().map(|column| rows.iter().map(|row| column[*row]).collect());
+        Samples {
+            log_ns: of(&self.log_ns),
+            stamp_ns: of(&self.stamp_ns),
+            columns: columns.collect(),
+            periods: self.periods.clone(),
+            ..Samples::default()
+        }
     }
 
     /// Messages of the file that it holds.
@@ -82,11 +105,13 @@ impl Samples {
     fn join(&mut self, most: usize) -> bool {
         let t_s = seconds(&self.log_ns);
         let stamps = &self.stamp_ns;
+        let packs = self.columns.last().filter(|_| self.has_packs);
         // What the stamps have of jumps and late messages is to be seen later.
         let follows = |at: usize| {
             let step_ns = |ns: &[i64]| Some(ns.get(at)?.saturating_sub(*ns.get(at - 1)?));
             let apart_s = |ns: i64| ns as f64 / NS_PER_S - (t_s[at] - t_s[at - 1]);
-            step_ns(stamps).is_none_or(|ns| ns > 0 && apart_s(ns).abs() < CLOCK_JUMP_S)
+            packs.is_none_or(|packs| packs[at] == packs[at - 1])
+                && step_ns(stamps).is_none_or(|ns| ns > 0 && apart_s(ns).abs() < CLOCK_JUMP_S)
         };
         let Some(groups) = self.coarse.group(&t_s, most, follows) else { return false };
         groups.average_ns(&mut self.log_ns);

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Error, Ignored, Map, Repair,
+    Error, Ignored, Map, Repair, Source,
     beginning::Looked,
     compression::decompress_message,
     format::ZSTD_MAGIC,
     layout::Layout,
     map::Place,
+    packs,
     schema::Schema,
     stream::Samples,
     walk::Found,
@@ -45,6 +46,8 @@ pub(crate) struct Topic {
     layout: Layout,
     /// Sources of the map that it feeds, and how many values of a message each takes.
     pub(crate) sources: Vec<(usize, usize)>,
+    /// How many columns of the samples each has: one, or those of its parts.
+    pub(crate) widths: Vec<usize>,
     values: Vec<f64>,
     pub(crate) samples: Samples,
     pub(crate) bad: usize,
@@ -160,7 +163,7 @@ impl<'m> Topics<'m> {
         let mut fitting = Vec::new();
         for (index, fields) in wanted {
             let paths: Vec<&str> = fields.iter().map(String::as_str).collect();
-            match Layout::new(&definition, &paths, schema.encoding) {
+            match Layout::new(&definition, &paths, false, schema.encoding) {
                 Ok(_) => fitting.push((index, paths)),
                 Err((field, reason)) => {
                     let source = [(index, fields)];
@@ -173,7 +176,11 @@ impl<'m> Topics<'m> {
         if paths.is_empty() {
             return Ok(None);
         }
-        let layout = Layout::new(&definition, &paths, schema.encoding);
+        let is_of_packs = |(index, _): &(usize, Vec<&str>)| {
+            self.map.sources.get(*index).is_some_and(|s| packs::is_of_packs(&s.target))
+        };
+        let has_packs = fitting.iter().any(is_of_packs);
+        let layout = Layout::new(&definition, &paths, has_packs, schema.encoding);
         let layout = layout.map_err(|(field, reason)| Error::Field { topic: topic.into(), field, reason })?;
         if layout.is_standard {
             let what = format!(
@@ -187,12 +194,24 @@ impl<'m> Topics<'m> {
             type_name: schema.type_name.to_owned(),
             layout,
             sources: fitting.iter().map(|(index, paths)| (*index, paths.len())).collect(),
-            values: vec![f64::NAN; paths.len()],
-            samples: Samples::new(fitting.iter().filter_map(|(index, _)| self.map.sources.get(*index))),
+            widths: fitting.iter().map(|(index, paths)| self.width(*index, paths.len())).collect(),
+            values: vec![f64::NAN; paths.len() + usize::from(has_packs)],
+            samples: {
+                let columns = fitting.iter().flat_map(|(index, paths)| {
+                    let width = self.width(*index, paths.len());
+                    self.map.sources.get(*index).into_iter().cycle().take(width)
+                });
+                Samples::new(columns, has_packs)
+            },
             bad: 0,
             first_bad: None,
         });
         Ok(Some(self.topics.len() - 1))
+    }
+
+    /// Columns that a source has until all messages are read: encoders of a side are looked at one by one.
+    fn width(&self, index: usize, fields: usize) -> usize {
+        if self.map.sources.get(index).is_some_and(Source::is_mean_of_wheels) { fields } else { 1 }
     }
 
     /// A topic named outright must be readable; one found through `*` may be something else of the same name.
@@ -242,12 +261,22 @@ impl<'m> Topics<'m> {
         if let Some(stamp_ns) = stamp_ns {
             topic.samples.stamp_ns.push(stamp_ns);
         }
-        let mut values = topic.values.iter();
-        for (column, (source, count)) in topic.samples.columns.iter_mut().zip(&topic.sources) {
+        let (mut values, mut columns) = (topic.values.iter(), topic.samples.columns.iter_mut());
+        for ((source, count), width) in topic.sources.iter().zip(&topic.widths) {
             let Some(source) = self.map.sources.get(*source) else { continue };
-            let value = source.combine.of(values.by_ref().take(*count).copied(), source.separation_m);
-            column.push(source.conversion.apply(value));
+            if *width > 1 {
+                let parts = values.by_ref().take(*count);
+                columns
+                    .by_ref()
+                    .zip(parts)
+                    .for_each(|(column, part)| column.push(source.conversion.apply(*part)));
+            } else if let Some(column) = columns.next() {
+                let value = source.combine.of(values.by_ref().take(*count).copied(), source.separation_m);
+                column.push(source.conversion.apply(value));
+            }
         }
+        // Which pack it is of.
+        columns.zip(values).for_each(|(column, value)| column.push(*value));
         self.numbers += topic.samples.width();
         if self.numbers < self.budget.room.numbers() { Ok(()) } else { self.make_room() }
     }

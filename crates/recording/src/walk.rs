@@ -3,13 +3,15 @@
 use crate::{
     cursor::{Cursor, Short},
     definition::Primitive,
+    packs,
 };
 
 /// One step: over bytes, into a slot, or through what they contain.
 #[derive(Clone, Debug)]
 pub(crate) enum Node {
     Number(Primitive, Option<usize>),
-    Text,
+    /// A text, of which a number that stands for it may be wanted.
+    Text(Option<usize>),
     WideText,
     /// Seconds and nanoseconds; wanted together.
     Time(Option<[usize; 2]>),
@@ -54,7 +56,12 @@ impl Node {
                 found.keep(*slot, value);
                 Ok(())
             }
-            Node::Text => cursor.text().map(|_| ()),
+            Node::Text(None) => cursor.text().map(|_| ()),
+            Node::Text(Some(slot)) => {
+                let text = cursor.text()?;
+                found.keep(*slot, packs::number(text));
+                Ok(())
+            }
             Node::WideText => {
                 found.is_guess |= cursor.wide_text()?;
                 Ok(())
@@ -122,7 +129,7 @@ impl Node {
             if found.wanted == 0 {
                 return Ok(());
             }
-            if let (Node::Text, false) = (element, keys.is_empty()) {
+            if let (Node::Text(_), false) = (element, keys.is_empty()) {
                 let text = cursor.text()?;
                 for (_, key) in keys.iter().filter(|(looked_for, _)| looked_for.as_bytes() == text) {
                     found.keys[*key] = Some(place);
@@ -147,7 +154,7 @@ impl Node {
             Node::Array { count, element, .. } => {
                 *count == Some(0) || (count.is_some() && element.is_empty())
             }
-            Node::Number(..) | Node::Text | Node::WideText | Node::Time(_) => false,
+            Node::Number(..) | Node::Text(_) | Node::WideText | Node::Time(_) => false,
         }
     }
 }

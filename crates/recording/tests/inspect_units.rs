@@ -61,20 +61,25 @@ fn times_of_any_common_clock_are_written_with_their_unit() {
 }
 
 #[test]
-fn times_in_two_columns_are_refused_with_what_to_write() {
-    let path = table(
-        "secs",
-        &[
-            ("secs", &|t_s| format!("{}", 1_700_000_000 + t_s as i64)),
-            ("nsecs", &|t_s| format!("{}", (1e9 * t_s.fract()).round() as i64)),
-            ("vel_left", &speed),
-            ("vel_right", &speed),
-            ("power", &power),
-        ],
-    );
-    let message = inspect(&path).unwrap_err().to_string();
-    fs::remove_file(&path).unwrap();
-    assert!(message.contains("secs + 1e-9 nsecs"), "{message}");
+fn times_in_two_columns_are_read_together() {
+    // Two stamps, of which those of one message belong together; the other's nanoseconds are not beside its seconds.
+    for [whole, parts] in [["secs", "nsecs"], ["header.stamp.sec", "header.stamp.nanosec"]] {
+        let path = table(
+            "secs",
+            &[
+                ("other_nsecs", &|_| "7".to_owned()),
+                (whole, &|t_s| format!("{}", 1_700_000_000 + t_s as i64)),
+                (parts, &|t_s| format!("{}", (1e9 * t_s.fract()).round() as i64)),
+                ("vel_left", &speed),
+                ("vel_right", &speed),
+                ("power", &power),
+            ],
+        );
+        let (reading, said) = read(&path);
+        assert!((reading.recording.duration_s() - 39.9).abs() < 1e-3, "{said}");
+        let steps = reading.recording.t_s.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(steps.into_iter().all(|step_s| (step_s - 0.1).abs() < 1e-6), "{said}");
+    }
 }
 
 #[test]

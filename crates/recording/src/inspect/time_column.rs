@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::guess::time_unit;
 use crate::{Error, Map, Recording, TimeError, reading::read_part};
@@ -11,6 +11,8 @@ use crate::{Error, Map, Recording, TimeError, reading::read_part};
 pub(super) struct TimeColumn {
     pub(super) name: String,
     pub(super) unit: &'static str,
+    /// The source of a map that reads it.
+    pub(super) source: Value,
     pub(super) reason: String,
     pub(super) recording: Recording,
 }
@@ -31,7 +33,7 @@ pub(super) fn time_column(path: &Path, names: &[String]) -> Result<Option<TimeCo
     }
     match first_error {
         None => Ok(None),
-        Some(error) => Err(in_two_columns(names).unwrap_or(error)),
+        Some(error) => of_two_columns(path, names).unwrap_or(Err(error)).map(Some),
     }
 }
 
@@ -43,7 +45,8 @@ fn read_in(path: &Path, name: &str, named: Option<&'static str>) -> Result<TimeC
     };
     let column = |unit, reason: &str, recording| {
         let (name, reason) = (name.to_owned(), reason.to_owned());
-        TimeColumn { name, unit, reason, recording }
+        let source = json!({"channel": "t_s", "column": name, "unit": unit});
+        TimeColumn { name, unit, source, reason, recording }
     };
     // Seconds that a map names are believed; here the numbers have to show them.
     let by_name = of(named.filter(|unit| *unit != "s"));
@@ -83,16 +86,26 @@ fn time_error(error: &Error) -> Option<&TimeError> {
     }
 }
 
-/// The refusal of a time that two columns tell together, as `secs` and `nsecs` of ROS 1.
-fn in_two_columns(names: &[String]) -> Option<Error> {
-    let ends = |name: &&String, ending: &[&str]| {
+/// The time that two columns tell together, as `secs` and `nsecs` of a ROS stamp; `None` where there are no such two.
+fn of_two_columns(path: &Path, names: &[String]) -> Option<Result<TimeColumn, Error>> {
+    let split = |name: &str| -> (String, String) {
         let lower = name.to_lowercase();
-        ending.iter().any(|ending| lower.rsplit(['.', '_', '/', ' ']).next() == Some(*ending))
+        let at = lower.rfind(['.', '_', '/', ' ']).map_or(0, |at| at + 1);
+        (lower[..at].to_owned(), lower[at..].to_owned())
     };
-    let whole = names.iter().find(|name| ends(name, &["secs", "sec"]))?;
-    let parts = names.iter().find(|name| ends(name, &["nsecs", "nsec", "nanosec"]))?;
-    let reason = format!(
-        "it tells time together with `{parts}`, and a map names one column; write {whole} + 1e-9 {parts} as a column `t_s`"
-    );
-    Some(Error::Field { topic: "of the table".into(), field: whole.clone(), reason })
+    let ends = |endings: &'static [&str]| move |name: &&String| endings.contains(&split(name).1.as_str());
+    // Of several stamps those of one message belong together.
+    let pair = names.iter().filter(ends(&["secs", "sec"])).find_map(|whole| {
+        let is_beside = |part: &&String| split(part).0 == split(whole).0;
+        let parts = names.iter().filter(ends(&["nsecs", "nsec", "nanosecs", "nanosec"])).find(is_beside)?;
+        Some([whole.clone(), parts.clone()])
+    })?;
+    let source = json!({"channel": "t_s", "columns": pair, "combine": "seconds_and_nanoseconds"});
+    let read = || {
+        let map = Map::from_value(&json!({"name": "inspected", "sources": [source]}))?;
+        let recording = read_part(path, &map)?;
+        let reason = "whole seconds and nanoseconds beside them, by their names".to_owned();
+        Ok(TimeColumn { name: pair.join(", "), unit: "s", source: source.clone(), reason, recording })
+    };
+    Some(read())
 }

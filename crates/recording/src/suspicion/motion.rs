@@ -4,18 +4,15 @@ use std::f64::consts::{PI, TAU};
 
 use super::LEAST_ROWS;
 use crate::{
-    Channel, Recording, Run,
+    Channel, Recording, Run, STANDS_MPS,
     report::{Suspicion, SuspicionKind as Kind},
 };
-
-/// A wheel whose rim is slower than this stands still \[m/s\]: twice the step of the Husky's encoder speeds (0.0079 m/s).
-const STANDSTILL_MPS: f64 = 0.016;
 
 /// Rows whose sign is opposed to both neighbours of the same magnitude, which no body with inertia does.
 pub(super) fn lone_flips(values: &[f64]) -> Option<String> {
     /// How nearly equal the magnitudes are.
     const LIKENESS: f64 = 0.2;
-    let like = |a: f64, b: f64| (a + b).abs() < LIKENESS * b.abs() && a.abs() > 5.0 * STANDSTILL_MPS;
+    let like = |a: f64, b: f64| (a + b).abs() < LIKENESS * b.abs() && a.abs() > 5.0 * STANDS_MPS;
     let flips = values.windows(3).filter(|w| like(w[0], w[1]) && like(w[2], w[1])).count();
     (flips > 0).then(|| format!("its sign flips for {flips} single rows"))
 }
@@ -148,7 +145,7 @@ pub(super) fn turning(recording: &Recording, run: &Run) -> Option<Suspicion> {
 
 /// Whether a sum or difference of two rims is more than that of rims that stand, which only adds the sensor's noise.
 fn turns(speed_mps: f64) -> bool {
-    speed_mps.abs() > 2.0 * STANDSTILL_MPS
+    speed_mps.abs() > 2.0 * STANDS_MPS
 }
 
 /// The share of the variance of rates that speeds explain, and the track that they mean \[m\].
@@ -173,8 +170,8 @@ pub(super) fn unsigned(recording: &Recording) -> Vec<Suspicion> {
         else {
             continue;
         };
-        let backwards = speed_mps.iter().filter(|v| **v < -STANDSTILL_MPS).count();
-        let forwards = speed_mps.iter().filter(|v| **v > STANDSTILL_MPS).count();
+        let backwards = speed_mps.iter().filter(|v| **v < -STANDS_MPS).count();
+        let forwards = speed_mps.iter().filter(|v| **v > STANDS_MPS).count();
         if backwards >= LEAST_ROWS && forwards >= LEAST_ROWS && !current_a.iter().any(|i| *i < 0.0) {
             let statement =
                 format!("it is never negative, although the wheels turn backwards in {backwards} rows");

@@ -66,8 +66,11 @@ fn mcap_records(of: Type<'_>, messages: &[(u64, Vec<u8>)]) -> (Vec<u8>, Vec<u8>)
     ([record(3, &schema.concat()), record(4, &channel.concat())].concat(), records)
 }
 
+/// Time and bytes of messages.
+pub(crate) type Messages = [(u64, Vec<u8>)];
+
 /// A whole MCAP file of these topics, each of one type: (topic, type, messages).
-pub(crate) fn mcap_of_topics(topics: &[(&str, Type<'_>, &[(u64, Vec<u8>)])]) -> Vec<u8> {
+pub(crate) fn mcap_of_topics(topics: &[(&str, Type<'_>, &Messages)]) -> Vec<u8> {
     let mut records = Vec::new();
     for (id, (topic, of, messages)) in (1u16..).zip(topics) {
         let id = id.to_le_bytes();
