@@ -89,6 +89,7 @@ mod search {
 pub mod report {
     pub(crate) mod about_simulation;
     pub(crate) mod assumed;
+    pub(crate) mod constants;
     pub(crate) mod corrected;
     pub(crate) mod detectable;
     pub(crate) mod diagnosis;

@@ -59,6 +59,7 @@ pub use lattice::{
     step::Step,
 };
 pub use path::{
+    between::{Most, Stances, stances},
     coarse::{HiddenRelief, hidden_relief, is_coarse},
     room::least_room_m,
     route::{Pose, Route},

@@ -9,6 +9,7 @@ use crate::{
     observe::observations::Observations,
     report::{
         assumed::{assumed, farthest, strays},
+        constants::constants,
         corrected::corrected,
         detectable::{detectable, untold},
         diagnosis::{
@@ -65,10 +66,12 @@ pub(crate) fn document(subject: &Subject<'_>, found: &Found) -> Result<Diagnosis
     let first = found.explanations.first().filter(|one| !one.names.is_empty() || one.unlisted);
     let first = first.filter(|_| !findings.is_empty());
     let applied: Vec<Applied> = first.map_or(&[][..], members).iter().map(Member::applied).collect();
+    let constants = constants(subject, found, first, &applied)?;
     let (corrected_robot, of_corrected) =
-        corrected(&fitted_robot(file, found, first), &applied, &observed.series.surfaces(), subject.drives);
+        corrected(&constants.robot, &applied, &observed.series.surfaces(), subject.drives);
     let mut notes = subject.doubts.to_vec();
     notes.extend(of_corrected);
+    notes.push(constants.note);
     notes.extend(farthest(first.map_or(&[][..], members)));
     notes.extend(assumed(file, observed, found));
     notes.extend(untold(&found.detectable, &observed.covered(0..observed.rows()), file));
@@ -144,13 +147,6 @@ pub(crate) fn shared_findings(observed: &Observations<'_>, drives: &[String], fo
         blocks: &found.blocks,
     };
     reading.findings()
-}
-
-/// The robot at its parameters beside an explanation, or beside nothing.
-fn fitted_robot(file: &Robot, found: &Found, explanation: Option<&Explanation>) -> Robot {
-    let nothing = found.explanations.iter().find(|one| one.names.is_empty());
-    let fitted = explanation.or(nothing).and_then(|one| one.fitted.as_ref());
-    fitted.map_or_else(|| file.clone(), |fitted| found.baseline.parameters.placed(file, &fitted.u))
 }
 
 fn figures(explanation: &Explanation) -> ExplanationFigures {

@@ -67,6 +67,12 @@ impl Ground {
         self.stance.body.is_some()
     }
 
+    /// How far the ground under the body may rise above the plane of the wheels, with room for the noise of heights, whatever the cells [m].
+    pub(crate) fn allowed_above_m(&self, terrain: &Terrain) -> f64 {
+        let room_for_noise_m = if self.has_body() { 0.0 } else { noise::highest_m(terrain) };
+        f64::from(self.most_above_m) + room_for_noise_m
+    }
+
     /// How far from a cell lies the ground that it depends on [cells].
     pub(crate) fn reach(&self) -> usize {
         self.stance.reach

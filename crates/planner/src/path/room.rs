@@ -10,7 +10,7 @@ use crate::{
         primitive::Piece,
         swept::{Rectangle, SweptPiece},
     },
-    path::route::{Pose, Route},
+    path::route::Route,
     patience::{Patience, work},
 };
 
@@ -29,7 +29,9 @@ pub fn least_room_m(lattice: &Lattice, route: &Route, patience: &Patience) -> Op
     let farthest_m = f64::from(Clearance::FARTHEST) * grid.cell_size_m - half_diagonal_m;
     let mut least_m = farthest_m.max(0.0);
     let mut pacer = patience.pacer();
-    for piece in pieces(&route.poses) {
+    let poses: Vec<[f64; 3]> =
+        route.poses.iter().map(|pose| [pose.x_m, pose.y_m, pose.heading_rad]).collect();
+    for piece in pieces(&poses) {
         pacer.after(work::STATE)?;
         let [x_m, y_m, _] = piece.pose_at(0.5);
         let Some(cell) = grid.cell_at(x_m, y_m) else { continue };
@@ -58,17 +60,17 @@ pub fn least_room_m(lattice: &Lattice, route: &Route, patience: &Patience) -> Op
 }
 
 /// The straights, arcs and turns on the spot between poses, in the map's metres; of a route of one pose a stand on the spot.
-fn pieces(poses: &[Pose]) -> Vec<Piece> {
+pub(crate) fn pieces(poses: &[[f64; 3]]) -> Vec<Piece> {
     /// Turn below which a piece is straight [rad]: its bulge is far below a micrometre.
     const STRAIGHT_RAD: f64 = 1e-9;
-    let between = |from: &Pose, to: &Pose| {
-        let (dx_m, dy_m) = (to.x_m - from.x_m, to.y_m - from.y_m);
-        let turned_rad = turn_rad(from.heading_rad, to.heading_rad);
+    let between = |&[x_m, y_m, heading_rad]: &[f64; 3], to: &[f64; 3]| {
+        let (dx_m, dy_m) = (to[0] - x_m, to[1] - y_m);
+        let turned_rad = turn_rad(heading_rad, to[2]);
         let turn_rad = if turned_rad.abs() < STRAIGHT_RAD { 0.0 } else { turned_rad };
         let (chord_m, half_rad) = (dx_m.hypot(dy_m), turn_rad / 2.0);
-        let start_m = [from.x_m, from.y_m];
+        let start_m = [x_m, y_m];
         if chord_m == 0.0 {
-            return Piece { start_m, heading_rad: from.heading_rad, length_m: 0.0, turn_rad };
+            return Piece { start_m, heading_rad, length_m: 0.0, turn_rad };
         }
         // A chord lies half the turn off the direction of travel at its ends.
         let length_m = if turn_rad == 0.0 { chord_m } else { chord_m * half_rad / half_rad.sin() };

@@ -5,6 +5,7 @@ mod driven_path;
 mod limits;
 mod planners;
 mod request;
+mod stance;
 mod steering;
 mod time;
 mod unknown_ground;

@@ -236,7 +236,7 @@ impl PlanAnswer {
             reached_goal: request.goals.as_ref().map(|_| plan.goal),
             ..PlanAnswer::from(plan)
         };
-        answer.warned(planner, request)
+        answer.warned(planner, request, patience)
     }
 }
 

@@ -1,10 +1,10 @@
 //! What is doubtful about a path because of the map it lies on and of the robot that takes it.
 
 use model::{Robot, worth::remedy};
-use planner::{Lattice, Planner, is_coarse, surface_names};
+use planner::{Lattice, Patience, Planner, is_coarse, surface_names};
 use terrain::{Terrain, Warning, WarningKind};
 
-use super::{PlanAnswer, PlanRequest, PoseAnswer};
+use super::{PlanAnswer, PlanRequest, PoseAnswer, stance};
 
 /// Doubts about a planner's map that hold for every path over it.
 pub(crate) fn map_warnings(planner: &Planner) -> Vec<Warning> {
@@ -15,7 +15,7 @@ pub(crate) fn map_warnings(planner: &Planner) -> Vec<Warning> {
 
 impl PlanAnswer {
     /// The answer with its place on earth and doubts about the map and about this path over it.
-    pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest) -> Self {
+    pub(crate) fn warned(self, planner: &Planner, request: &PlanRequest, patience: &Patience) -> Self {
         let lattice = planner.lattice();
         let mut answer = self.placed(&lattice.terrain);
         answer.warnings = map_warnings(planner);
@@ -27,6 +27,7 @@ impl PlanAnswer {
             borrowed_constants(lattice),
         ];
         answer.warnings.extend(own.into_iter().flatten());
+        answer.warnings.extend(stance::between_poses(&answer, lattice, patience));
         answer
     }
 }

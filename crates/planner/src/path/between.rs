@@ -1,0 +1,191 @@
+//! How the robot stands between the poses of a path.
+//!
+//! Motions are weighed by the ground at the centres of cells and at the nearest of sixteen headings. Here a path is followed as it is driven:
+//! the same wheels and the same outline as in [`crate::ground::stance`], but at any place and heading. Heights lie on the bilinear surface
+//! through the centres of cells.
+
+use terrain::{Cell, Terrain};
+
+use crate::{
+    ground::footprint::Footprint,
+    lattice::graph::Lattice,
+    path::room::pieces,
+    patience::{Patience, work},
+};
+
+/// Places across a tyre's contact, and along and across the outline, at which the ground is looked at.
+const ACROSS_TYRE: usize = 3;
+const ACROSS_OUTLINE: usize = 7;
+/// Places along a path, of a wheelbase and of a cell: nothing that the wheels meet is shorter than a tyre, a third of a wheelbase.
+const OF_WHEELBASE: f64 = 0.25;
+const OF_CELL: f64 = 0.5;
+
+/// The most of something along a path, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Most {
+    /// How much.
+    pub value: f64,
+    /// East and north [m].
+    pub at_m: [f64; 2],
+}
+
+/// How the robot stands along a path at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stances {
+    /// Size of the pitch of the plane of its wheels [rad].
+    pub pitch_rad: Most,
+    /// Size of its roll [rad].
+    pub roll_rad: Most,
+    /// Height of the ground under its outline above that plane [m].
+    pub above_m: Most,
+    /// Height up to which ground is let pass there: the robot's clearance, widened by the noise of the map's heights [m].
+    pub allowed_above_m: f64,
+    /// Steepness of the plane over the friction by which the ground there holds the robot, μ_S: beyond 1 it slides [-].
+    pub over_grip: Most,
+}
+
+/// How the robot stands along the straights, arcs and turns between some poses of x, y \[m\] and heading \[rad\], where the ground under all of
+/// its wheels is known. `None` when patience ends first, or where it is known nowhere.
+pub fn stances(lattice: &Lattice, poses: &[[f64; 3]], patience: &Patience) -> Option<Stances> {
+    let robot = &lattice.robot;
+    let cell_size_m = lattice.terrain.grid.cell_size_m;
+    let step_m = (OF_WHEELBASE * robot.wheelbase_m)
+        .min(OF_CELL * cell_size_m)
+        .max(OF_WHEELBASE * Footprint::tyre_width_m(robot));
+    let half_diagonal_m = robot.wheelbase_m.hypot(robot.track_m) / 2.0;
+    let wheels = Wheels::of(lattice);
+    let mut most: Option<Stances> = None;
+    let mut pacer = patience.pacer();
+    for piece in pieces(poses) {
+        // On the spot the wheels go round their middle.
+        let way_m = piece.length_m.max(half_diagonal_m * piece.turn_rad.abs());
+        let count = (way_m / step_m).ceil().max(1.0) as usize;
+        for i in 0..=count {
+            pacer.after(wheels.work())?;
+            let pose = piece.pose_at(i as f64 / count as f64);
+            if let Some(stance) = wheels.stance(pose) {
+                most = Some(most.map_or(stance, |most| most.or(&stance)));
+            }
+        }
+    }
+    most
+}
+
+impl Stances {
+    fn or(&self, other: &Stances) -> Stances {
+        let most = |one: Most, other: Most| if other.value > one.value { other } else { one };
+        Stances {
+            pitch_rad: most(self.pitch_rad, other.pitch_rad),
+            roll_rad: most(self.roll_rad, other.roll_rad),
+            above_m: most(self.above_m, other.above_m),
+            allowed_above_m: self.allowed_above_m,
+            over_grip: most(self.over_grip, other.over_grip),
+        }
+    }
+}
+
+/// The wheels and the outline of a robot over its map.
+struct Wheels<'l> {
+    lattice: &'l Lattice,
+    outline: Footprint,
+    allowed_above_m: f64,
+}
+
+impl<'l> Wheels<'l> {
+    fn of(lattice: &'l Lattice) -> Self {
+        let (ground, outline) = (&lattice.ground, Footprint::of(&lattice.robot));
+        Wheels { lattice, outline, allowed_above_m: ground.allowed_above_m(&lattice.terrain) }
+    }
+
+    /// Cells that a stance is read from.
+    fn work(&self) -> u64 {
+        (4 * ACROSS_TYRE * ACROSS_TYRE + ACROSS_OUTLINE * ACROSS_OUTLINE) as u64 * work::CELL
+    }
+
+    /// How it stands in a pose; `None` where the ground under a wheel is not known.
+    fn stance(&self, [x_m, y_m, heading_rad]: [f64; 3]) -> Option<Stances> {
+        let (robot, terrain) = (&self.lattice.robot, &self.lattice.terrain);
+        let (sin, cos) = heading_rad.sin_cos();
+        let ground_m = |ahead_m: f64, left_m: f64| {
+            height_m(terrain, [x_m + ahead_m * cos - left_m * sin, y_m + ahead_m * sin + left_m * cos])
+        };
+        let (half_a_m, half_b_m) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
+        let [mut middle_m, mut along, mut left] = [0.0; 3];
+        for (front, side) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            let contact_m = mean(Footprint::tyre_width_m(robot), |dx, dy| {
+                ground_m(front * half_a_m + dx, side * half_b_m + dy)
+            })?;
+            middle_m += contact_m / 4.0;
+            along += front * contact_m / (4.0 * half_a_m);
+            left += side * contact_m / (4.0 * half_b_m);
+        }
+        let above_m = places(ACROSS_OUTLINE, self.outline.length_m)
+            .flat_map(|ahead_m| {
+                places(ACROSS_OUTLINE, self.outline.width_m).map(move |left_m| (ahead_m, left_m))
+            })
+            .filter_map(|(ahead_m, left_m)| {
+                Some(ground_m(ahead_m, left_m)? - (middle_m + along * ahead_m + left * left_m))
+            })
+            .fold(0.0, f64::max);
+        let steepness = along.hypot(left);
+        let grip = self.grip([x_m, y_m])?;
+        let at_m = [x_m, y_m];
+        let most = |value: f64| Most { value, at_m };
+        Some(Stances {
+            pitch_rad: most(along.abs().atan()),
+            roll_rad: most(left.abs().atan()),
+            above_m: most(above_m),
+            allowed_above_m: self.allowed_above_m,
+            over_grip: most(if grip > 0.0 { steepness / grip } else { 0.0 }),
+        })
+    }
+
+    /// Skid friction of the ground at a place [-].
+    fn grip(&self, [x_m, y_m]: [f64; 2]) -> Option<f64> {
+        let terrain = &self.lattice.terrain;
+        let cell = terrain.grid.cell_at(x_m, y_m)?;
+        let classes = &self.lattice.classes;
+        Some(classes.list[classes.at(terrain, cell)].surface.mu_skid)
+    }
+}
+
+/// The middles of so many equal parts of a length about 0.
+fn places(count: usize, length_m: f64) -> impl Iterator<Item = f64> + Clone {
+    (0..count).map(move |i| length_m * ((i as f64 + 0.5) / count as f64 - 0.5))
+}
+
+/// The mean over a square; `None` where any of it is not known.
+fn mean(side_m: f64, ground_m: impl Fn(f64, f64) -> Option<f64>) -> Option<f64> {
+    let mut sum_m = 0.0;
+    for dx in places(ACROSS_TYRE, side_m) {
+        for dy in places(ACROSS_TYRE, side_m) {
+            sum_m += ground_m(dx, dy)?;
+        }
+    }
+    Some(sum_m / (ACROSS_TYRE * ACROSS_TYRE) as f64)
+}
+
+/// Height of the surface through the centres of cells [m above the map's lowest]; beyond the outermost centres that of the nearest. `None`
+/// where a cell that counts is unknown.
+fn height_m(terrain: &Terrain, [x_m, y_m]: [f64; 2]) -> Option<f64> {
+    let grid = &terrain.grid;
+    let place = |at_m: f64, origin_m: f64, count: usize| -> (usize, f64) {
+        let cells = ((at_m - origin_m) / grid.cell_size_m - 0.5).clamp(0.0, (count - 1) as f64);
+        let first = (cells as usize).min(count.saturating_sub(2));
+        (first, cells - first as f64)
+    };
+    let (column, east) = place(x_m, grid.origin_m[0], grid.columns);
+    let (row, north) = place(y_m, grid.origin_m[1], grid.rows);
+    let mut sum_m = 0.0;
+    for (rows, by_row) in [(0, 1.0 - north), (1, north)] {
+        for (columns, by_column) in [(0, 1.0 - east), (1, east)] {
+            let weight = by_row * by_column;
+            if weight > 0.0 {
+                let cell = Cell { row: row + rows, column: column + columns };
+                let own_m = f64::from(terrain.relative_m()[grid.index(cell)]);
+                sum_m += (!own_m.is_nan()).then_some(weight * own_m)?;
+            }
+        }
+    }
+    Some(sum_m)
+}
