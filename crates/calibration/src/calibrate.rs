@@ -199,5 +199,6 @@ fn with_uncertainty(found: &PowerFit) -> Robot {
     robot.uncertainty.mu_skid = relative("mu_skid", u.mu_skid);
     robot.uncertainty.k1 = relative("k1_w_per_n2", u.k1);
     robot.uncertainty.k2 = relative("k2", u.k2);
+    robot.uncertainty.hotel_power_w = relative("hotel_power_w", u.hotel_power_w);
     robot
 }

@@ -421,6 +421,26 @@ mod tests {
     }
 
     #[test]
+    fn free_speeds_that_contradict_the_stall_or_the_top_speed_are_refused() {
+        let refused = |current_a, gear_ratio, no_load_speed_radps| {
+            let stall = MotorSheet::Stall {
+                torque_nm: 0.9,
+                current_a,
+                voltage_v: 24.0,
+                gear_ratio,
+                no_load_speed_radps: Some(no_load_speed_radps),
+            };
+            let drive = Drive { motors_per_side: 1, sheet: stall, gear_efficiency: Some(0.75) };
+            sheet(drive).describe().err().and_then(|error| error.field().map(str::to_owned))
+        };
+        // A bare motor of 24 V and 3000 rpm: 0.076 V s, and with 48 A only 0.019 N m/A of it.
+        assert_eq!(refused(48.0, 10.0, 314.0), Some("no_load_speed".to_owned()));
+        assert_eq!(refused(12.0, 10.0, 314.0), None);
+        // Wheels of 0.098 m that turn freely with 0.31 m/s, on a robot of 2 m/s.
+        assert_eq!(refused(12.0, 100.0, 314.0), Some("max_speed".to_owned()));
+    }
+
+    #[test]
     fn power_at_the_wheels_is_that_of_the_motors_circuit() {
         // Current, voltage and shaft by hand, against the one function that computes power.
         let drive = Drive {

@@ -1,6 +1,6 @@
 //! Robot parameters that are free, with their priors.
 
-use model::{Robot, knowledge};
+use model::{Robot, knowledge, robot::Uncertainty};
 use nalgebra::{DMatrix, DVector};
 
 /// The free parameters of a robot, whose prior is made of independent standard normal numbers u: z = M u.
@@ -41,7 +41,10 @@ enum Field {
     RightK2,
     Mass,
     Electronics,
-    Hotel,
+    /// Whether its width is that of any robot.
+    Hotel {
+        as_usual: bool,
+    },
     SlipTrack,
     LeftIdle,
     RightIdle,
@@ -135,8 +138,13 @@ impl Parameters {
 impl Parameter {
     fn of(robot: &Robot, surfaces: &[String], shown: Shown) -> Vec<Parameter> {
         let u = robot.uncertainty;
-        let sigma = |name: &str, stated: f64| {
-            robot.provenance_of(name).and_then(knowledge::Provenance::relative_sigma).unwrap_or(stated)
+        let by_source =
+            |name: &str| robot.provenance_of(name).and_then(knowledge::Provenance::relative_sigma);
+        let sigma = |name: &str, stated: f64| by_source(name).unwrap_or(stated);
+        // Of one constant alone, what a file states of it is more than what its kind of source has on the whole.
+        let default = Uncertainty::default();
+        let sigma_of_one = |name: &str, stated: f64, default: f64| {
+            if stated == default { sigma(name, stated) } else { stated }
         };
         let mut list = Vec::new();
         let mut add = |name: &str, field: Field, prior: Prior| {
@@ -161,16 +169,20 @@ impl Parameter {
             ("motors.left.k2", Field::LeftK2, u.k2),
             ("motors.right.k1_w_per_n2", Field::RightK1, u.k1),
             ("motors.right.k2", Field::RightK2, u.k2),
-            ("mass_kg", Field::Mass, u.mass_kg),
         ];
         for (name, field, stated) in constants {
             add(name, field, Prior::Log(sigma(name, stated)));
         }
-        let standing =
-            |w: f64| Prior::Linear((STANDING_SHARE * w).max(STANDING_SIGMA_W * robot.strength().max(1.0)));
-        add("drive_electronics_w", Field::Electronics, standing(robot.drive_electronics_w));
+        let mass = sigma_of_one("mass_kg", u.mass_kg, default.mass_kg);
+        add("mass_kg", Field::Mass, Prior::Log(mass));
+        let standing = |w: f64, share: f64| {
+            Prior::Linear((share.max(STANDING_SHARE) * w).max(STANDING_SIGMA_W * robot.strength().max(1.0)))
+        };
+        add("drive_electronics_w", Field::Electronics, standing(robot.drive_electronics_w, 0.0));
         if shown.battery {
-            add("hotel_power_w", Field::Hotel, standing(robot.hotel_power_w));
+            let share = sigma_of_one("hotel_power_w", u.hotel_power_w, default.hotel_power_w);
+            let as_usual = share <= STANDING_SHARE;
+            add("hotel_power_w", Field::Hotel { as_usual }, standing(robot.hotel_power_w, share));
         }
         if shown.yaw_rate {
             add("slip_track_m", Field::SlipTrack, Prior::Log(SLIP_TRACK_SIGMA));
@@ -218,7 +230,10 @@ impl Parameter {
     /// Whether its width is that of any robot, of which no file tells.
     pub(crate) fn is_as_usual(&self) -> bool {
         use Field::{Electronics, Hotel, LeftIdle, RightIdle, SlipScale, SlipTrack};
-        matches!(self.field, Electronics | Hotel | LeftIdle | RightIdle | SlipScale(_) | SlipTrack)
+        matches!(
+            self.field,
+            Electronics | Hotel { as_usual: true } | LeftIdle | RightIdle | SlipScale(_) | SlipTrack
+        )
     }
 
     /// Its width on the scale of z times one: relative for positive numbers, else in its unit.
@@ -274,7 +289,7 @@ impl Parameter {
             Field::RightK2 => &mut motors.right.k2,
             Field::Mass => &mut robot.mass_kg,
             Field::Electronics => &mut robot.drive_electronics_w,
-            Field::Hotel => &mut robot.hotel_power_w,
+            Field::Hotel { .. } => &mut robot.hotel_power_w,
             Field::SlipTrack => &mut robot.slip_track_m,
             Field::LeftIdle => motors.left.idle_current_a.get_or_insert(0.0),
             Field::RightIdle => motors.right.idle_current_a.get_or_insert(0.0),
@@ -302,6 +317,26 @@ mod tests {
             assert!((parameter.value(&moved) - parameter.value(&robot)).abs() < 1e-12, "{}", parameter.name);
         }
     }
+
+    #[test]
+    fn what_a_file_states_of_its_mass_and_standing_load_goes_before_their_source() {
+        let mut robot = model::builtin::husky_a200();
+        robot.hotel_power_w = 60.0;
+        let borrowed = |name: &str| (name.to_owned(), knowledge::Provenance::Borrowed);
+        robot.provenance = ["mass_kg", "hotel_power_w"].map(borrowed).into();
+        let shown = Shown { battery: true, yaw_rate: false, currents: false };
+        let sigmas = |robot: &Robot| {
+            let all = Parameters::of(robot, &[], shown);
+            let of = |name: &str| all.list.iter().find(|one| one.name == name).map(Parameter::sigma);
+            ["mass_kg", "hotel_power_w"].map(|name| of(name).unwrap())
+        };
+        assert_eq!(sigmas(&robot), [1.0, 60.0], "by their source where nothing is stated");
+        (robot.uncertainty.mass_kg, robot.uncertainty.hotel_power_w) = (0.07, 0.3);
+        assert_eq!(sigmas(&robot), [0.07, 18.0]);
+        robot.uncertainty.hotel_power_w = 0.05;
+        assert_eq!(sigmas(&robot)[1], 6.0, "a tenth at least: loads come and go");
+    }
+
     #[test]
     fn a_posterior_goes_before_the_uncertainty_and_keeps_what_hangs_together() {
         let mut robot = model::builtin::husky_a200();

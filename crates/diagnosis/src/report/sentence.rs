@@ -35,6 +35,7 @@ pub(crate) fn sentence(
 fn found(verdict: Verdict, findings: &[Finding], explanations: &[Explanation]) -> String {
     let named: Vec<&Finding> = findings.iter().filter(|finding| finding.mechanism != UNKNOWN).collect();
     let statements: Vec<String> = named.iter().map(|finding| stated(finding)).collect();
+    let nothing = probability(explanations).nothing;
     match verdict {
         Verdict::Consistent => consistent(explanations),
         Verdict::Ambiguous if statements.is_empty() => {
@@ -47,6 +48,10 @@ fn found(verdict: Verdict, findings: &[Finding], explanations: &[Explanation]) -
             let all: Vec<String> = findings.iter().map(|finding| finding.statement.clone()).collect();
             capital(&format!("{}.", all.join("; and ")))
         }
+        Verdict::Unexplained if statements.is_empty() && nothing >= LIKELIER_THAN_NOT => format!(
+            "Nothing of the list seems to be missing ({:.0} %), but the drives lie farther from the model than its uncertainty and noise allow: its form fits them poorly.",
+            100.0 * nothing
+        ),
         Verdict::Unexplained if statements.is_empty() => {
             "That is more than its uncertainty and noise allow, and no mechanism of the list explains it."
                 .to_owned()
@@ -143,6 +148,21 @@ mod tests {
         let likely =
             found(Verdict::Consistent, &[], &[Explanation { probability: 0.9, ..explanations[2].clone() }]);
         assert_eq!(likely, "Within its uncertainty nothing is missing.");
+    }
+
+    #[test]
+    fn a_model_that_fits_poorly_with_nothing_missing_is_said_to() {
+        let nothing = |probability: f64| Explanation {
+            names: Vec::new(),
+            unlisted: false,
+            log: 0.0,
+            fitted: None,
+            block: None,
+            probability,
+        };
+        let said = found(Verdict::Unexplained, &[], &[nothing(0.92)]);
+        assert!(said.starts_with("Nothing of the list seems to be missing (92 %), but"), "{said}");
+        assert!(found(Verdict::Unexplained, &[], &[nothing(0.1)]).starts_with("That is more than"));
     }
 
     #[test]

@@ -37,6 +37,13 @@ const SPECIFIC_POWER: f64 = 3.2;
 /// Relative one-sigma uncertainty of a k1 from it, which puts both of them one sigma off [-].
 const SPECIFIC_POWER_SIGMA: f64 = 0.80;
 
+/// U I / (ω_0 T) at most, of a bare motor and of one with its gears [-]. Without losses it is 1, since torque per ampere and volts per radian a
+/// second are one constant; what is lost by friction of brushes halves it at most, and worm gears let a quarter through.
+const MOST_BARE: f64 = 2.0;
+const MOST_GEARED: f64 = 2.0 / 0.25;
+/// Top speed over that without load at most [-]: batteries stand up to a fifth above their nominal voltage, and wheels carry tyres of other sizes.
+const MOST_OVER_FREE_SPEED: f64 = 1.5;
+
 /// Motor constants of a side with their uncertainty and reasons.
 pub(super) struct DriveConstants {
     pub(super) motor: Motor,
@@ -58,6 +65,7 @@ pub(super) struct Load {
 /// The first figure that cannot be right, by its name.
 pub(super) fn constants(drive: &Drive, load: Load) -> Result<DriveConstants, Error> {
     check(drive)?;
+    check_speed(drive, load)?;
     let k2 = k2(drive)?;
     let (k1, torque_nm_per_a) = match drive.sheet {
         MotorSheet::Constants { .. } | MotorSheet::Stall { .. } => k1_of_circuit(drive, load),
@@ -97,12 +105,13 @@ fn k2(drive: &Drive) -> Result<Constant, Error> {
     } = drive.sheet
     {
         let ratio = voltage_v * current_a / (speed_radps * torque_nm);
+        let most = if gear_ratio == 1.0 { MOST_GEARED } else { MOST_BARE };
         super::check(
             "no_load_speed",
             ratio,
             1.0,
-            20.0,
-            "its stalled torque times its free speed is more than its electrical power; give both at the same shaft, in N m and revolutions per minute",
+            most,
+            "U I / (ω_0 T) of stall and free speed is 1 of a motor without losses: below 1 it would give more than it takes, and far above not even a motor's own torque would come out; give both at the same shaft, in N m and revolutions per minute",
         )?;
         let because = format!(
             "U I / (ω_0 T η_o) of torque and current at stall and speed without load, η_o = {OTHER_EFFICIENCY} assumed of driver, brushes, iron and belts"
@@ -188,6 +197,21 @@ fn constant(
     because: String,
 ) -> Constant {
     Constant { name: name.into(), value, unit, sigma: Some(sigma), provenance, because }
+}
+
+/// Refuses a top speed that the motors' free speed does not let the wheels have.
+fn check_speed(drive: &Drive, load: Load) -> Result<(), Error> {
+    let MotorSheet::Stall { gear_ratio, no_load_speed_radps: Some(speed_radps), .. } = drive.sheet else {
+        return Ok(());
+    };
+    let free_mps = speed_radps / gear_ratio * load.wheel_radius_m;
+    super::check(
+        "max_speed",
+        load.max_wheel_speed_mps,
+        0.0,
+        MOST_OVER_FREE_SPEED * free_mps,
+        "the motors without load turn the wheels no faster: give the free speed of the shaft that the gear ratio begins at, or the robot's true top speed",
+    )
 }
 
 fn check(drive: &Drive) -> Result<(), Error> {

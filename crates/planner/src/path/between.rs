@@ -189,3 +189,69 @@ fn height_m(terrain: &Terrain, [x_m, y_m]: [f64; 2]) -> Option<f64> {
     }
     Some(sum_m)
 }
+
+#[cfg(test)]
+mod tests {
+    use model::builtin;
+    use terrain::Grid;
+
+    use super::*;
+    use crate::Settings;
+
+    /// How a Husky stands along poses over heights by column of cells of a length.
+    fn along(cell_size_m: f64, height_m: impl Fn(f64) -> f64, poses: &[[f64; 3]]) -> Stances {
+        let count = (24.0 / cell_size_m) as usize;
+        let grid = Grid { rows: count, columns: count, cell_size_m, origin_m: [0.0; 2] };
+        let at = |index: usize| height_m(((index % count) as f64 + 0.5) * cell_size_m);
+        let heights_m: Vec<f64> = (0..grid.cells()).map(at).collect();
+        let terrain = Terrain::new(grid, &heights_m).unwrap();
+        let robot = builtin::husky_a200();
+        let lattice = Lattice::new(&terrain, &robot, Settings::of(&robot)).unwrap();
+        stances(&lattice, poses, &Patience::default()).unwrap()
+    }
+
+    const ACROSS: [[f64; 3]; 2] = [[3.0, 12.0, 0.0], [21.0, 12.0, 0.0]];
+
+    #[test]
+    fn on_a_plane_the_robot_is_pitched_and_rolled_as_it_is() {
+        let plane = |x_m: f64| 0.2 * x_m;
+        let straight = along(0.5, plane, &ACROSS);
+        assert!((straight.pitch_rad.value - 0.2_f64.atan()).abs() < 1e-5 && straight.roll_rad.value < 1e-5);
+        assert!(straight.above_m.value < 1e-4);
+        // Marble's skid friction, 0.2815: the plane's slope over it.
+        assert!((straight.over_grip.value - 0.2 / 0.2815).abs() < 0.02, "{:?}", straight.over_grip);
+        let turn = [[12.0, 12.0, 0.0], [12.0, 12.0, 1.5]];
+        let turned = along(0.5, plane, &turn);
+        assert!(
+            (turned.roll_rad.value - 0.2_f64.atan()).abs() < 1e-2,
+            "turning on the spot comes to roll too"
+        );
+    }
+
+    #[test]
+    fn a_bank_between_the_centres_of_cells_is_seen() {
+        // A metre over 1.2 m, whose cells of a metre differ by up to 0.84 m.
+        let bank = |x_m: f64| (40.0_f64.to_radians().tan() * (x_m - 10.25)).clamp(0.0, 1.0);
+        let found = along(1.0, bank, &ACROSS);
+        let steepest = (1..24).map(|i| bank(f64::from(i) + 0.5) - bank(f64::from(i) - 0.5));
+        let steepest_rad = steepest.fold(0.0, f64::max).atan();
+        assert!(
+            (found.pitch_rad.value - steepest_rad).abs() < 0.02,
+            "{:?} and {steepest_rad}",
+            found.pitch_rad
+        );
+        assert!((10.0..12.5).contains(&found.pitch_rad.at_m[0]), "{:?}", found.pitch_rad);
+    }
+
+    #[test]
+    fn ground_that_rises_between_the_wheels_is_seen_whatever_the_cells() {
+        let wall = |x_m: f64| if x_m >= 12.0 { 0.3 } else { 0.0 };
+        for cell_size_m in [0.25, 0.5, 1.0] {
+            let found = along(cell_size_m, wall, &ACROSS);
+            let level = along(cell_size_m, |_| 0.0, &ACROSS);
+            assert_eq!(level.above_m.value, 0.0);
+            let seen = found.above_m.value > 0.055 || found.pitch_rad.value > 0.28;
+            assert!(seen, "{cell_size_m} m: {:?} {:?}", found.above_m, found.pitch_rad);
+        }
+    }
+}

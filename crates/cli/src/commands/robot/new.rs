@@ -239,7 +239,9 @@ impl Arguments {
             ground_clearance_m: rest.ground_clearance_m,
             max_wheel_speed_mps,
             max_pitch_rad: rest.max_pitch_rad,
-            drive: self.motor.drive(battery.map(|battery| battery.nominal_voltage_v), asks)?,
+            drive: self
+                .motor
+                .drive(battery.map(|battery| battery.nominal_voltage_v).or(rest.battery_v), asks)?,
             regeneration: rest.regeneration,
             hotel_power_w,
             battery,
