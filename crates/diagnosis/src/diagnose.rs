@@ -21,7 +21,7 @@ use crate::{
         diagnosis::{Diagnosis, Finding},
         document::{Subject, document, shared_findings},
     },
-    search::engine::find,
+    search::engine::find_about,
 };
 
 /// Driving that a diagnosis needs \[s\]: six stretches of 20 s, so that some can be held out.
@@ -81,6 +81,9 @@ pub fn diagnose_watched(
     let observed = Observations::new(&series, robot);
     progress("fitting the robot", 0.05);
     let baseline = Baseline::fit(&observed, robot)?;
+    // A file that has learnt from healthy drives is as good a place to begin at as a fit, in which constants make up for what is missing.
+    let is_learnt = !series.has_healthy() && robot.posterior.is_some();
+    let of_file = if is_learnt { Some(Baseline::of_file(&observed, robot)?) } else { None };
     let mistakes = mistakes(robot, (suspect, contradictions), &series, &baseline.robot)?;
     let mut doubts = doubts(robot, suspect, &series, &mistakes)?;
     doubts.extend(series.sampled());
@@ -97,7 +100,7 @@ pub fn diagnose_watched(
     let is_asked = healthy.as_ref().filter(|_| mistakes.is_empty());
     let (found, shared) = std::thread::scope(|scope| {
         let by_themselves = is_asked.map(|healthy| scope.spawn(|| shared(robot, healthy, &library, watch)));
-        let found = find(&observed, (robot, baseline), &library, Windows::All, progress);
+        let found = find_about(&observed, (robot, baseline, of_file), &library, Windows::All, progress);
         (found, by_themselves.map(|thread| thread.join()))
     });
     let found = found?;
@@ -164,7 +167,7 @@ fn shared(
     }
     let observed = Observations::new(&series, robot);
     let baseline = Baseline::fit(&observed, robot)?;
-    let found = find(&observed, (robot, baseline), &library, Windows::AlwaysOnly, &|_, _| {})?;
+    let found = find_about(&observed, (robot, baseline, None), &library, Windows::AlwaysOnly, &|_, _| {})?;
     let drives: Vec<String> = healthy.runs.iter().map(|run| run.name.clone()).collect();
     Ok(shared_findings(&observed, &drives, &found))
 }

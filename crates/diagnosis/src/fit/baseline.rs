@@ -44,11 +44,24 @@ pub(crate) struct Baseline {
 }
 
 impl Baseline {
+    /// The robot as its file has it, and the linear model about that.
+    ///
+    /// # Errors
+    /// As [`Baseline::fit`].
+    pub(crate) fn of_file(observed: &Observations<'_>, file: &Robot) -> Result<Self, Error> {
+        Self::after(observed, file, 0)
+    }
+
     /// Fits a robot to its healthy drives if there are any, else to the test drives.
     ///
     /// # Errors
     /// A surface that the robot does not know; a watch that breaks.
     pub(crate) fn fit(observed: &Observations<'_>, file: &Robot) -> Result<Self, Error> {
+        Self::after(observed, file, STEPS)
+    }
+
+    /// The robot after some steps of a fit that begins at its file.
+    fn after(observed: &Observations<'_>, file: &Robot, steps: usize) -> Result<Self, Error> {
         let series = observed.series;
         let shown = Shown {
             battery: series.channels() == 1 || observed.has_channel(REST),
@@ -62,7 +75,7 @@ impl Baseline {
         let mut predicted = series.predict(&robot, &[])?;
         let mut per_z = per_z(series, file, &parameters, &u, &predicted)?;
         let mut sensitivities = parameters.mixed(&per_z);
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let errors = differences(&series.recorded, &predicted);
             let noise = Noise::of(&errors, &predicted, &observed.places);
             let white = noise.whitening(&predicted, &observed.places);

@@ -25,7 +25,7 @@ use crate::{
     observe::{observations::Observations, reach::Beyond},
     search::{
         basis::{Basis, shared, shares},
-        explanation::Explanation,
+        explanation::{Explanation, normalise},
         refine::Search,
         screen::Screen,
     },
@@ -63,70 +63,152 @@ pub(crate) struct Found {
     pub(crate) detectable: Vec<(Effect, f64)>,
 }
 
-/// Finds the posterior over what is missing in the test drives.
+/// The linear model about a robot: what is missing beside it, and what the model misses anyway.
+struct About {
+    baseline: Baseline,
+    effects: Vec<Effect>,
+    basis: Basis,
+    /// Columns of what healthy drives have of mechanisms.
+    common: Vec<Effect>,
+}
+
+/// Finds the posterior over what is missing in the test drives, about one robot or two.
+///
+/// An explanation is judged well where the linear model is near it. Where it is told about two robots, the likelier of its evidences counts,
+/// and the answer is that of the robot about which the likeliest explanation of all is found. Both are judged by the same noise.
 ///
 /// # Errors
 /// A surface that the robot does not know; a watch that breaks.
-pub(crate) fn find(
+pub(crate) fn find_about(
     observed: &Observations<'_>,
-    (file, baseline): (&Robot, Baseline),
+    (file, baseline, other): (&Robot, Baseline, Option<Baseline>),
     library: &[&'static dyn Mechanism],
     windows: Windows,
     progress: &dyn Fn(&str, f64),
 ) -> Result<Found, Error> {
-    let step = |name: &str, share: f64| {
-        progress(name, share);
-        observed.go_on()
+    progress("making effects", 0.2);
+    let about = |baseline| About::new(observed, (file, baseline), library);
+    let (one, other) = (about(baseline)?, other.map(about).transpose()?);
+    progress("learning what the model misses", 0.3);
+    observed.go_on()?;
+    let (whitening, strays) = one.weighted(observed, file);
+    let Some(other) = other else {
+        let part = |name: &str, share: f64| progress(name, 0.4 + 0.6 * share);
+        return one.find(observed, file, whitening, windows, &part);
     };
-    let scale = scale(observed, &baseline, file);
-    let beside = alone(observed, &baseline);
-    step("making effects", 0.2)?;
-    let effects = effects(library, &scale, &beside)?;
-    let common = common(library, &scale, &beside)?;
-    step("learning what the model misses", 0.3)?;
-    let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
-    let shared = shared(observed, &scale, &effects, &common);
-    let Basis { columns, amplitudes, shares: missed, beyond, run_variation } =
-        Basis::new(observed, (&baseline, file), &plain, shared);
-    let weighted = weighted(observed, (&baseline, file), &columns, &plain);
-    let temperature = if observed.series.has_healthy() {
-        let basis: Vec<&Vec<f64>> = baseline.sensitivities.iter().chain(&columns).collect();
+    // About the robot that the drives lie nearer to, fewer rows are strays.
+    let of_other = other.weighted(observed, file);
+    let whitening = if of_other.1 < strays { of_other.0 } else { whitening };
+    let part = |from: f64| move |name: &str, share: f64| progress(name, from + 0.3 * share);
+    let found = one.find(observed, file, whitening.clone(), windows, &part(0.4))?;
+    Ok(likelier(found, other.find(observed, file, whitening, windows, &part(0.7))?))
+}
+
+/// What was found about the robot beside which the likeliest explanation lies, each explanation with the better of its evidences.
+fn likelier(one: Found, other: Found) -> Found {
+    let best = |found: &Found| found.explanations.first().map_or(f64::NEG_INFINITY, |one| one.log);
+    let (mut found, other) = if best(&other) > best(&one) { (other, one) } else { (one, other) };
+    for one in other.explanations {
+        let is_same = |own: &&mut Explanation| own.names == one.names && own.unlisted == one.unlisted;
+        match found.explanations.iter_mut().find(is_same) {
+            Some(own) => own.log = own.log.max(one.log),
+            None => found.explanations.push(Explanation { fitted: None, block: None, ..one }),
+        }
+    }
+    normalise(&mut found.explanations);
+    found
+}
+
+impl About {
+    fn new(
+        observed: &Observations<'_>,
+        (file, baseline): (&Robot, Baseline),
+        library: &[&'static dyn Mechanism],
+    ) -> Result<About, Error> {
+        observed.go_on()?;
+        let scale = scale(observed, &baseline, file);
+        let beside = alone(observed, &baseline);
+        let effects = effects(library, &scale, &beside)?;
+        let common = common(library, &scale, &beside)?;
+        let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
+        let shared = shared(observed, &scale, &effects, &common);
+        let basis = Basis::new(observed, (&baseline, file), &plain, shared);
+        Ok(About { baseline, effects, basis, common })
+    }
+
+    /// Whitening with weights from what the most flexible fit leaves, and how many rows are strays, as a share of each.
+    fn weighted(&self, observed: &Observations<'_>, file: &Robot) -> (Whitening, f64) {
+        let baseline = &self.baseline;
+        let plain = baseline.noise.whitening(&baseline.predicted, &observed.places);
+        let wide = |column: &Vec<f64>| column.iter().map(|x| FLEXIBLE * x).collect();
+        let wide: Vec<Vec<f64>> = self.basis.columns.iter().map(wide).collect();
+        let amplitudes = Amplitudes::as_they_are();
+        let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0, &amplitudes);
+        let left = unlisted::left_by_all(&joint);
+        let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
+        let strays = (0..left.len()).map(|i| 1.0 - weight(i).powi(2)).sum();
+        (plain.scaled(weight), strays)
+    }
+
+    /// Divisor of log likelihoods.
+    fn temperature(&self, observed: &Observations<'_>, weighted: &Whitening) -> f64 {
+        if !observed.series.has_healthy() {
+            return temperature::UNTOLD;
+        }
+        let baseline = &self.baseline;
+        let basis: Vec<&Vec<f64>> = baseline.sensitivities.iter().chain(&self.basis.columns).collect();
         let healthy = observed.test_rows..observed.rows();
-        let shares = shares(&common, |one| one.healthy_share());
-        let columns = temperature::columns((&weighted, healthy), &basis, &shares, &baseline.residual);
+        let shares = shares(&self.common, |one| one.healthy_share());
+        let columns = temperature::columns((weighted, healthy), &basis, &shares, &baseline.residual);
         temperature::temperature(observed, &columns)
-    } else {
-        temperature::UNTOLD
-    };
-    let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
-    let joint = Joint::new(observed, (&baseline, file), &columns, whitening, temperature, &amplitudes);
-    drop(columns);
-    step("screening mechanisms", 0.4)?;
-    let grid = Grid::new(observed, windows);
-    let screen = Screen::new(&joint, &grid, effects);
-    let blocks = unlisted::blocks(&joint);
-    step("refitting the leading sets", 0.5)?;
-    let search =
-        Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks, missed: missed.power };
-    let explanations = search.posterior()?;
-    step("holding stretches out", 0.9)?;
-    let held_out = held_outs(&joint, &explanations);
-    let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
-    let noise_floor_w = noise_floor_w(observed, &baseline);
-    let parameter_covariance = joint.model.covariance_of_first(baseline.parameters.len());
-    Ok(Found {
-        explanations,
-        missed,
-        beyond,
-        run_variation,
-        temperature,
-        parameter_covariance,
-        held_out,
-        noise_floor_w,
-        detectable,
-        blocks,
-        baseline,
-    })
+    }
+
+    /// The posterior about this robot.
+    fn find(
+        self,
+        observed: &Observations<'_>,
+        file: &Robot,
+        weighted: Whitening,
+        windows: Windows,
+        progress: &dyn Fn(&str, f64),
+    ) -> Result<Found, Error> {
+        let step = |name: &str, share: f64| {
+            progress(name, share);
+            observed.go_on()
+        };
+        let temperature = self.temperature(observed, &weighted);
+        let About { baseline, effects, basis, .. } = self;
+        let Basis { columns, amplitudes, shares: missed, beyond, run_variation } = basis;
+        let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
+        let joint = Joint::new(observed, (&baseline, file), &columns, whitening, temperature, &amplitudes);
+        drop(columns);
+        step("screening mechanisms", 0.0)?;
+        let grid = Grid::new(observed, windows);
+        let screen = Screen::new(&joint, &grid, effects);
+        let blocks = unlisted::blocks(&joint);
+        step("refitting the leading sets", 0.2)?;
+        let search =
+            Search { joint: &joint, screen: &screen, grid: &grid, blocks: &blocks, missed: missed.power };
+        let explanations = search.posterior()?;
+        step("holding stretches out", 0.8)?;
+        let held_out = held_outs(&joint, &explanations);
+        let detectable = screen.information().into_iter().map(|(effect, g)| (effect.clone(), g)).collect();
+        let noise_floor_w = noise_floor_w(observed, &baseline);
+        let parameter_covariance = joint.model.covariance_of_first(baseline.parameters.len());
+        Ok(Found {
+            explanations,
+            missed,
+            beyond,
+            run_variation,
+            temperature,
+            parameter_covariance,
+            held_out,
+            noise_floor_w,
+            detectable,
+            blocks,
+            baseline,
+        })
+    }
 }
 
 /// Held-out errors of nothing and of the likeliest explanation that names anything.
@@ -202,19 +284,4 @@ pub(crate) fn healthy_columns(
     let scale = scale(observed, baseline, file);
     let shared: Vec<_> = library.iter().copied().filter(|one| one.unstated_share(&scale) > 0.0).collect();
     Ok(shares(&effects(&shared, &scale, &beside)?, |one| one.unstated_share(&scale)))
-}
-
-/// Whitening with weights from what the most flexible fit leaves.
-fn weighted(
-    observed: &Observations<'_>,
-    (baseline, file): (&Baseline, &Robot),
-    others: &[Vec<f64>],
-    plain: &Whitening,
-) -> Whitening {
-    let wide: Vec<Vec<f64>> =
-        others.iter().map(|column| column.iter().map(|x| FLEXIBLE * x).collect()).collect();
-    let joint = Joint::new(observed, (baseline, file), &wide, plain.clone(), 1.0, &Amplitudes::as_they_are());
-    let left = unlisted::left_by_all(&joint);
-    let weight = |i: usize| (LARGE / left[i].abs().max(LARGE)).sqrt();
-    plain.scaled(weight)
 }
