@@ -11,6 +11,7 @@ use crate::{
     error::Position,
     label_column::LabelColumn,
     map::{Place, Target},
+    opposed_part,
     own_clocks::onto_one_clock,
     rate::{beyond_wrap, rates, unwrapped},
     report::{ChannelReport, ReadingReport},
@@ -19,6 +20,10 @@ use crate::{
     table::Table,
     units,
 };
+
+/// Why a column of text is not used, in a text file and in Parquet.
+pub(crate) const NOT_A_NUMBER: &str = "no channel, and not a number";
+pub(crate) const TEXT: &str = "it holds text";
 
 /// How a column of the file is to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,6 +242,7 @@ impl Plan {
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             looks.go_on()?;
+            self.refuse_opposed(&entry, &columns, &recording.t_s)?;
             match self.combined(&entry, &mut columns, &recording.t_s, &mut report.repairs) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
                     runs = Some(labels.into_labels());
@@ -271,11 +277,27 @@ impl Plan {
             position: &|row| position(in_table(row)),
         };
         spread_bursts(&mut recording, &mut report.repairs);
-        check_time(&recording, &source)?;
+        check_time(&recording, &source).map_err(|error| self.long_table(&recording).unwrap_or(error))?;
         onto_one_clock(&mut recording, self.max_gap_s, &mut report.repairs, &looks)?;
         report.ignored = self.ignored;
         report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
+    }
+
+    /// What is wrong with a table whose rows hold one number each and its name beside it; `None` of another.
+    fn long_table(&self, recording: &Recording) -> Option<Error> {
+        let numbers = recording
+            .channels
+            .keys()
+            .map(|channel| channel.name())
+            .chain(recording.aside.keys().map(String::as_str));
+        let numbers: Vec<&str> = numbers.collect();
+        let is_text = |ignored: &&Ignored| ignored.reason.starts_with(NOT_A_NUMBER) || ignored.reason == TEXT;
+        let names = self.ignored.iter().find(is_text)?.name.clone();
+        match numbers.as_slice() {
+            [value] => Some(Error::LongTable { names, values: (*value).to_owned() }),
+            _ => None,
+        }
     }
 
     /// Takes note that a column of the file stores times in a unit of its own type, from which it is read in seconds. A map that
@@ -367,6 +389,22 @@ impl Plan {
             repairs.extend(stuck_part::leave_out(t_s, &lone, &speed_mps, &names, &mut values));
         }
         Ok(Column::Numbers(values))
+    }
+
+    /// Refuses encoders of one side of which one has the other sign.
+    fn refuse_opposed(&self, entry: &Entry, columns: &[Column], t_s: &[f64]) -> Result<(), Error> {
+        if entry.columns.len() < 2 || entry.combine != Combine::Mean || !entry.target.is_wheel_speed() {
+            return Ok(());
+        }
+        let speeds = entry.columns.iter().filter_map(|column| match columns.get(*column) {
+            Some(Column::Numbers(values)) => {
+                let values: Vec<f64> = values.iter().map(|value| entry.conversion.apply(*value)).collect();
+                Some(if entry.is_derivative { rates(t_s, &values, entry.wraps_at) } else { values })
+            }
+            _ => None,
+        });
+        let names: Vec<String> = entry.columns.iter().map(|&column| self.headers[column].clone()).collect();
+        opposed_part::refuse(&speeds.collect::<Vec<_>>(), &names)
     }
 
     /// Counters that go on where they begin again, so that a mean of several does not jump by a part of a turn.
