@@ -3,7 +3,8 @@
 use std::{borrow::Cow, mem};
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair, TimeError,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair, Source,
+    TimeError,
     bursts::spread_bursts,
     clock::{TimeSource, check_time},
     coarse::period,
@@ -16,6 +17,7 @@ use crate::{
     rate::{beyond_wrap, rates, unwrapped},
     report::{ChannelReport, ReadingReport},
     same_time::merge_same_times,
+    source_choice::told_rivals,
     stuck_part,
     table::Table,
     units,
@@ -52,6 +54,8 @@ pub(crate) struct Plan {
     headers: Vec<String>,
     entries: Vec<Entry>,
     ignored: Vec<Ignored>,
+    /// What has to be said of the map.
+    repairs: Vec<Repair>,
     surface: Option<String>,
     max_gap_s: Option<f64>,
 }
@@ -85,6 +89,7 @@ impl Plan {
             kinds: vec![Kind::Perhaps; headers.len()],
             entries: Vec::new(),
             ignored: Vec::new(),
+            repairs: Vec::new(),
             surface: map.and_then(|map| map.surface.clone()),
             max_gap_s: map.and_then(|map| map.max_gap_s),
             headers,
@@ -115,7 +120,10 @@ impl Plan {
             let taken = self.entries.iter().any(|entry| entry.target == source.target);
             let reason = match columns {
                 None => "the map names it, but the file has no such column",
-                Some(_) if taken => "an earlier source of the map gives the same channel",
+                Some(_) if taken => {
+                    self.tell_rivals(map, source, names);
+                    "an earlier source of the map gives the same channel"
+                }
                 Some(columns) => {
                     self.entries.push(Entry {
                         target: source.target.clone(),
@@ -132,6 +140,16 @@ impl Plan {
                 }
             };
             self.ignored.push(Ignored { name: names.join(", "), reason: reason.into() });
+        }
+    }
+
+    /// Says of a map of the user that the file has the columns of two of its sources of one channel.
+    fn tell_rivals(&mut self, map: Option<&Map>, source: &Source, names: &[String]) {
+        let Target::Channel(channel) = source.target else { return };
+        let Some(first) = self.entries.iter().find(|entry| entry.target == source.target) else { return };
+        if !map.is_some_and(Map::is_built_in) {
+            let both = [self.names(first), names.join(", ")];
+            self.repairs.extend(told_rivals(channel, &both, "", "`columns`"));
         }
     }
 
@@ -238,7 +256,7 @@ impl Plan {
             });
         }
         let mut recording = Recording { t_s, ..Recording::default() };
-        let mut report = ReadingReport::default();
+        let mut report = ReadingReport { repairs: mem::take(&mut self.repairs), ..ReadingReport::default() };
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             looks.go_on()?;

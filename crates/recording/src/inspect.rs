@@ -120,6 +120,7 @@ fn table(path: &Path) -> Result<Inspection, Error> {
     let Chosen { mut sources, notes: told } = sources(&mut fields);
     sides::leave_out(&recording, &mut sources, &mut fields);
     notes.extend(told);
+    notes.extend(sides::draw_negative_current(&recording, &mut sources));
     notes.extend(left_out(&fields));
     sources.insert(0, of_time);
     fields.insert(

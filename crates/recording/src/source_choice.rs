@@ -111,25 +111,18 @@ impl Topics<'_> {
     /// Says of a map of the user that two of its sources give what is measured once. Those of built-in maps are alternatives.
     fn tell_rivals(&mut self, streams: &[Named], taken: Chosen, rivals: &[Chosen]) {
         let Target::Channel(channel) = self.map.sources[taken.0].target else { return };
-        let is_measured_once = channel.tells_power() || self.map.sources[taken.0].target.is_wheel_speed();
-        let Some(&other) = rivals.iter().find(|rival| **rival != taken) else { return };
-        if self.map.is_built_in() || !is_measured_once {
+        let of = |one: &Chosen| place(&streams[one.1], &self.map.sources[one.0].place);
+        let is_other = |rival: &&Chosen| **rival != taken && of(rival) != of(&taken);
+        let Some(other) = rivals.iter().find(is_other) else { return };
+        if self.map.is_built_in() {
             return;
         }
-        let of = |one: Chosen| place(&streams[one.1], &self.map.sources[one.0].place);
         let unit = si_unit(channel.quantity());
-        let [mean, other_mean] = [taken, other].map(|one| mean(&streams[one.1].stream.columns[one.2]));
-        let add = if channel == Channel::Voltage || !channel.tells_power() {
-            String::new()
-        } else {
-            "; if they are parts of one whole, name both in one source as `topics`, or as `fields` of one topic, with `\"combine\": \"sum\"`".into()
-        };
-        let what = format!(
-            "{} and {} both give it, {mean:.4} and {other_mean:.4} {unit} on average: the first alone was taken{add}; if they are one quantity, leave one out of the map",
-            of(taken),
-            of(other)
-        );
-        self.repairs.push(Repair { place: channel.to_string(), what });
+        let means = [&taken, other].map(|one| mean(&streams[one.1].stream.columns[one.2]));
+        let means = format!(", {:.4} and {:.4} {unit} on average", means[0], means[1]);
+        let both = [of(&taken), of(other)];
+        let together = "`topics`, or as `fields` of one topic";
+        self.repairs.extend(told_rivals(channel, &both, &means, together));
     }
 
     fn tell_unused(&mut self, streams: &[Named], held: &[Chosen], chosen: &[Chosen]) {
@@ -163,6 +156,30 @@ impl Topics<'_> {
             }
         }
     }
+}
+
+/// What is said of two sources of one channel in a map of the user, of which the first is taken; nothing of what may well be told twice.
+pub(crate) fn told_rivals(
+    channel: Channel,
+    [taken, other]: &[String; 2],
+    means: &str,
+    together: &str,
+) -> Option<Repair> {
+    let is_wheel = matches!(channel, Channel::LeftSpeed | Channel::RightSpeed);
+    if !channel.tells_power() && !is_wheel {
+        return None;
+    }
+    let add = if is_wheel || channel == Channel::Voltage {
+        String::new()
+    } else {
+        format!(
+            "if they are parts of one whole, name both in one source as {together}, with `\"combine\": \"sum\"`; "
+        )
+    };
+    let what = format!(
+        "both `{taken}` and `{other}` give it{means}, and `{taken}` alone was taken; {add}if they are one quantity, leave one out of the map"
+    );
+    Some(Repair { place: channel.to_string(), what })
 }
 
 /// A source as reports name it.

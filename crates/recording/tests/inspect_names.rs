@@ -98,7 +98,7 @@ fn a_path_of_topics_says_the_place_and_its_last_part_the_quantity() {
     let wheels = names.iter().flatten().map(|name| (name.as_str(), &speed as Numbers<'_>));
     let battery = [("/battery_state/current", &current as Numbers<'_>), ("/battery_state/voltage", &voltage)];
     let found = inspected("path", &wheels.chain(battery).collect::<Vec<_>>());
-    assert_eq!(source(&found, "v_left_mps").unwrap(), format!("{} [m/s]", path("left", "velocity")));
+    assert_eq!(source(&found, "v_left_mps").unwrap(), format!("{} [rad/s]", path("left", "velocity")));
     assert_eq!(source(&found, "current_a").unwrap(), "/battery_state/current [A]");
 }
 
@@ -218,6 +218,21 @@ fn columns_of_the_sides_that_explain_nothing_of_the_batterys_power_are_none() {
     let sides: [(&str, Numbers<'_>); 2] = [("left_power", &half), ("right_power", &half)];
     let found = inspected("halves", &with(&[sides, battery].concat()));
     assert_eq!(source(&found, "power_left_w").unwrap(), "left_power [W]");
+}
+
+#[test]
+fn a_current_that_discharge_makes_negative_is_drawn() {
+    let of = |current: Numbers<'_>| {
+        inspected("sign", &with(&[("field.voltage", &voltage), ("field.current", current)]))
+    };
+    let sign = |found: &Inspection| {
+        let sources = found.map["sources"].as_array().unwrap().iter();
+        sources.clone().find(|source| source["channel"] == "current_a").unwrap()["sign"].clone()
+    };
+    let found = of(&|t_s| -current(t_s));
+    assert_eq!(sign(&found), "drawn");
+    assert!(found.notes.iter().any(|note| note.contains("negative on the whole")), "{:?}", found.notes);
+    assert!(sign(&of(&current)).is_null());
 }
 
 #[test]

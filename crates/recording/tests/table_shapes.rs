@@ -104,6 +104,24 @@ fn a_long_table_is_called_one_and_how_it_is_made_wide() {
 }
 
 #[test]
+fn two_columns_that_a_map_names_for_one_channel_are_said_with_the_cure() {
+    let text =
+        table("time,left,right,p1,p2", |row| format!("{:.1},0.5,0.6,40.{},40.5", 0.1 * row as f64, row % 10));
+    let wheel = r#"{"channel": "t_s", "column": "time"}, {"channel": "v_left_mps", "column": "left"}, {"channel": "v_right_mps", "column": "right"}"#;
+    let by = |power: &str| {
+        let map = Map::from_json(&format!(r#"{{"name": "lab", "sources": [{wheel}, {power}]}}"#)).unwrap();
+        read(text.clone().into_bytes(), Format::Csv, "drive", Some(&map)).unwrap().report
+    };
+    let two = by(r#"{"channel": "power_w", "column": "p1"}, {"channel": "power_w", "column": "p2"}"#);
+    let told = two.repairs.iter().find(|repair| repair.place == "power_w").unwrap();
+    assert!(["`p1`", "`p2`", "columns", "\"sum\""].iter().all(|word| told.what.contains(word)), "{told:?}");
+    let one = by(
+        r#"{"channel": "power_w", "columns": ["p1", "p2"], "combine": "sum"}, {"channel": "power_w", "column": "p3"}"#,
+    );
+    assert!(one.repairs.is_empty(), "{one}");
+}
+
+#[test]
 fn encoders_of_one_side_with_two_signs_are_refused_by_name() {
     let text = |sign: f64| {
         table("time,fl,rl,right,power_w", |row| {

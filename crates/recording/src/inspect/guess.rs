@@ -55,8 +55,8 @@ fn fit(known: &Words, text: &str, name: &Name) -> Fit {
     let is_named = at.is_some()
         || match &unit {
             // A small letter at the end may be any symbol, as `w` an angular rate.
-            SpelledUnit::Known(_) if !of.is_empty() => {
-                name.ending.len() > 1 || name.ending.chars().all(char::is_uppercase)
+            SpelledUnit::Known(unit) if !of.is_empty() => {
+                unit.len() > 1 || name.ending.len() > 1 || name.ending.chars().all(char::is_uppercase)
             }
             SpelledUnit::Unknown(_) => quantity == Quantity::Speed && name.has(DEVICES),
             _ => false,
@@ -100,9 +100,17 @@ fn guessed(channel: Channel, unit: Option<&'static str>, name: &Name, seen: &See
         None if quantity == Quantity::Current && is_mavlinks(name) && seen.is_whole => {
             ("cA", "it is MAVLink's field of that name, in whole hundredths of an ampere".to_owned())
         }
+        None if quantity == Quantity::Speed && is_of_joint_states(name) => {
+            ("rad/s", "it is of a `JointState`, whose wheels turn in rad/s".to_owned())
+        }
         None => by_range(quantity, seen.greatest),
     };
     Guess { channel, unit, reason: format!("by its name; {why}") }
+}
+
+/// Whether a name is that of a field of `sensor_msgs/JointState`, which has velocities of joints that turn in rad/s.
+fn is_of_joint_states(name: &Name) -> bool {
+    name.words.windows(2).any(|pair| pair[0] == "joint" && ["states", "state"].contains(&pair[1].as_str()))
 }
 
 /// Whether a name is that of the current in MAVLink's `SYS_STATUS` and `BATTERY_STATUS` (`common.xml`: `current_battery`, cA).
@@ -164,6 +172,11 @@ mod tests {
         assert_eq!(of("pitch", 0.2), Some((Channel::Pitch, "rad")));
         assert_eq!(of("P_bat [kW]", 0.4), Some((Channel::Power, "kW")));
         assert_eq!(of("power_left_w", 90.0), Some((Channel::LeftPower, "W")));
+        assert_eq!(of("left_wheel_rad_s", 3.0), Some((Channel::LeftSpeed, "rad/s")));
+        assert_eq!(of("wheel right m/s", 3.0), Some((Channel::RightSpeed, "m/s")));
+        assert_eq!(of("V_bat", 25.0), Some((Channel::Voltage, "V")));
+        assert_eq!(of("LeftMotorSpeed", 1.0), Some((Channel::LeftSpeed, "m/s")));
+        assert_eq!([of("w_left", 1.0), of("left_w", 1.0), of("left_wheel_V", 1.0)], [None; 3]);
         assert_eq!(of("left_wheel_cmd", 1.0), None);
         assert_eq!(of("note", 1.0), None);
         assert_eq!(

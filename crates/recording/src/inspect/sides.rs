@@ -1,6 +1,6 @@
 //! Columns named as powers of the sides that are none, beside the battery's.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::InspectedField;
 use crate::{Channel, Conversion, Quantity, Recording};
@@ -40,6 +40,19 @@ pub(super) fn leave_out(recording: &Recording, sources: &mut Vec<Value>, fields:
             (field.channel, field.unit) = (None, None);
         }
     }
+}
+
+/// Has the sign of a battery's current found that is negative on the whole: drivers count discharge as negative (`sensor_msgs/BatteryState`), and a
+/// drive draws.
+pub(super) fn draw_negative_current(recording: &Recording, sources: &mut [Value]) -> Option<String> {
+    let source = sources.iter_mut().find(|source| source["channel"] == Channel::Current.name())?;
+    let current_a = column_of(recording, source, Quantity::Current)?;
+    let known = current_a.iter().filter(|value| !value.is_nan());
+    (known.sum::<f64>() < 0.0).then(|| {
+        source["sign"] = json!("drawn");
+        let name = Channel::Current;
+        format!("{name} is negative on the whole: `\"sign\": \"drawn\"` turns it so that driving draws; take it out if the battery was charged")
+    })
 }
 
 fn values_are_of(sources: &[Value], channel: Channel) -> bool {
