@@ -5,6 +5,7 @@ use std::{
     fs::File,
     io::{Cursor, Read},
     panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
 };
 
 use ::parquet::{
@@ -24,8 +25,9 @@ use crate::{
     mcap,
     mcap_summary::Summary,
     reading::unwatched,
-    rosbag2::db3,
+    rosbag2::{db3, folder, storage},
     schema::Schema,
+    stream::NS_PER_S,
     ulog,
     walk::Found,
     watch::{Budget, Looks},
@@ -169,9 +171,42 @@ struct LookedTopic {
     name: String,
     type_name: String,
     paths: Vec<String>,
-    layout: Layout,
+    /// None where its definition cannot be read.
+    layout: Option<Layout>,
     /// By path.
     cells: Vec<Vec<f64>>,
+    /// All messages, whether they are looked at or not.
+    messages: usize,
+    /// Log times of the first and the last \[ns\].
+    log_ns: [i64; 2],
+}
+
+/// A topic of a log, as far as its first messages show it.
+pub(crate) struct SeenTopic {
+    pub(crate) name: String,
+    pub(crate) type_name: String,
+    pub(crate) messages: usize,
+    pub(crate) rate_hz: Option<f64>,
+    /// Paths of its numbers, and these.
+    pub(crate) fields: Vec<(String, Vec<f64>)>,
+}
+
+/// All topics of a log, whether a map names them or not.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(crate) fn seen_topics(path: &Path) -> Result<Vec<SeenTopic>, Error> {
+    let watch = unwatched();
+    let mut topics = topics(None, &Budget { room: Room::default(), looks: Looks::new(&watch) })?;
+    topics.looked = Some(Looked::default());
+    if path.is_dir() {
+        folder::read_into(path, &mut topics, &watch)?;
+    } else if Format::of_file(&mut File::open(path)?)? == Some(Format::Ulog) {
+        ulog::read_into(File::open(path)?, &mut topics)?;
+    } else {
+        storage::read_into(path, &mut topics, &watch)?;
+    }
+    Ok(topics.looked.unwrap_or_default().into_topics())
 }
 
 impl Looked {
@@ -181,35 +216,52 @@ impl Looked {
         if let Some(known) = self.topics.iter().position(same) {
             return Some(known);
         }
-        let definition = schema.parse().ok()?;
         let mut paths = Vec::new();
-        numbers_of(&definition, definition.root(), "", 0, &mut paths);
-        paths.truncate(MOST_COLUMNS.saturating_sub(self.columns));
-        let wanted: Vec<&str> = paths.iter().map(String::as_str).collect();
-        let layout =
-            Layout::new(&definition, &wanted, false, schema.encoding).ok().filter(|_| !paths.is_empty())?;
+        let layout = schema.parse().ok().and_then(|definition| {
+            numbers_of(&definition, definition.root(), "", 0, &mut paths);
+            paths.truncate(MOST_COLUMNS.saturating_sub(self.columns));
+            let wanted: Vec<&str> = paths.iter().map(String::as_str).collect();
+            Layout::new(&definition, &wanted, false, schema.encoding).ok()
+        });
         self.columns += paths.len();
         let (name, type_name) = (topic.to_owned(), schema.type_name.to_owned());
         let cells = vec![Vec::new(); paths.len()];
-        self.topics.push(LookedTopic { name, type_name, paths, layout, cells });
+        self.topics.push(LookedTopic { name, type_name, paths, layout, cells, messages: 0, log_ns: [0; 2] });
         Some(self.topics.len() - 1)
     }
 
     /// Keeps the numbers of a message while there is room; one that cannot be read shows nothing.
-    pub(crate) fn message(&mut self, topic: usize, bytes: &[u8], found: &mut Found) {
+    pub(crate) fn message(&mut self, topic: usize, log_ns: i64, bytes: &[u8], found: &mut Found) {
         let Some(topic) = self.topics.get_mut(topic) else { return };
+        let first_ns = if topic.messages == 0 { log_ns } else { topic.log_ns[0] };
+        topic.log_ns = [first_ns, log_ns];
+        topic.messages += 1;
+        let Some(layout) = &mut topic.layout else { return };
         if topic.cells.first().is_none_or(|cells| cells.len() >= MOST_ROWS) {
             return;
         }
         let mut plain = Vec::new();
-        let bytes = match topic.layout.is_cdr() && bytes.starts_with(&ZSTD_MAGIC) {
+        let bytes = match layout.is_cdr() && bytes.starts_with(&ZSTD_MAGIC) {
             true => decompress_message(bytes, &mut plain),
             false => Ok(bytes),
         };
         let mut values = vec![f64::NAN; topic.paths.len()];
-        if bytes.and_then(|bytes| topic.layout.read(bytes, found, &mut values)).is_ok() {
+        if bytes.and_then(|bytes| layout.read(bytes, found, &mut values)).is_ok() {
             topic.cells.iter_mut().zip(values).for_each(|(cells, value)| cells.push(value));
         }
+    }
+
+    fn into_topics(self) -> Vec<SeenTopic> {
+        let of = |topic: LookedTopic| {
+            let [first_ns, last_ns] = topic.log_ns;
+            let span_s = last_ns.saturating_sub(first_ns) as f64 / NS_PER_S;
+            let rate_hz = (span_s > 0.0).then(|| (topic.messages - 1) as f64 / span_s);
+            let fields = topic.paths.into_iter().zip(topic.cells);
+            let fields = fields.filter(|(_, values)| values.iter().any(|value| !value.is_nan())).collect();
+            let (name, type_name, messages) = (topic.name, topic.type_name, topic.messages);
+            SeenTopic { name, type_name, messages, rate_hz, fields }
+        };
+        self.topics.into_iter().map(of).collect()
     }
 
     fn into_columns(self) -> Vec<BeginningColumn> {

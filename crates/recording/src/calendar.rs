@@ -1,5 +1,7 @@
 //! Times of the calendar and of the clock as seconds.
 
+use crate::{Conversion, Quantity, units_row::symbol};
+
 /// Days from 1 March of year 0 to 1 January 1970.
 const DAYS_TO_1970: i64 = 719_468;
 
@@ -20,6 +22,16 @@ pub(crate) fn seconds(text: &str) -> Option<f64> {
     let (clock, offset_s) = without_offset(time.trim())?;
     let whole_s = days_since_1970(date)? * DAY_S - offset_s;
     Some(whole_s as f64 + of_clock(clock)?)
+}
+
+/// Seconds of a duration with its unit behind it, as MATLAB writes `0.1 sec`.
+pub(crate) fn duration_s(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let unit_at = text.find(|sign: char| sign.is_alphabetic() && !matches!(sign, 'e' | 'E'))?;
+    let (number, unit) = text.split_at(unit_at);
+    let unit = Conversion::from_unit(Quantity::Time, symbol(unit.trim()), None)?;
+    let number: f64 = number.trim_end().parse().ok().filter(|number: &f64| number.is_finite())?;
+    Some(unit.apply(number))
 }
 
 /// Whether a text looks like a date or a time of the clock, read or not.
@@ -96,6 +108,23 @@ fn whole(digits: &str) -> Option<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_with_a_unit_of_time_is_a_duration() {
+        for (text, expected_s) in [
+            ("0.1 sec", 0.1),
+            ("2.5 min", 150.0),
+            ("1 hr", 3600.0),
+            ("200 ms", 0.2),
+            ("1e3 s", 1000.0),
+            ("3s", 3.0),
+        ] {
+            assert_eq!(duration_s(text), Some(expected_s), "{text}");
+        }
+        for text in ["0.1", "sec", "0.1 volt", "", "nan s", "2023-11-14"] {
+            assert_eq!(duration_s(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn dates_and_clocks_are_seconds() {

@@ -131,7 +131,10 @@ impl Spelling {
             return Ok(value);
         }
         let text = String::from_utf8_lossy(cell);
-        let calendar = if text.contains(':') { calendar::seconds(&text) } else { None };
+        let calendar = match text.contains(':') {
+            true => calendar::seconds(&text),
+            false => calendar::duration_s(&text),
+        };
         let (what, value) = match calendar {
             Some(value) => (Times::Calendar, value),
             None if calendar::is_like_time(&text) && plain(text.trim()).is_none() => {

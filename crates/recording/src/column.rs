@@ -3,7 +3,8 @@
 use std::{borrow::Cow, mem};
 
 use crate::{
-    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair, TimeError,
+    Channel, Combine, Conversion, Error, Ignored, Labels, Map, Quantity, Recording, Repair, Source,
+    TimeError,
     bursts::spread_bursts,
     clock::{TimeSource, check_time},
     coarse::period,
@@ -11,14 +12,20 @@ use crate::{
     error::Position,
     label_column::LabelColumn,
     map::{Place, Target},
+    opposed_part,
     own_clocks::onto_one_clock,
     rate::{beyond_wrap, rates, unwrapped},
     report::{ChannelReport, ReadingReport},
     same_time::merge_same_times,
+    source_choice::told_rivals,
     stuck_part,
     table::Table,
     units,
 };
+
+/// Why a column of text is not used, in a text file and in Parquet.
+pub(crate) const NOT_A_NUMBER: &str = "no channel, and not a number";
+pub(crate) const TEXT: &str = "it holds text";
 
 /// How a column of the file is to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +54,8 @@ pub(crate) struct Plan {
     headers: Vec<String>,
     entries: Vec<Entry>,
     ignored: Vec<Ignored>,
+    /// What has to be said of the map.
+    repairs: Vec<Repair>,
     surface: Option<String>,
     max_gap_s: Option<f64>,
 }
@@ -80,6 +89,7 @@ impl Plan {
             kinds: vec![Kind::Perhaps; headers.len()],
             entries: Vec::new(),
             ignored: Vec::new(),
+            repairs: Vec::new(),
             surface: map.and_then(|map| map.surface.clone()),
             max_gap_s: map.and_then(|map| map.max_gap_s),
             headers,
@@ -110,7 +120,10 @@ impl Plan {
             let taken = self.entries.iter().any(|entry| entry.target == source.target);
             let reason = match columns {
                 None => "the map names it, but the file has no such column",
-                Some(_) if taken => "an earlier source of the map gives the same channel",
+                Some(_) if taken => {
+                    self.tell_rivals(map, source, names);
+                    "an earlier source of the map gives the same channel"
+                }
                 Some(columns) => {
                     self.entries.push(Entry {
                         target: source.target.clone(),
@@ -127,6 +140,16 @@ impl Plan {
                 }
             };
             self.ignored.push(Ignored { name: names.join(", "), reason: reason.into() });
+        }
+    }
+
+    /// Says of a map of the user that the file has the columns of two of its sources of one channel.
+    fn tell_rivals(&mut self, map: Option<&Map>, source: &Source, names: &[String]) {
+        let Target::Channel(channel) = source.target else { return };
+        let Some(first) = self.entries.iter().find(|entry| entry.target == source.target) else { return };
+        if !map.is_some_and(Map::is_built_in) {
+            let both = [self.names(first), names.join(", ")];
+            self.repairs.extend(told_rivals(channel, &both, "", "`columns`"));
         }
     }
 
@@ -233,10 +256,11 @@ impl Plan {
             });
         }
         let mut recording = Recording { t_s, ..Recording::default() };
-        let mut report = ReadingReport::default();
+        let mut report = ReadingReport { repairs: mem::take(&mut self.repairs), ..ReadingReport::default() };
         let mut runs = None;
         for entry in mem::take(&mut self.entries) {
             looks.go_on()?;
+            self.refuse_opposed(&entry, &columns, &recording.t_s)?;
             match self.combined(&entry, &mut columns, &recording.t_s, &mut report.repairs) {
                 Ok(Column::Labels(labels)) if entry.target == Target::Run => {
                     runs = Some(labels.into_labels());
@@ -271,11 +295,27 @@ impl Plan {
             position: &|row| position(in_table(row)),
         };
         spread_bursts(&mut recording, &mut report.repairs);
-        check_time(&recording, &source)?;
+        check_time(&recording, &source).map_err(|error| self.long_table(&recording).unwrap_or(error))?;
         onto_one_clock(&mut recording, self.max_gap_s, &mut report.repairs, &looks)?;
         report.ignored = self.ignored;
         report.repairs.extend(coarse.told("all rows", &recording.t_s));
         Ok((recording, report))
+    }
+
+    /// What is wrong with a table whose rows hold one number each and its name beside it; `None` of another.
+    fn long_table(&self, recording: &Recording) -> Option<Error> {
+        let numbers = recording
+            .channels
+            .keys()
+            .map(|channel| channel.name())
+            .chain(recording.aside.keys().map(String::as_str));
+        let numbers: Vec<&str> = numbers.collect();
+        let is_text = |ignored: &&Ignored| ignored.reason.starts_with(NOT_A_NUMBER) || ignored.reason == TEXT;
+        let names = self.ignored.iter().find(is_text)?.name.clone();
+        match numbers.as_slice() {
+            [value] => Some(Error::LongTable { names, values: (*value).to_owned() }),
+            _ => None,
+        }
     }
 
     /// Takes note that a column of the file stores times in a unit of its own type, from which it is read in seconds. A map that
@@ -367,6 +407,22 @@ impl Plan {
             repairs.extend(stuck_part::leave_out(t_s, &lone, &speed_mps, &names, &mut values));
         }
         Ok(Column::Numbers(values))
+    }
+
+    /// Refuses encoders of one side of which one has the other sign.
+    fn refuse_opposed(&self, entry: &Entry, columns: &[Column], t_s: &[f64]) -> Result<(), Error> {
+        if entry.columns.len() < 2 || entry.combine != Combine::Mean || !entry.target.is_wheel_speed() {
+            return Ok(());
+        }
+        let speeds = entry.columns.iter().filter_map(|column| match columns.get(*column) {
+            Some(Column::Numbers(values)) => {
+                let values: Vec<f64> = values.iter().map(|value| entry.conversion.apply(*value)).collect();
+                Some(if entry.is_derivative { rates(t_s, &values, entry.wraps_at) } else { values })
+            }
+            _ => None,
+        });
+        let names: Vec<String> = entry.columns.iter().map(|&column| self.headers[column].clone()).collect();
+        opposed_part::refuse(&speeds.collect::<Vec<_>>(), &names)
     }
 
     /// Counters that go on where they begin again, so that a mean of several does not jump by a part of a turn.

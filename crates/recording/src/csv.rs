@@ -3,9 +3,9 @@
 use std::io::Read;
 
 use crate::{
-    Error, Map,
+    Error, Map, Repair,
     cell::shown,
-    column::{Column, Kind, Plan},
+    column::{Column, Kind, NOT_A_NUMBER, Plan},
     csv_rows::{Role, Rows},
     csv_text::CsvText,
     error::Position,
@@ -18,6 +18,9 @@ use crate::{
 /// Remedy for words where a row of numbers should stand.
 const ANOTHER_HEADER: &str =
     "the line looks like another header: give files that were put together one by one";
+
+/// What is said of a package that breaks off.
+const BROKEN_PACKAGE: &str = "the package of the file breaks off behind this line; what is whole was read, and the rest of the drive is missing";
 
 /// Reads a text table in one pass, whatever it is packed with, encoded in and separated by.
 pub(crate) fn read(
@@ -58,7 +61,7 @@ pub(crate) fn read(
                 Column::Numbers(values) if kind == Kind::Perhaps => match rows.spelling.perhaps(cell) {
                     Some(value) => values.push(value),
                     None => {
-                        *column = Column::Unusable(format!("no channel, and not a number in line {line}"));
+                        *column = Column::Unusable(format!("{NOT_A_NUMBER} in line {line}"));
                     }
                 },
                 Column::Numbers(values) => {
@@ -90,6 +93,10 @@ pub(crate) fn read(
     }
     let (recording, mut report) = plan.assemble(table, name, |row| Position::Line(lines.of(row)))?;
     report.repairs.extend(rows.repairs());
+    if text.is_cut_off() {
+        let place = format!("line {}", lines.last());
+        report.repairs.push(Repair { place, what: BROKEN_PACKAGE.into() });
+    }
     Ok(Part { recording, report, found: headers, format: "CSV" })
 }
 
@@ -111,6 +118,11 @@ impl Lines {
             self.shifts.push((self.rows, shift));
         }
         self.rows += 1;
+    }
+
+    /// The line of the last row.
+    fn last(&self) -> u64 {
+        self.of(self.rows.saturating_sub(1))
     }
 
     fn of(&self, row: usize) -> u64 {

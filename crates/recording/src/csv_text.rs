@@ -29,6 +29,8 @@ pub(crate) struct CsvText {
     unread: Rc<Cell<usize>>,
     /// Quotation marks of what was read.
     quotes: Rc<RefCell<OpenQuotes>>,
+    /// Whether the package of the file was found to break off.
+    is_cut_off: Rc<Cell<bool>>,
     record: ByteRecord,
     /// Cells of a record that spaces separate.
     compact: ByteRecord,
@@ -45,6 +47,7 @@ impl CsvText {
         let returns = first_line(&text.beginning).ends_with(b"\r");
         let unread = Rc::new(Cell::new(0));
         let quotes = Rc::new(RefCell::new(OpenQuotes::new(dialect.separator.byte())));
+        let is_cut_off = Rc::clone(&text.is_cut_off);
         let bounded =
             Bounded { source: text.whole(), unread: Rc::clone(&unread), quotes: Rc::clone(&quotes) };
         let reader = ReaderBuilder::new()
@@ -58,10 +61,16 @@ impl CsvText {
             reader,
             unread,
             quotes,
+            is_cut_off,
             record: ByteRecord::new(),
             compact: ByteRecord::new(),
             returns,
         })
+    }
+
+    /// Whether the package of the file was found to break off.
+    pub(crate) fn is_cut_off(&self) -> bool {
+        self.is_cut_off.get()
     }
 
     /// How the file is written.

@@ -179,6 +179,32 @@ pub enum Error {
         /// Rows of the first column.
         expected: usize,
     },
+    /// Two encoders of one side that turn against each other.
+    #[error(
+        "`{first}` and `{second}` are of one side and turn in opposite directions in {rows} of {of} rows in which both turn: one has the other \
+         sign, and their mean is none of both; turn its sign in the file, or leave it out of the map"
+    )]
+    Opposed {
+        /// An encoder.
+        first: String,
+        /// Another.
+        second: String,
+        /// Rows in which they turn against each other.
+        rows: usize,
+        /// Rows in which both turn.
+        of: usize,
+    },
+    /// A table of one number a row, with its name beside it.
+    #[error(
+        "each of its rows has one number in `{values}`, and its name in `{names}`: make one column of each name, as pandas does by \
+         `df.pivot(columns=\"{names}\", values=\"{values}\", index=...)` with the column of times as index"
+    )]
+    LongTable {
+        /// The column of names.
+        names: String,
+        /// The column of numbers.
+        values: String,
+    },
     /// A row of units below the header that contradicts what the columns are taken to be in.
     #[error(
         "line {line}, column `{column}`: the row of units says `{found}`, {}",

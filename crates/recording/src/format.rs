@@ -55,6 +55,9 @@ impl Format {
             "active" if !is_packed && ending_of(&path.with_extension("")) == "bag" => Ok(Format::Bag),
             "db3" if !is_packed => Ok(Format::Db3),
             "ulg" if !is_packed => Ok(Format::Ulog),
+            // Of a name as `drive.gz` the content has to tell, which is that of text or refused.
+            "" if ending_of(path) == "gz" => Ok(Format::Csv),
+            "" if is_packed => Err(Error::UnknownFormat { ending: format!(".{}", ending_of(path)) }),
             _ if is_packed => Err(Error::UnknownFormat { ending: format!(".{ending}.{}", ending_of(path)) }),
             _ => Err(Error::UnknownFormat { ending: format!(".{ending}") }),
         }

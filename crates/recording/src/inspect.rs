@@ -2,7 +2,14 @@
 
 mod choice;
 mod guess;
+mod name;
+mod numbers;
+mod sides;
+mod spelled_unit;
 mod time_column;
+mod topics;
+mod unmapped;
+mod vocabulary;
 
 use std::{fs::File, path::Path};
 
@@ -10,20 +17,20 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use self::{
-    choice::sources,
-    guess::{Guess, guess},
+    choice::{Chosen, sources},
+    guess::guess,
+    numbers::{Seen, agree},
     time_column::{TimeColumn, time_column},
+    topics::topics,
 };
 use crate::{
-    Channel, Conversion, Error, Map, Quantity, Recording,
+    Channel, Error, Recording,
     beginning::beginning,
     format::Format,
-    map::Place,
-    reading::{Reading, read_path, unwatched},
-    report::ReadingReport,
+    reading::{read_path, unwatched},
 };
 
-pub(crate) use self::guess::Side;
+pub(crate) use self::name::Side;
 
 /// What a log holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -110,14 +117,12 @@ fn table(path: &Path) -> Result<Inspection, Error> {
     for (name, values) in columns.chain(recording.aside.iter().map(|(name, values)| (name.clone(), values))) {
         fields.push(field(&recording, name, values));
     }
-    let chosen = sources(&mut fields);
-    notes.extend(
-        fields
-            .iter()
-            .filter(|field| field.reason.starts_with("left out"))
-            .map(|field| format!("column `{}` is {}", field.name, field.reason)),
-    );
-    let sources: Vec<Value> = std::iter::once(of_time).chain(chosen).collect();
+    let Chosen { mut sources, notes: told } = sources(&mut fields);
+    sides::leave_out(&recording, &mut sources, &mut fields);
+    notes.extend(told);
+    notes.extend(sides::draw_negative_current(&recording, &mut sources));
+    notes.extend(left_out(&fields));
+    sources.insert(0, of_time);
     fields.insert(
         0,
         InspectedField {
@@ -130,6 +135,18 @@ fn table(path: &Path) -> Result<Inspection, Error> {
             reason,
         },
     );
+    let map = guessed_map(&fields, &sources, &mut notes);
+    Ok(Inspection { source: path.display().to_string(), fields, map, notes })
+}
+
+/// What is said of columns or fields that are left out.
+fn left_out(fields: &[InspectedField]) -> Vec<String> {
+    let left = fields.iter().filter(|field| field.reason.starts_with("left out"));
+    left.map(|field| format!("column `{}` is {}", field.name, field.reason)).collect()
+}
+
+/// A map of guessed sources, and what is to be looked at in it.
+fn guessed_map(fields: &[InspectedField], sources: &[Value], notes: &mut Vec<String>) -> Value {
     for channel in [Channel::LeftSpeed, Channel::RightSpeed] {
         if !fields.iter().any(|field| field.channel.as_deref() == Some(channel.name())) {
             notes.push(format!("no column was recognised as `{}`: name it in the map", channel.name()));
@@ -144,60 +161,28 @@ fn table(path: &Path) -> Result<Inspection, Error> {
         notes.push("wheel_radius_m in the map is a Husky's: put that of your robot".into());
     }
     notes.push("units are guesses by names and ranges: look at them before you trust an energy".into());
-    Ok(Inspection { source: path.display().to_string(), fields, map, notes })
+    map
 }
 
 fn field(recording: &Recording, name: String, values: &[f64]) -> InspectedField {
+    let rate_hz = rate_hz(recording, |row| !values[row].is_nan());
+    guessed_field(name, values, rate_hz)
+}
+
+fn guessed_field(name: String, values: &[f64], rate_hz: Option<f64>) -> InspectedField {
     let range = range(values);
-    let greatest = range.map_or(0.0, |[low, high]| high.abs().max(low.abs()));
     let is_contracts = Channel::from_name(&name).is_some();
-    let found =
-        guess(&name, greatest).and_then(|found| if is_contracts { Ok(found) } else { agree(found, values) });
+    let found = guess(&name, &Seen::of(values))
+        .and_then(|found| if is_contracts { Ok(found) } else { agree(found, values) });
     InspectedField {
         samples: values.iter().filter(|value| !value.is_nan()).count(),
-        rate_hz: rate_hz(recording, |row| !values[row].is_nan()),
+        rate_hz,
         range,
         channel: found.as_ref().ok().map(|found| found.channel.name().to_owned()),
         unit: found.as_ref().ok().map(|found| found.unit.to_owned()),
         reason: found.map_or_else(|reason| reason, |found| found.reason),
         name,
     }
-}
-
-/// The guess if its numbers may be those of its channel in its unit, or why they are not.
-fn agree(guess: Guess, values: &[f64]) -> Result<Guess, String> {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
-    if is_counted_up(&sorted)
-        && matches!(guess.channel.quantity(), Quantity::Speed | Quantity::Power | Quantity::Current)
-    {
-        return Err(format!(
-            "left out: it never falls, as an energy or a count of ticks, and {} does",
-            guess.channel
-        ));
-    }
-    // Wheels of any radius a robot has turn as their angular rates say.
-    let Some(unit) = Conversion::from_unit(guess.channel.quantity(), guess.unit, None) else {
-        return Ok(guess);
-    };
-    sorted.iter_mut().for_each(|value| *value = unit.apply(*value).abs());
-    sorted.sort_unstable_by(f64::total_cmp);
-    let Some(&high) = sorted.get(sorted.len().saturating_sub(1) * 99 / 100) else { return Ok(guess) };
-    let [least, most] = guess.channel.plausible_magnitude();
-    if high > most || (high > 0.0 && high < least) {
-        let Guess { channel, unit, .. } = guess;
-        return Err(format!(
-            "left out: as {channel} in {unit} its numbers reach {high:.4}, and a robot's lie between {least} and {most}; name its unit in the map"
-        ));
-    }
-    Ok(guess)
-}
-
-/// Whether numbers rise all the way, as those of counters do.
-fn is_counted_up(values: &[f64]) -> bool {
-    /// More rises in a row than any drive begins with.
-    const RISES: usize = 100;
-    let rises = values.windows(2).filter(|pair| pair[1] > pair[0]).count();
-    rises >= RISES && values.windows(2).all(|pair| pair[1] >= pair[0])
 }
 
 fn range(values: &[f64]) -> Option<[f64; 2]> {
@@ -213,140 +198,4 @@ fn rate_hz(recording: &Recording, is_there: impl Fn(usize) -> bool) -> Option<f6
     let rows: Vec<usize> = run.rows.clone().filter(|row| is_there(*row)).collect();
     let span_s = recording.t_s[*rows.last()?] - recording.t_s[*rows.first()?];
     (span_s > 0.0).then(|| (rows.len() - 1) as f64 / span_s)
-}
-
-/// A built-in map that reads a log, and what it reads.
-struct Candidate {
-    name: &'static str,
-    report: ReadingReport,
-}
-
-impl Candidate {
-    /// Whether a topic is of a robot whose namespaces begin as those of the map.
-    fn is_named(&self) -> bool {
-        let namespace = Map::built_in_namespace(self.name);
-        let is_of = |topic: &str, begin: &str| topic.trim_start_matches('/').starts_with(begin);
-        namespace.is_some_and(|begin| self.report.streams.iter().any(|stream| is_of(&stream.topic, begin)))
-    }
-
-    /// Whether the map is made for robots of another name.
-    fn is_anothers(&self) -> bool {
-        Map::built_in_namespace(self.name).is_some() && !self.is_named()
-    }
-
-    /// Channels that it reads.
-    fn channels(&self) -> usize {
-        self.report.channels.len()
-    }
-}
-
-/// Names of the topics of a log, as one reading of it tells them; none where it tells none.
-fn topic_names(read: &Result<Reading, Error>) -> Vec<String> {
-    let first_word = |name: &String| name.split_whitespace().next().unwrap_or_default().to_owned();
-    match read {
-        Ok(Reading { report, .. }) => {
-            let read = report.streams.iter().map(|stream| stream.topic.clone());
-            read.chain(report.ignored.iter().map(|ignored| first_word(&ignored.name))).collect()
-        }
-        Err(error) => error.found().unwrap_or_default().iter().map(first_word).collect(),
-    }
-}
-
-/// Whether a map names any of some topics.
-fn names_any(map: &Map, topics: &[String]) -> bool {
-    map.sources.iter().any(|source| match &source.place {
-        Place::Topic { topic: pattern, .. } => topics.iter().any(|topic| Map::topic_matches(pattern, topic)),
-        Place::Columns(_) => false,
-    })
-}
-
-/// The built-in map that reads most of a log, and why it was taken; of several the one that is made for robots of this name, else the first.
-/// The log is read once for each map that names one of its topics: what the first reading tells rules the others out.
-fn best_map(path: &Path) -> Result<(Candidate, String), Error> {
-    let mut first_error = None;
-    let (mut read, mut topics) = (Vec::new(), Vec::new());
-    for name in Map::BUILT_IN {
-        let Some(map) = Map::built_in(name).filter(|map| !map.names_columns()) else { continue };
-        if !topics.is_empty() && !names_any(&map, &topics) {
-            continue;
-        }
-        let reading = read_path(path, Some(&map));
-        if topics.is_empty() {
-            topics = topic_names(&reading);
-        }
-        match reading {
-            Ok(reading) => read.push(Candidate { name, report: reading.report }),
-            Err(error) => first_error = first_error.or(Some(error)),
-        }
-    }
-    let told: Vec<String> =
-        read.iter().map(|one| format!("`{}` reads {} channels", one.name, one.channels())).collect();
-    read.retain(|one| !one.is_anothers());
-    // The last of equals is taken by `max_by_key`.
-    let best = read.into_iter().rev().max_by_key(|one| (one.is_named(), one.channels()));
-    match best {
-        Some(best) => {
-            let why = if best.is_named() { "its robots have such namespaces" } else { "it reads most" };
-            let taken = format!(
-                "the built-in map `{}` was taken, since {why}; of all, {}",
-                best.name,
-                told.join(", ")
-            );
-            Ok((best, taken))
-        }
-        None => Err(first_error.unwrap_or(Error::Empty { found: "no map".into() })),
-    }
-}
-
-/// Topics as the best of the built-in maps reads them.
-fn topics(path: &Path) -> Result<Inspection, Error> {
-    let (Candidate { name, report }, taken) = best_map(path)?;
-    let ReadingReport { source, streams, channels, ignored, repairs, .. } = report;
-    let mut fields = Vec::new();
-    for stream in &streams {
-        let own: Vec<_> = channels
-            .iter()
-            .filter(|channel| channel.from.starts_with(&format!("{} ", stream.topic)))
-            .collect();
-        let told: Vec<String> =
-            own.iter().map(|channel| format!("{} [{}]", channel.channel, channel.unit)).collect();
-        fields.push(InspectedField {
-            name: stream.topic.clone(),
-            samples: stream.messages,
-            rate_hz: stream.rate_hz,
-            range: None,
-            channel: (!told.is_empty()).then(|| told.join(", ")),
-            unit: None,
-            reason: stream.type_name.clone(),
-        });
-    }
-    let wheels =
-        "wheel_radius_m and wheel_separation_m in the map are those of its robot: put those of yours";
-    let mut notes = vec![taken, wheels.to_owned()];
-    notes.extend(ignored.iter().map(|ignored| format!("not read: {} ({})", ignored.name, ignored.reason)));
-    notes.extend(repairs.iter().map(|repair| format!("{}: {}", repair.place, repair.what)));
-    let is_used = |source: &Value, topic: &str, channel: &str| {
-        let pattern = source["topic"].as_str().unwrap_or_default();
-        source["channel"] == json!(channel) && Map::topic_matches(pattern, topic)
-    };
-    let mut map = Map::built_in_document(name).unwrap_or_default();
-    let all = map["sources"].as_array().cloned().unwrap_or_default();
-    let mut kept = Vec::new();
-    for channel in &channels {
-        let Some((topic, of)) = channel.from.split_once(' ') else { continue };
-        let has_fields = |source: &&Value| {
-            let fields: Vec<&str> =
-                source["fields"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-            fields.join(", ") == of
-        };
-        let found =
-            all.iter().filter(|source| is_used(source, topic, channel.channel.name())).find(has_fields);
-        if let Some(mut source) = found.cloned() {
-            source["topic"] = json!(topic);
-            kept.push(source);
-        }
-    }
-    map["name"] = json!("inspected");
-    map["sources"] = json!(kept);
-    Ok(Inspection { source, fields, map, notes })
 }

@@ -5,6 +5,7 @@ use crate::{
     definition::{Base, Count, Definition, Field, Primitive},
     field::{Angle, Pick, Resolved, Segment, resolve},
     packs,
+    quaternion::Lengths,
     walk::{Found, Node, Picked},
 };
 
@@ -28,6 +29,9 @@ pub(crate) struct Layout {
     pub(crate) is_standard: bool,
 }
 
+/// The type of messages that tell a simulation's time.
+const CLOCK_TYPE: &str = "rosgraph_msgs/Clock";
+
 /// Bytes up to which a message is padded by its writer.
 const PADDING_BYTES: usize = 3;
 
@@ -43,7 +47,7 @@ enum ValueKind {
     Slot(usize),
     /// Texts, as one number.
     Texts([Option<usize>; packs::NAMES.len()]),
-    Angle([usize; 4], Angle),
+    Angle([usize; 4], Angle, Lengths),
 }
 
 /// A number wanted: the rest of its path, and the slots that it goes to.
@@ -85,7 +89,7 @@ impl Layout {
                         segments.iter().cloned().chain([last]).collect()
                     };
                     let parts = ["x", "y", "z", "w"].map(part);
-                    (ValueKind::Angle(parts.map(&mut slot), angle), segments.first().cloned())
+                    (ValueKind::Angle(parts.map(&mut slot), angle, Lengths::NONE), segments.first().cloned())
                 }
             };
             let covariance = root.and_then(|root| covariance(definition, &root.name));
@@ -95,9 +99,8 @@ impl Layout {
             let texts = packs::NAMES.map(|path| text(definition, path).map(&mut slot));
             values.push(Value { kind: ValueKind::Texts(texts), unknown_when_negative: None });
         }
-        let stamp = has_stamp(definition).then(|| {
-            let names = ["header", "stamp"];
-            let path = names.map(|name| Segment { name: name.into(), pick: None }).to_vec();
+        let stamp = stamp_names(definition).map(|names| {
+            let path = names.iter().map(|name| Segment { name: (*name).into(), pick: None }).collect();
             plan.push((path, [slots, slots + 1]));
             slots += 2;
             [slots - 2, slots - 1]
@@ -110,6 +113,11 @@ impl Layout {
         Ok(Layout { encoding, root: Node::Message(root), slots, keys, values, stamp, is_wide, is_standard })
     }
 
+    /// Whether its messages have a time of their own.
+    pub(crate) fn has_stamp(&self) -> bool {
+        self.stamp.is_some()
+    }
+
     /// Whether its messages are CDR, whose header no compressed one has.
     pub(crate) fn is_cdr(&self) -> bool {
         self.encoding == Encoding::Cdr
@@ -117,14 +125,14 @@ impl Layout {
 
     /// Reads a message into `values`, one per path, NaN where it has none; returns its stamp \[ns\].
     pub(crate) fn read(
-        &self,
+        &mut self,
         bytes: &[u8],
         found: &mut Found,
         values: &mut [f64],
     ) -> Result<Option<i64>, String> {
         let cursor = Cursor::message(bytes, self.encoding)?;
         self.find(cursor, bytes.len(), found)?;
-        for (value, wanted) in values.iter_mut().zip(&self.values) {
+        for (value, wanted) in values.iter_mut().zip(&mut self.values) {
             *value = wanted.of(&found.slots);
         }
         // Seconds and nanoseconds are whole numbers below 2³², which doubles hold exactly.
@@ -134,6 +142,13 @@ impl Layout {
             .zip(whole(nanoseconds))
             .and_then(|(s, ns)| s.checked_mul(1_000_000_000)?.checked_add(ns));
         Ok(stamp.filter(|_| self.stamp.is_some()))
+    }
+
+    /// What has to be said of the orientations that were read.
+    pub(crate) fn told(&self) -> Option<String> {
+        let of_angle =
+            |value: &Value| if let ValueKind::Angle(.., lengths) = value.kind { Some(lengths) } else { None };
+        self.values.iter().filter_map(of_angle).max_by_key(Lengths::count)?.told()
     }
 }
 
@@ -180,12 +195,12 @@ impl Layout {
 }
 
 impl Value {
-    fn of(&self, slots: &[f64]) -> f64 {
+    fn of(&mut self, slots: &[f64]) -> f64 {
         if self.unknown_when_negative.is_some_and(|slot| slots[slot] == -1.0) {
             return f64::NAN;
         }
-        let value = match self.kind {
-            ValueKind::Slot(slot) => slots[slot],
+        let value = match &mut self.kind {
+            ValueKind::Slot(slot) => slots[*slot],
             // Texts that are told one by one: places keep them apart.
             ValueKind::Texts(texts) => {
                 let told = texts.iter().flatten().zip(1..);
@@ -193,7 +208,9 @@ impl Value {
                     .filter(|text| text.is_finite())
                     .sum()
             }
-            ValueKind::Angle(parts, angle) => angle.of(parts.map(|slot| slots[slot])),
+            ValueKind::Angle(parts, angle, lengths) => lengths
+                .rotation(parts.map(|slot| slots[slot]))
+                .map_or(f64::NAN, |rotation| angle.of(rotation)),
         };
         // An infinity is no measurement: drivers use it as NaN.
         if value.is_finite() { value } else { f64::NAN }
@@ -224,12 +241,17 @@ fn covariance(definition: &Definition, field: &str) -> Option<Vec<Segment>> {
     Some(vec![Segment { name, pick: Some(Pick::At(0)) }])
 }
 
-fn has_stamp(definition: &Definition) -> bool {
+/// Where a message has its time: in its header, or as a clock's.
+fn stamp_names(definition: &Definition) -> Option<&'static [&'static str]> {
+    let is_time = |field: &Field| field.base == Base::Time && field.count == Count::One;
+    let is_clock = |field: &Field| field.name == "clock" && is_time(field);
+    if definition.name() == CLOCK_TYPE && definition.root().iter().any(is_clock) {
+        return Some(&["clock"]);
+    }
     let header = definition.root().iter().find(|field| field.name == "header" && field.count == Count::One);
-    let Some(Base::Message(name)) = header.map(|field| &field.base) else { return false };
-    let stamp =
-        |field: &Field| field.name == "stamp" && field.base == Base::Time && field.count == Count::One;
-    definition.fields(name).is_some_and(|fields| fields.iter().any(stamp))
+    let Some(Base::Message(name)) = header.map(|field| &field.base) else { return None };
+    let is_stamp = |field: &Field| field.name == "stamp" && is_time(field);
+    definition.fields(name)?.iter().any(is_stamp).then_some(&["header", "stamp"])
 }
 
 struct Builder<'d> {

@@ -29,7 +29,7 @@ use crate::{
 /// `column` (or `columns`) of a table or from `fields` of a `topic`; several are combined by `combine`: `mean` (default),
 /// `sum` or `product`. `unit` is that of the result, by default the channel's own; `scale` multiplies it. A topic
 /// beginning with `*` stands for any namespace before the rest. Where several sources give one channel, the first that
-/// the file holds is taken.
+/// covers most of the drive is taken. `topics` with the same `fields` are added up or averaged.
 ///
 /// A field path is names with dots; `[2]` picks an element of an array and `[name=front_left_wheel]` that element whose
 /// place in the text array `name` of the same message holds the given text. Behind a quaternion, `roll`, `pitch` and
@@ -76,6 +76,8 @@ pub struct Source {
     pub is_unit_given: bool,
     /// How the sign of a current is known.
     pub sign: Sign,
+    /// Whether it is added to the source before it, as the topic of a second battery pack.
+    pub is_further_part: bool,
 }
 
 /// How the sign of a battery's current is known, of which drivers have both.
@@ -223,6 +225,11 @@ impl Map {
             Place::Topic { .. } => false,
         };
         self.sources.iter().find(is_read).and_then(|_| drawn::settle(recording, &format!("column `{from}`")))
+    }
+
+    /// Whether it is one of the built-in maps, whose sources are alternatives.
+    pub(crate) fn is_built_in(&self) -> bool {
+        Map::BUILT_IN.contains(&self.name.as_str())
     }
 
     /// Whether any of its sources is a column of a table.

@@ -7,13 +7,12 @@ use crate::{
     align::{Between, interpolate_within},
     clock_offset, drawn, gap,
     map::Target,
-    meter,
-    namespace::{self, Others},
-    own_clocks, packs, publishers,
+    meter, namespace, opposed_part, own_clocks, packs, publishers,
     rate::rates,
     reading::{Part, Reading},
     report::{AlignmentReport, ChannelReport, ReadingReport, StreamReport},
     rows::check_steps,
+    sim_clock,
     stream::{Samples, Stream},
     stuck_part,
     topic::{Topic, Topics},
@@ -24,7 +23,10 @@ impl Topics<'_> {
     pub(crate) fn finish(mut self, name: &str, format: &'static str) -> Result<Reading, Error> {
         let mut report = ReadingReport::default();
         let mut streams = Vec::new();
-        for topic in std::mem::take(&mut self.topics) {
+        let (clocks, mut topics): (Vec<Topic>, Vec<Topic>) =
+            std::mem::take(&mut self.topics).into_iter().partition(|topic| topic.sources.is_empty());
+        self.repairs.extend(sim_clock::settle(clocks.first(), &mut topics));
+        for topic in topics {
             self.looks().go_on()?;
             if let Some(reason) = &topic.first_bad {
                 self.refuse_or_tell(&topic, reason)?;
@@ -33,6 +35,8 @@ impl Topics<'_> {
                 self.ignored.push(Ignored { name: topic.name, reason: "it has no message".into() });
                 continue;
             }
+            let told = topic.told().map(|what| Repair { place: format!("topic {}", topic.name), what });
+            self.repairs.extend(told);
             let messages = topic.samples.messages();
             let mut stream = self.stream(&topic.name, topic.samples, (&topic.sources, &topic.widths))?;
             self.combine(&topic.name, (&topic.sources, &topic.widths), &mut stream)?;
@@ -46,7 +50,7 @@ impl Topics<'_> {
             report.streams.push(StreamReport { topic: topic_name, type_name, messages, rate_hz, clock });
             streams.push(Named { topic: topic.name, sources: topic.sources, stream, step_s });
         }
-        let other = namespace::others(self.map, &streams)?;
+        let other = namespace::others(self.map, &streams, &self.names)?;
         let chosen = self.choose(&streams, other.as_ref());
         if chosen.is_empty() {
             let map = &self.map.name;
@@ -56,10 +60,9 @@ impl Topics<'_> {
                     format!("the file has {}, but map `{map}` reads none of them", names.join(", "))
                 }
                 (_, unread) => {
-                    format!(
-                        "map `{map}` names topics of the file, but none can be read: {}",
-                        unread.join("; ")
-                    )
+                    let lost = self.repairs.iter().map(|repair| format!("{}: {}", repair.place, repair.what));
+                    let why: Vec<String> = unread.iter().cloned().chain(lost).collect();
+                    format!("map `{map}` names topics of the file, but none can be read: {}", why.join("; "))
                 }
             };
             return Err(Error::Empty { found });
@@ -120,13 +123,14 @@ impl Topics<'_> {
                     *part = rates(&t_s, part, source.wraps_at);
                 }
             }
+            let names =
+                source.place.names().iter().map(|field| format!("{topic} {field}")).collect::<Vec<_>>();
+            opposed_part::refuse(&parts, &names)?;
             let mut column = match parts.as_slice() {
                 [_] => parts.swap_remove(0),
                 _ => source.combine.of_rows(&parts),
             };
             let speed_mps = column.clone();
-            let names =
-                source.place.names().iter().map(|field| format!("{topic} {field}")).collect::<Vec<_>>();
             self.repairs.extend(stuck_part::leave_out(&t_s, &lone, &speed_mps, &names, &mut column));
             stream.columns.push(column);
         }
@@ -148,36 +152,6 @@ impl Topics<'_> {
         );
         self.repairs.push(Repair { place: format!("topic {}", topic.name), what });
         Ok(())
-    }
-
-    /// For each target the first source of the map that has a value: (source, stream, column).
-    fn choose(&mut self, streams: &[Named], other: Option<&Others>) -> Vec<(usize, usize, usize)> {
-        let mut chosen: Vec<(usize, usize, usize)> = Vec::new();
-        for (index, source) in self.map.sources.iter().enumerate() {
-            for (at, named) in streams.iter().enumerate() {
-                let Some(column) = named.sources.iter().position(|(source, _)| *source == index) else {
-                    continue;
-                };
-                let taken = chosen.iter().any(|(other, ..)| self.map.sources[*other].target == source.target);
-                let holds = named.stream.columns[column].iter().any(|value| !value.is_nan());
-                if let Some(reason) = other.and_then(|other| other.why_not(&named.topic)) {
-                    let name = format!("{}, {}", named.topic, source.place.names().join(", "));
-                    self.ignored.push(Ignored { name, reason });
-                    continue;
-                }
-                let reason = match (holds, taken) {
-                    (true, false) => {
-                        chosen.push((index, at, column));
-                        continue;
-                    }
-                    (true, true) => "an earlier source gives the same channel",
-                    (false, _) => "it holds no number",
-                };
-                let name = format!("{}, {}", named.topic, source.place.names().join(", "));
-                self.ignored.push(Ignored { name, reason: reason.into() });
-            }
-        }
-        chosen
     }
 
     /// Brings all streams onto the stamps of a base; power of a meter that is slower is held over its periods.
@@ -243,8 +217,15 @@ impl Topics<'_> {
             match &source.target {
                 Target::Channel(channel) => {
                     let from = format!("{} {}", named.topic, source.place.names().join(", "));
-                    report.channels.push(ChannelReport::new(*channel, from, source.unit.clone()));
-                    recording.channels.insert(*channel, values);
+                    let leader = recording.channels.get_mut(channel).filter(|_| source.is_further_part);
+                    let known = report.channels.iter_mut().find(|known| known.channel == *channel);
+                    if let (Some(sum), Some(known)) = (leader, known) {
+                        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+                        known.from = format!("{}, {from}", known.from);
+                    } else {
+                        report.channels.push(ChannelReport::new(*channel, from, source.unit.clone()));
+                        recording.channels.insert(*channel, values);
+                    }
                 }
                 Target::Aside(name) => {
                     recording.aside.insert(name.clone(), values);

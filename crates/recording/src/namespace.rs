@@ -29,7 +29,7 @@ fn robot(topic: &str) -> Option<&str> {
 ///
 /// # Errors
 /// [`Error::SeveralRobots`] where that is none or several.
-pub(crate) fn others(map: &Map, streams: &[Named]) -> Result<Option<Others>, Error> {
+pub(crate) fn others(map: &Map, streams: &[Named], names: &[String]) -> Result<Option<Others>, Error> {
     let mut told = BTreeMap::<&str, BTreeSet<&Target>>::new();
     let mut rivals = BTreeSet::new();
     for (index, source) in map.sources.iter().enumerate() {
@@ -49,6 +49,9 @@ pub(crate) fn others(map: &Map, streams: &[Named]) -> Result<Option<Others>, Err
         if of_source.len() > 1 {
             rivals.extend(of_source);
         }
+    }
+    if rivals.is_empty() {
+        rivals = strangers(map, &told, names);
     }
     if rivals.is_empty() {
         return Ok(None);
@@ -74,4 +77,44 @@ pub(crate) fn others(map: &Map, streams: &[Named]) -> Result<Option<Others>, Err
     };
     let others = rivals.iter().filter(|own| **own != taken).map(|own| (*own).to_owned()).collect();
     Ok(Some(Others { taken: taken.to_owned(), others }))
+}
+
+/// Robots of which one tells the wheel speeds and the other the power, so that no robot tells both. Parts of one robot have namespaces too:
+/// of different robots are those whose names differ by a number alone, or that both have a topic by which the map tells wheel speeds.
+fn strangers<'s>(
+    map: &Map,
+    told: &BTreeMap<&'s str, BTreeSet<&Target>>,
+    names: &[String],
+) -> BTreeSet<&'s str> {
+    let power = |target: &Target| matches!(target, Target::Channel(channel) if channel.tells_power());
+    let with = |is: &dyn Fn(&Target) -> bool| -> Vec<&'s str> {
+        told.iter()
+            .filter(|(_, targets)| targets.iter().any(|target| is(target)))
+            .map(|(own, _)| *own)
+            .collect()
+    };
+    let (wheels, powers) = (with(&Target::is_wheel_speed), with(&power));
+    if wheels.iter().any(|own| powers.contains(own)) {
+        return BTreeSet::new();
+    }
+    let are_strangers = |one: &str, other: &str| {
+        is_alike_but_for_a_number(one, other) || {
+            let of_wheels = map.sources.iter().filter(|source| source.target.is_wheel_speed());
+            let patterns = of_wheels.filter_map(|source| match &source.place {
+                Place::Topic { topic, .. } => topic.strip_prefix('*'),
+                Place::Columns(_) => None,
+            });
+            let has = |own: &str, rest: &str| {
+                names.iter().any(|name| robot(name) == Some(own) && name.ends_with(rest))
+            };
+            patterns.into_iter().any(|rest| has(one, rest) && has(other, rest))
+        }
+    };
+    let pairs = wheels.iter().flat_map(|one| powers.iter().map(move |other| (*one, *other)));
+    pairs.filter(|(one, other)| are_strangers(one, other)).flat_map(|(one, other)| [one, other]).collect()
+}
+
+fn is_alike_but_for_a_number(one: &str, other: &str) -> bool {
+    let without = |name: &str| name.chars().filter(|sign| !sign.is_ascii_digit()).collect::<String>();
+    one != other && without(one) == without(other)
 }

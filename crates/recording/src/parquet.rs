@@ -189,6 +189,12 @@ impl Source {
             (ColumnReader::BoolColumnReader(r), Column::Numbers(v)) => {
                 self.numbers(r, v, |x| f64::from(u8::from(*x)))?
             }
+            (ColumnReader::ByteArrayColumnReader(r), Column::Numbers(v)) => {
+                self.numbers(r, v, |x| big_endian(x.data()))?
+            }
+            (ColumnReader::FixedLenByteArrayColumnReader(r), Column::Numbers(v)) => {
+                self.numbers(r, v, |x| big_endian(x.data()))?
+            }
             (ColumnReader::ByteArrayColumnReader(r), Column::Labels(labels)) => {
                 self.labels(r, labels, before, |text: &ByteArray| {
                     text.as_utf8().unwrap_or_default().to_owned()
@@ -282,6 +288,14 @@ impl Source {
             None => Ok(rows),
         }
     }
+}
+
+/// The whole number of a decimal in bytes: two's complement, the highest byte first (Parquet format, logical types, `DECIMAL`).
+fn big_endian(bytes: &[u8]) -> f64 {
+    let negative = bytes.first().is_some_and(|byte| byte & 0x80 != 0);
+    let magnitude = |byte: &u8| if negative { !byte } else { *byte };
+    let whole = bytes.iter().map(magnitude).fold(0.0, |whole, byte| 256.0 * whole + f64::from(byte));
+    if negative { -whole - 1.0 } else { whole }
 }
 
 /// Calls with every value of the next rows of a column chunk, `None` for nulls: those whose definition level is not the full one.

@@ -7,7 +7,7 @@ use ::parquet::{
     schema::types::ColumnDescriptor,
 };
 
-use crate::column::Kind;
+use crate::column::{Kind, TEXT};
 
 /// The unit that a column of integers stores times in by its type, whatever the writer says it by; `None` for plain numbers.
 pub(crate) fn time_unit(
@@ -52,7 +52,8 @@ pub(crate) fn is_unsigned(descriptor: &ColumnDescriptor) -> bool {
     }
 }
 
-fn is_decimal(descriptor: &ColumnDescriptor) -> bool {
+/// Whether a column holds decimals.
+pub(crate) fn is_decimal(descriptor: &ColumnDescriptor) -> bool {
     matches!(descriptor.logical_type_ref(), Some(LogicalType::Decimal(_)))
         || descriptor.converted_type() == ConvertedType::DECIMAL
 }
@@ -72,13 +73,13 @@ pub(crate) fn refuse_type(descriptor: &ColumnDescriptor, kind: Kind) -> Result<(
     let is_integer = matches!(physical, Physical::INT32 | Physical::INT64);
     let (logical, converted) = (descriptor.logical_type_ref(), descriptor.converted_type());
     match physical {
-        _ if is_decimal(descriptor) && !is_integer => Err("it holds decimals in bytes".into()),
+        _ if is_decimal(descriptor) && !is_integer => Ok(()),
         _ if matches!(logical, Some(LogicalType::Date)) || converted == ConvertedType::DATE => {
             Err("it holds dates".into())
         }
         Physical::DOUBLE | Physical::FLOAT | Physical::INT96 | Physical::BOOLEAN => Ok(()),
         _ if is_integer => Ok(()),
-        _ if text => Err("it holds text".into()),
+        _ if text => Err(TEXT.into()),
         _ => Err(format!("it holds {physical}")),
     }
 }

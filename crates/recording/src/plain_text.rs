@@ -1,11 +1,15 @@
 //! The bytes of a text file as UTF-8: unpacked by their content, and decoded where they are UTF-16.
 
-use std::io::{BufReader, Chain, Cursor, Read, Result as IoResult};
+use std::{
+    cell::Cell,
+    io::{BufReader, Chain, Cursor, Read, Result as IoResult},
+    rc::Rc,
+};
 
 use flate2::read::MultiGzDecoder;
 use zstd::stream::read::Decoder as ZstdDecoder;
 
-use crate::Error;
+use crate::{Error, cut_off::WholeLines};
 
 /// Bytes that are looked at before anything is read: a header of any file.
 pub(crate) const BEGINNING_BYTES: usize = 1 << 20;
@@ -31,20 +35,28 @@ pub(crate) struct PlainText {
     /// Its first bytes, [`BEGINNING_BYTES`] at most.
     pub(crate) beginning: Vec<u8>,
     rest: Box<dyn Read>,
+    /// Whether what it is packed in was found to break off.
+    pub(crate) is_cut_off: Rc<Cell<bool>>,
 }
 
 impl PlainText {
     /// Opens a text file, whatever it is packed and encoded with.
     pub(crate) fn open<R: Read + 'static>(source: R) -> Result<PlainText, Error> {
         let text = PlainText::begin(Box::new(source))?;
+        let is_cut_off = Rc::clone(&text.is_cut_off);
         let unpacked: Box<dyn Read> = if text.beginning.starts_with(&[0x1f, 0x8b]) {
-            Box::new(MultiGzDecoder::new(text.whole()))
+            Box::new(WholeLines::new(MultiGzDecoder::new(text.whole()), Rc::clone(&is_cut_off)))
         } else if text.beginning.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]) {
-            Box::new(ZstdDecoder::new(text.whole())?)
+            Box::new(WholeLines::new(ZstdDecoder::new(text.whole())?, Rc::clone(&is_cut_off)))
         } else {
             return text.decode();
         };
-        PlainText::begin(unpacked).map_err(unpacking)?.decode()
+        let text = PlainText { is_cut_off, ..PlainText::begin(unpacked).map_err(unpacking)? };
+        if text.beginning.is_empty() && text.is_cut_off.get() {
+            let reason = "it breaks off before its first line ends; pack it again".into();
+            return Err(Error::NotTheFormat { format: "packed CSV", reason });
+        }
+        text.decode()
     }
 
     /// All of its bytes.
@@ -55,7 +67,7 @@ impl PlainText {
     fn begin(mut source: Box<dyn Read>) -> Result<PlainText, Error> {
         let mut beginning = Vec::new();
         source.by_ref().take(BEGINNING_BYTES as u64).read_to_end(&mut beginning)?;
-        Ok(PlainText { beginning, rest: source })
+        Ok(PlainText { beginning, rest: source, is_cut_off: Rc::default() })
     }
 
     fn decode(mut self) -> Result<PlainText, Error> {
@@ -72,9 +84,10 @@ impl PlainText {
             }
             return Ok(self);
         };
+        let is_cut_off = Rc::clone(&self.is_cut_off);
         let source = BufReader::with_capacity(BLOCK_BYTES, self.whole());
         let decoded = Utf16 { source, order, held: Vec::new(), ready: Cursor::default() };
-        PlainText::begin(Box::new(decoded))
+        Ok(PlainText { is_cut_off, ..PlainText::begin(Box::new(decoded))? })
     }
 }
 

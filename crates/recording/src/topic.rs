@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    Error, Ignored, Map, Repair, Source,
+    Error, Ignored, Map, Repair, Source, Stamp,
     beginning::Looked,
     compression::decompress_message,
     format::ZSTD_MAGIC,
@@ -11,6 +11,7 @@ use crate::{
     map::Place,
     packs,
     schema::Schema,
+    sim_clock,
     stream::Samples,
     walk::Found,
     watch::{Budget, Looks},
@@ -147,6 +148,9 @@ impl<'m> Topics<'m> {
                 wanted.push((index, fields));
             }
         }
+        if topic == sim_clock::TOPIC && self.map.stamp == Stamp::Header {
+            return Ok(self.open_clock(topic, schema));
+        }
         if wanted.is_empty() {
             self.ignore(topic.into(), NOT_NAMED);
             return Ok(None);
@@ -209,6 +213,24 @@ impl<'m> Topics<'m> {
         Ok(Some(self.topics.len() - 1))
     }
 
+    /// Plans the reading of a simulation's time; `None` of what is none.
+    fn open_clock(&mut self, topic: &str, schema: &Schema<'_>) -> Option<usize> {
+        let definition = schema.parse().ok()?;
+        let layout = Layout::new(&definition, &[], false, schema.encoding).ok().filter(Layout::has_stamp)?;
+        self.topics.push(Topic {
+            name: topic.to_owned(),
+            type_name: schema.type_name.to_owned(),
+            layout,
+            sources: Vec::new(),
+            widths: Vec::new(),
+            values: Vec::new(),
+            samples: Samples::new(std::iter::empty(), false),
+            bad: 0,
+            first_bad: None,
+        });
+        Some(self.topics.len() - 1)
+    }
+
     /// Columns that a source has until all messages are read: encoders of a side are looked at one by one.
     fn width(&self, index: usize, fields: usize) -> usize {
         if self.map.sources.get(index).is_some_and(Source::is_mean_of_wheels) { fields } else { 1 }
@@ -239,7 +261,7 @@ impl<'m> Topics<'m> {
     pub(crate) fn message(&mut self, id: u32, log_ns: i64, bytes: &[u8]) -> Result<(), Error> {
         let Some(Some(index)) = self.connections.get(&id) else { return Ok(()) };
         if let Some(looked) = &mut self.looked {
-            looked.message(*index, bytes, &mut self.found);
+            looked.message(*index, log_ns, bytes, &mut self.found);
             return Ok(());
         }
         let Some(topic) = self.topics.get_mut(*index) else { return Ok(()) };
@@ -297,6 +319,13 @@ impl<'m> Topics<'m> {
         }
         self.numbers = numbers(&self.topics);
         Ok(())
+    }
+}
+
+impl Topic {
+    /// What has to be said of what its messages hold.
+    pub(crate) fn told(&self) -> Option<String> {
+        self.layout.told()
     }
 }
 

@@ -82,9 +82,11 @@ fn units(quantity: Quantity) -> &'static [(&'static str, f64, f64)] {
         Quantity::AngularRate => &[("rad/s", 1.0, 0.0), ("deg/s", PI / 180.0, 0.0), ("rpm", TAU / 60.0, 0.0)],
         Quantity::Angle => &[("rad", 1.0, 0.0), ("deg", PI / 180.0, 0.0), ("mrad", 1e-3, 0.0)],
         Quantity::Acceleration => &[("m/s2", 1.0, 0.0), ("g", 9.80665, 0.0), ("mg", 9.80665e-3, 0.0)],
-        Quantity::Power => &[("W", 1.0, 0.0), ("kW", 1e3, 0.0), ("mW", 1e-3, 0.0)],
-        Quantity::Current => &[("A", 1.0, 0.0), ("mA", 1e-3, 0.0)],
-        Quantity::Voltage => &[("V", 1.0, 0.0), ("mV", 1e-3, 0.0), ("kV", 1e3, 0.0)],
+        Quantity::Power => &[("W", 1.0, 0.0), ("kW", 1e3, 0.0), ("dW", 1e-1, 0.0), ("mW", 1e-3, 0.0)],
+        Quantity::Current => &[("A", 1.0, 0.0), ("dA", 1e-1, 0.0), ("cA", 1e-2, 0.0), ("mA", 1e-3, 0.0)],
+        Quantity::Voltage => {
+            &[("V", 1.0, 0.0), ("dV", 1e-1, 0.0), ("cV", 1e-2, 0.0), ("mV", 1e-3, 0.0), ("kV", 1e3, 0.0)]
+        }
         Quantity::Temperature => &[
             ("degC", 1.0, 0.0),
             ("C", 1.0, 0.0),

@@ -1,9 +1,11 @@
 //! A row of units below the header, as data loggers and MATLAB write it.
 
-use crate::{Conversion, Error, Quantity, cell::is_missing, column::Plan, error::excerpt, unit_names};
+use crate::{
+    Conversion, Error, Quantity, calendar, cell::is_missing, column::Plan, error::excerpt, unit_names,
+};
 
 /// Other spellings of units, and their names in maps.
-const SPELLINGS: [(&str, &str); 50] = [
+const SPELLINGS: [(&str, &str); 53] = [
     ("sec", "s"),
     ("secs", "s"),
     ("second", "s"),
@@ -17,7 +19,10 @@ const SPELLINGS: [(&str, &str); 50] = [
     ("nanoseconds", "ns"),
     ("minutes", "min"),
     ("hours", "h"),
+    ("hr", "h"),
+    ("hrs", "h"),
     ("days", "d"),
+    ("day", "d"),
     ("mps", "m/s"),
     ("m/sec", "m/s"),
     ("m s-1", "m/s"),
@@ -76,7 +81,8 @@ pub(crate) fn is_units_row<'c>(
         |text: &str| text.contains(|character: char| character.is_alphabetic() || character == '°');
     let is_word = |text: &str| tells_nothing(text) || (has_letter(text) && digits(text) <= 2);
     let first = plan.time().and_then(|time| needed.iter().find(|(column, _)| *column == time));
-    let is_time_word = first.is_some_and(|(_, text)| !tells_nothing(text));
+    let is_time_word =
+        first.is_some_and(|(_, text)| !tells_nothing(text) && calendar::duration_s(text).is_none());
     let has_number = needed.iter().any(|(_, text)| !tells_nothing(text) && text.parse::<f64>().is_ok());
     if !is_time_word || has_number || !needed.iter().all(|(_, text)| is_word(text)) {
         return Ok(false);
@@ -98,7 +104,8 @@ pub(crate) fn is_units_row<'c>(
     Ok(true)
 }
 
-fn symbol(spelled: &str) -> &str {
+/// The unit of maps that is spelled otherwise.
+pub(crate) fn symbol(spelled: &str) -> &str {
     SPELLINGS.iter().find(|(spelling, _)| *spelling == spelled).map_or(spelled, |(_, symbol)| symbol)
 }
 

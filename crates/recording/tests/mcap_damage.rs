@@ -27,6 +27,15 @@ fn the_summary_says_what_messages_are_where_the_chunk_that_describes_them_is_dam
 }
 
 #[test]
+fn a_file_of_which_no_chunk_is_whole_is_refused_with_what_is_wrong_with_them() {
+    let (mut damaged, first_chunk) = mcap_of_two_chunks(&drive(1000, 0..200));
+    damaged[first_chunk.end - 3] ^= 0x01;
+    damaged[first_chunk.end + 200] ^= 0x01;
+    let refused = read_mcap(damaged).unwrap_err().to_string();
+    assert!(refused.contains("checksum") && refused.contains("9.900 s"), "{refused}");
+}
+
+#[test]
 fn a_damaged_summary_is_not_trusted() {
     let (whole, first_chunk) = mcap_of_two_chunks(&drive(1000, 0..200));
     for from_end in [60, 80, 120] {

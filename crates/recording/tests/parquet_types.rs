@@ -5,7 +5,10 @@
 use std::sync::Arc;
 
 use ::parquet::{
-    data_type::{DataType, DoubleType, FloatType, Int32Type, Int64Type},
+    data_type::{
+        ByteArray, ByteArrayType, DataType, DoubleType, FixedLenByteArray, FixedLenByteArrayType, FloatType,
+        Int32Type, Int64Type,
+    },
     file::writer::SerializedFileWriter,
     schema::parser::parse_message_type,
 };
@@ -102,6 +105,17 @@ fn decimals_have_their_point_and_unsigned_integers_no_sign() {
     }
     let column = "required int64 power_w (DECIMAL(18,3))";
     assert!((power_w(table::<Int64Type>(column, &[40_250; ROWS], None)) - 40.25).abs() < 1e-9);
+    // Decimals of Python and Arrow come in bytes.
+    for (declared, hundredths) in [("DECIMAL(7,2)", 4_025i64), ("DECIMAL(7,2)", -4_025)] {
+        let bytes = hundredths.to_be_bytes()[4..].to_vec();
+        let column = format!("required fixed_len_byte_array(4) power_w ({declared})");
+        let fixed = vec![FixedLenByteArray::from(bytes.clone()); ROWS];
+        let read_w = power_w(table::<FixedLenByteArrayType>(&column, &fixed, None));
+        assert!((read_w - hundredths as f64 / 100.0).abs() < 1e-9, "{read_w}");
+        let column = format!("required binary power_w ({declared})");
+        let read_w = power_w(table::<ByteArrayType>(&column, &vec![ByteArray::from(bytes); ROWS], None));
+        assert!((read_w - hundredths as f64 / 100.0).abs() < 1e-9, "{read_w}");
+    }
     // Microseconds of a controller's clock of 32 bits pass 2³¹ after 36 minutes.
     let past: Vec<i32> = (0..ROWS as u32).map(|row| (0x7fff_ff00 + 250_000 * row).cast_signed()).collect();
     let source = r#"{"channel": "t_s", "column": "t_s", "unit": "us"}"#;

@@ -1,213 +1,121 @@
 //! What a column is, guessed from its name and the range of its numbers.
 
+use super::{
+    name::Name,
+    numbers::Seen,
+    spelled_unit::{SpelledUnit, spelled_unit},
+    vocabulary::{DEVICES, KNOWN, LEFT, OTHER_QUANTITIES, RIGHT, Words},
+};
 use crate::{Channel, Quantity, units::si_unit};
 
 /// What a column may be.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Guess {
-    pub(crate) channel: Channel,
-    pub(crate) unit: &'static str,
-    pub(crate) reason: String,
+pub(super) struct Guess {
+    pub(super) channel: Channel,
+    pub(super) unit: &'static str,
+    pub(super) reason: String,
 }
 
-/// Words that a channel's name may be made of; all groups must be met, and none of the last.
-struct Words {
-    channel: Channel,
-    all: &'static [&'static [&'static str]],
-    none: &'static [&'static str],
+/// How the words of a channel fit a name.
+enum Fit {
+    /// Not at all.
+    Not,
+    /// The channel is named, and so is what rules it out.
+    Refused(String),
+    /// With the unit that the name says, if it says one.
+    Fits(Option<&'static str>),
 }
 
-pub(super) const LEFT: &[&str] = &["left", "l", "fl", "rl", "lf", "lr", "lhs"];
-pub(super) const RIGHT: &[&str] = &["right", "r", "fr", "rr", "rf", "rhs"];
-const SPEED: &[&str] = &["speed", "vel", "velocity", "rpm", "v", "wheel", "encoder"];
-const POWER: &[&str] = &["power", "watt", "watts", "w", "p", "pwr"];
-const CURRENT: &[&str] = &["current", "amp", "amps", "a", "ma", "i"];
-/// What takes or gives power beside the battery of the drive, and what is asked of it.
-const NO_BATTERY: &[&str] = &[
-    "cmd", "command", "target", "setpoint", "desired", "limit", "left", "right", "cpu", "gpu", "solar",
-    "charge", "charger", "charging",
-];
-const COMMAND: &[&str] = &[
-    "cmd",
-    "command",
-    "target",
-    "setpoint",
-    "desired",
-    "temp",
-    "temperature",
-    "voltage",
-    "position",
-    "accel",
-];
-
-const KNOWN: [Words; 16] = [
-    Words { channel: Channel::LeftMotorTemperature, all: &[LEFT, &["temp", "temperature"]], none: &["cmd"] },
-    Words {
-        channel: Channel::RightMotorTemperature,
-        all: &[RIGHT, &["temp", "temperature"]],
-        none: &["cmd"],
-    },
-    Words { channel: Channel::LeftPower, all: &[LEFT, &["power", "watt", "watts", "pwr"]], none: COMMAND },
-    Words { channel: Channel::RightPower, all: &[RIGHT, &["power", "watt", "watts", "pwr"]], none: COMMAND },
-    Words {
-        channel: Channel::LeftMotorCurrent,
-        all: &[LEFT, &["current", "amp", "amps", "ma"]],
-        none: COMMAND,
-    },
-    Words {
-        channel: Channel::RightMotorCurrent,
-        all: &[RIGHT, &["current", "amp", "amps", "ma"]],
-        none: COMMAND,
-    },
-    Words { channel: Channel::LeftSpeed, all: &[LEFT, SPEED], none: COMMAND },
-    Words { channel: Channel::RightSpeed, all: &[RIGHT, SPEED], none: COMMAND },
-    Words {
-        channel: Channel::YawRate,
-        all: &[&["yaw", "gyro", "angular"], &["rate", "z", "gz", "dps", "rad"]],
-        none: COMMAND,
-    },
-    Words { channel: Channel::Heading, all: &[&["heading", "yaw", "bearing"]], none: &["rate", "cmd"] },
-    Words { channel: Channel::Pitch, all: &[&["pitch"]], none: &["rate", "cmd"] },
-    Words { channel: Channel::Roll, all: &[&["roll"]], none: &["rate", "cmd"] },
-    Words {
-        channel: Channel::AmbientTemperature,
-        all: &[&["ambient", "air"], &["temp", "temperature", "c"]],
-        none: &[],
-    },
-    Words {
-        channel: Channel::Power,
-        all: &[POWER, &["battery", "bat", "batt", "total", "power", "pack", "watt", "watts"]],
-        none: NO_BATTERY,
-    },
-    Words {
-        channel: Channel::Current,
-        all: &[CURRENT, &["battery", "bat", "batt", "total", "current", "pack", "amps"]],
-        none: NO_BATTERY,
-    },
-    Words {
-        channel: Channel::Voltage,
-        all: &[
-            &["voltage", "volt", "volts", "v", "mv"],
-            &["battery", "bat", "batt", "voltage", "pack", "volts", "volt"],
-        ],
-        none: &["cmd"],
-    },
-];
-
-/// Spellings of units, by quantity.
-const SPELLED: [(Quantity, &str, &[&str]); 24] = [
-    (Quantity::Speed, "rpm", &["rpm"]),
-    (Quantity::Speed, "rad/s", &["rad/s", "radps", "rad_s", "rads", "rad_per_s", "radpersec"]),
-    (Quantity::Speed, "deg/s", &["deg/s", "degps", "deg_s", "dps"]),
-    (Quantity::Speed, "km/h", &["km/h", "kmh", "kph"]),
-    (Quantity::Speed, "mph", &["mph"]),
-    (Quantity::Speed, "mm/s", &["mm/s", "mmps", "mm_s"]),
-    (Quantity::Speed, "cm/s", &["cm/s", "cmps", "cm_s"]),
-    (Quantity::Speed, "m/s", &["m/s", "mps", "m_s"]),
-    (Quantity::AngularRate, "deg/s", &["deg/s", "degps", "deg_s", "dps", "deg"]),
-    (Quantity::AngularRate, "rad/s", &["rad/s", "radps", "rad_s", "rads"]),
-    (Quantity::Angle, "deg", &["deg", "°", "degrees"]),
-    (Quantity::Angle, "mrad", &["mrad"]),
-    (Quantity::Angle, "rad", &["rad", "radians"]),
-    (Quantity::Power, "kW", &["kw"]),
-    (Quantity::Power, "mW", &["mw", "milliwatt", "milliwatts"]),
-    (Quantity::Power, "W", &["w", "watt", "watts"]),
-    (Quantity::Current, "mA", &["ma", "milliamp", "milliamps"]),
-    (Quantity::Current, "A", &["a", "amp", "amps"]),
-    (Quantity::Voltage, "mV", &["mv", "millivolt", "millivolts"]),
-    (Quantity::Voltage, "V", &["volt", "volts"]),
-    (Quantity::Temperature, "K", &["k", "kelvin"]),
-    (Quantity::Temperature, "degF", &["f", "degf", "fahrenheit"]),
-    (Quantity::Temperature, "degC", &["c", "degc", "celsius"]),
-    (Quantity::Length, "m", &["m"]),
-];
-
-/// Words of names that say a unit of which no quantity here is measured: energies, charges, counts, and units that maps do not know.
-const UNKNOWN_UNITS: [&str; 35] = [
-    "wh", "kwh", "mwh", "j", "kj", "joule", "joules", "energy", "ah", "mah", "coulomb", "hp", "bhp", "ps",
-    "cv", "va", "dbm", "kn", "kt", "kts", "knot", "knots", "fps", "ftps", "ips", "ua", "percent", "pct",
-    "adc", "count", "counts", "tick", "ticks", "pwm", "duty",
-];
-
-/// A side of the robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    Left,
-    Right,
-}
-
-impl Side {
-    /// The side that a name says; `None` where it says none or both.
-    pub(crate) fn of_name(name: &str) -> Option<Side> {
-        let words = words(name);
-        let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
-        match (has(LEFT), has(RIGHT)) {
-            (true, false) => Some(Side::Left),
-            (false, true) => Some(Side::Right),
-            _ => None,
-        }
-    }
-}
-
-/// Lower-case words of a name, cut at signs, digits and changes of case.
-pub(super) fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut before_lower = false;
-    let mut characters = name.chars().peekable();
-    while let Some(character) = characters.next() {
-        // A hump of `wheelSpeed`, and no `kW`.
-        let is_hump = character.is_uppercase()
-            && before_lower
-            && characters.peek().is_some_and(|next| next.is_lowercase());
-        if !character.is_alphabetic() || is_hump {
-            words.push(String::new());
-        }
-        if let (true, Some(word)) = (character.is_alphabetic(), words.last_mut()) {
-            word.extend(character.to_lowercase());
-        }
-        before_lower = character.is_lowercase();
-    }
-    words.retain(|word| !word.is_empty());
-    words
-}
-
-/// What a column of a name and a greatest magnitude may be, or why it is none.
-pub(crate) fn guess(name: &str, greatest: f64) -> Result<Guess, String> {
-    if let Some(channel) = Channel::from_name(name) {
+/// What a column of a name and of numbers may be, or why it is none.
+pub(super) fn guess(text: &str, seen: &Seen) -> Result<Guess, String> {
+    if let Some(channel) = Channel::from_name(text) {
         let unit = si_unit(channel.quantity());
         return Ok(Guess { channel, unit, reason: "its name is that of the channel".into() });
     }
-    let words = words(name);
-    let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
-    let known = KNOWN.iter().find(|known| known.all.iter().all(|any| has(any)) && !has(known.none));
-    let Some(known) = known else { return Err("nothing in its name is known".into()) };
-    if let Some(unit) = words.iter().find(|word| UNKNOWN_UNITS.contains(&word.as_str())) {
-        return Err(format!(
-            "left out: its name says `{unit}`, which is no unit that maps know of {}; convert it, or name it with a `scale`",
-            known.channel
-        ));
+    let name = Name::new(text);
+    let mut refused = None;
+    for known in &KNOWN {
+        match fit(known, text, &name) {
+            Fit::Not => {}
+            Fit::Refused(reason) => refused = refused.or(Some(reason)),
+            Fit::Fits(unit) => return Ok(guessed(known.channel, unit, &name, seen)),
+        }
     }
-    let quantity = known.channel.quantity();
-    let lower = name.to_lowercase();
-    // The longer spelling first: `mrad` holds `rad`, and a word of a name is no unit within another.
-    let spelled = SPELLED.iter().find(|(of, _, spellings)| {
-        *of == quantity
-            && spellings.iter().any(|s| {
-                if s.len() == 1 {
-                    // An `f` before the end is as likely the front.
-                    words.last().is_some_and(|last| last == s)
-                } else if s.chars().all(char::is_alphabetic) {
-                    words.iter().any(|w| w == s)
-                } else {
-                    lower.contains(s)
-                }
-            })
-    });
-    let (unit, why) = match spelled {
-        Some((_, unit, _)) => (*unit, "its unit stands in its name".to_owned()),
-        None => by_range(quantity, greatest),
+    Err(refused.unwrap_or_else(|| nothing(&name)))
+}
+
+fn fit(known: &Words, text: &str, name: &Name) -> Fit {
+    let Words { channel, quantity: own, of, none } = known;
+    if !(of.is_empty() || name.has(of)) || none.iter().any(|words| name.has(words)) {
+        return Fit::Not;
+    }
+    let quantity = channel.quantity();
+    let unit = spelled_unit(text, name, quantity);
+    let at = name.last(own);
+    let is_named = at.is_some()
+        || match &unit {
+            // A small letter at the end may be any symbol, as `w` an angular rate.
+            SpelledUnit::Known(unit) if !of.is_empty() => {
+                unit.len() > 1 || name.ending.len() > 1 || name.ending.chars().all(char::is_uppercase)
+            }
+            SpelledUnit::Unknown(_) => quantity == Quantity::Speed && name.has(DEVICES),
+            _ => false,
+        };
+    if !is_named {
+        return Fit::Not;
+    }
+    let is_angle =
+        |word: &str| quantity == Quantity::Angle && ["angle", "ang", "pos", "position"].contains(&word);
+    let behind = name.words.iter().skip(at.map_or(0, |at| at + 1));
+    let other = behind.map(String::as_str).find(|word| OTHER_QUANTITIES.contains(word) && !is_angle(word));
+    match (unit, other) {
+        (SpelledUnit::Unknown(unit), _) => Fit::Refused(format!(
+            "left out: its name says `{unit}`, which is no unit that maps know of {channel}; convert it, or name it with a `scale`"
+        )),
+        (SpelledUnit::Another(unit), _) => Fit::Refused(format!(
+            "left out: its name ends in `{unit}`, which is the unit of another quantity than {channel}: choose"
+        )),
+        (_, Some(word)) => {
+            Fit::Refused(format!("its name says `{word}`, which is another quantity than {channel}"))
+        }
+        (SpelledUnit::Known(unit), None) => Fit::Fits(Some(unit)),
+        (SpelledUnit::Unsaid, None) => Fit::Fits(None),
+    }
+}
+
+/// Why a name tells nothing.
+fn nothing(name: &Name) -> String {
+    let is_at_wheel = (name.has(LEFT) || name.has(RIGHT)) && name.has(DEVICES) && !name.has(OTHER_QUANTITIES);
+    if is_at_wheel {
+        "left out: its name says where it is and no quantity: name its channel and unit in the map".into()
+    } else {
+        "nothing in its name is known".into()
+    }
+}
+
+fn guessed(channel: Channel, unit: Option<&'static str>, name: &Name, seen: &Seen) -> Guess {
+    let quantity = channel.quantity();
+    let (unit, why) = match unit {
+        Some(unit) => (unit, "its unit stands in its name".to_owned()),
+        None if quantity == Quantity::Current && is_mavlinks(name) && seen.is_whole => {
+            ("cA", "it is MAVLink's field of that name, in whole hundredths of an ampere".to_owned())
+        }
+        None if quantity == Quantity::Speed && is_of_joint_states(name) => {
+            ("rad/s", "it is of a `JointState`, whose wheels turn in rad/s".to_owned())
+        }
+        None => by_range(quantity, seen.greatest),
     };
-    Ok(Guess { channel: known.channel, unit, reason: format!("by its name; {why}") })
+    Guess { channel, unit, reason: format!("by its name; {why}") }
+}
+
+/// Whether a name is that of a field of `sensor_msgs/JointState`, which has velocities of joints that turn in rad/s.
+fn is_of_joint_states(name: &Name) -> bool {
+    name.words.windows(2).any(|pair| pair[0] == "joint" && ["states", "state"].contains(&pair[1].as_str()))
+}
+
+/// Whether a name is that of the current in MAVLink's `SYS_STATUS` and `BATTERY_STATUS` (`common.xml`: `current_battery`, cA).
+fn is_mavlinks(name: &Name) -> bool {
+    name.words.ends_with(&["current".to_owned(), "battery".to_owned()])
 }
 
 /// The unit that a range of numbers asks for.
@@ -229,8 +137,8 @@ fn by_range(quantity: Quantity, greatest: f64) -> (&'static str, String) {
 
 /// The unit of a column of time that its name says, where the name may be one of a time.
 pub(crate) fn time_unit(name: &str) -> Option<Option<&'static str>> {
-    let words = words(name);
-    let has = |any: &[&str]| words.iter().any(|word| any.contains(&word.as_str()));
+    let name = Name::new(name);
+    let has = |any: &[&str]| name.has(any);
     if !has(&["t", "time", "stamp", "timestamp", "secs", "seconds", "elapsed", "clock"]) {
         return None;
     }
@@ -252,7 +160,8 @@ mod tests {
 
     #[test]
     fn names_and_ranges_tell_channels_and_units() {
-        let of = |name: &str, greatest: f64| guess(name, greatest).ok().map(|g| (g.channel, g.unit));
+        let of =
+            |name: &str, greatest: f64| guess(name, &Seen::up_to(greatest)).ok().map(|g| (g.channel, g.unit));
         assert_eq!(of("Left wheel [rad/s]", 9.0), Some((Channel::LeftSpeed, "rad/s")));
         assert_eq!(of("fr_rpm", 80.0), Some((Channel::RightSpeed, "rpm")));
         assert_eq!(of("wheelSpeedLeft", 0.9), Some((Channel::LeftSpeed, "m/s")));
@@ -263,6 +172,11 @@ mod tests {
         assert_eq!(of("pitch", 0.2), Some((Channel::Pitch, "rad")));
         assert_eq!(of("P_bat [kW]", 0.4), Some((Channel::Power, "kW")));
         assert_eq!(of("power_left_w", 90.0), Some((Channel::LeftPower, "W")));
+        assert_eq!(of("left_wheel_rad_s", 3.0), Some((Channel::LeftSpeed, "rad/s")));
+        assert_eq!(of("wheel right m/s", 3.0), Some((Channel::RightSpeed, "m/s")));
+        assert_eq!(of("V_bat", 25.0), Some((Channel::Voltage, "V")));
+        assert_eq!(of("LeftMotorSpeed", 1.0), Some((Channel::LeftSpeed, "m/s")));
+        assert_eq!([of("w_left", 1.0), of("left_w", 1.0), of("left_wheel_V", 1.0)], [None; 3]);
         assert_eq!(of("left_wheel_cmd", 1.0), None);
         assert_eq!(of("note", 1.0), None);
         assert_eq!(
@@ -282,14 +196,14 @@ mod tests {
             "battery_current_Ah",
             "left wheel (fps)",
         ] {
-            let refused = guess(name, 3.0).unwrap_err();
+            let refused = guess(name, &Seen::up_to(3.0)).unwrap_err();
             assert!(refused.contains("no unit that maps know"), "{name}: {refused}");
         }
         for name in ["cpu_power_W", "solar_power_W", "charge_current_A"] {
-            assert!(guess(name, 3.0).is_err(), "{name}");
+            assert!(guess(name, &Seen::up_to(3.0)).is_err(), "{name}");
         }
-        assert_eq!(guess("motor_temp_left_F", 77.0).unwrap().unit, "degF");
-        assert_eq!(guess("ambient_temp_K", 290.0).unwrap().unit, "K");
-        assert_eq!(guess("discharge_current_A", 9.0).unwrap().channel, Channel::Current);
+        assert_eq!(guess("motor_temp_left_F", &Seen::up_to(77.0)).unwrap().unit, "degF");
+        assert_eq!(guess("ambient_temp_K", &Seen::up_to(290.0)).unwrap().unit, "K");
+        assert_eq!(guess("discharge_current_A", &Seen::up_to(9.0)).unwrap().channel, Channel::Current);
     }
 }

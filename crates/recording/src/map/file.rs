@@ -33,7 +33,7 @@ pub struct MapFile {
 }
 
 /// A source of a map as its file has it.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SourceFile {
@@ -48,6 +48,9 @@ pub(crate) struct SourceFile {
     columns: Vec<String>,
     /// Topic; a leading `*` stands for any namespace.
     topic: Option<String>,
+    /// Several topics that are added up, or averaged, as those of two battery packs; each has the same `fields`.
+    #[serde(default)]
+    topics: Vec<String>,
     /// Field paths within its messages.
     #[serde(default)]
     fields: Vec<String>,
@@ -91,13 +94,41 @@ impl MapFile {
             max_gap_s: file.max_gap_s,
             surface: file.surface,
             namespace: file.namespace,
-            sources: sources.collect::<Result<_, _>>()?,
+            sources: sources.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect(),
         })
     }
 }
 
 impl SourceFile {
-    fn check(
+    fn check(mut self, index: usize, wheels: (Option<f64>, Option<f64>)) -> Result<Vec<Source>, Error> {
+        if self.topics.is_empty() {
+            return self.check_one(index, wheels).map(|source| vec![source]);
+        }
+        let by = self.share(index)?;
+        let topics = std::mem::take(&mut self.topics);
+        let of_topic = |(at, topic): (usize, String)| {
+            let scale = Some(by * self.scale.unwrap_or(1.0));
+            let one = SourceFile { topic: Some(topic), scale, ..self.clone() };
+            Ok(Source { is_further_part: at > 0, ..one.check_one(index, wheels)? })
+        };
+        topics.into_iter().enumerate().map(of_topic).collect()
+    }
+
+    /// What each of several topics counts for in the whole.
+    fn share(&self, index: usize) -> Result<f64, Error> {
+        let wrong = |message: &str| {
+            Err(Error::Map { path: format!("sources[{index}].topics"), message: message.into() })
+        };
+        match self.combine {
+            _ if self.topic.is_some() => wrong("stands in the place of `topic`"),
+            Combine::Sum => Ok(1.0),
+            Combine::Mean if self.topics.len() > 1 => Ok(1.0 / self.topics.len() as f64),
+            Combine::Mean => Ok(1.0),
+            _ => wrong("are added up or averaged: \"combine\" is \"sum\" or \"mean\""),
+        }
+    }
+
+    fn check_one(
         self,
         index: usize,
         (wheel_radius_m, separation_m): (Option<f64>, Option<f64>),
@@ -172,6 +203,7 @@ impl SourceFile {
             unit,
             is_unit_given,
             sign: self.sign,
+            is_further_part: false,
         })
     }
 }

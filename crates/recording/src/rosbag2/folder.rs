@@ -7,7 +7,7 @@ use std::{
 
 use super::{
     metadata,
-    storage::{first_ns, read_into},
+    storage::{self, first_ns},
 };
 use crate::{Error, Map, Repair, Watch, container, reading::Reading, topic::Topics, watch::Budget};
 
@@ -31,18 +31,28 @@ pub(crate) fn read(
     budget: &Budget,
 ) -> Result<Reading, Error> {
     let mut topics = container::topics(map, budget)?;
+    let format = read_into(folder, &mut topics, watch)?;
+    topics.finish(name, format)
+}
+
+/// Reads all storage files of a folder into the topics of a recording; returns their format.
+pub(crate) fn read_into(
+    folder: &Path,
+    topics: &mut Topics<'_>,
+    watch: &Watch,
+) -> Result<&'static str, Error> {
     let mut format = "";
     let several = |files: &[PathBuf]| files.len() > 1;
-    let files = in_order_of_time(files(folder, &mut topics.repairs)?, &mut topics);
+    let files = in_order_of_time(files(folder, &mut topics.repairs)?, topics);
     for file in &files {
         let short = short_name(file);
         topics.begin_file(several(&files).then(|| short.clone()));
-        format = read_into(file, &mut topics, watch).map_err(|error| match error {
+        format = storage::read_into(file, topics, watch).map_err(|error| match error {
             Error::Stopped => error,
             error => error.in_file(Path::new(&short)),
         })?;
     }
-    topics.finish(name, format)
+    Ok(format)
 }
 
 /// The files that `metadata.yaml` names, or where there is none, because the recorder was killed, all of them.
