@@ -134,7 +134,7 @@ impl Place {
             Coordinates::Metres(place_m) => Ok(place_m),
             Coordinates::Fraction([east, north]) => Ok(terrain.grid.at_fraction_m(east, north)),
             Coordinates::Degrees(place_deg) => {
-                let place_m = terrain.earth().and_then(|earth| earth.place_m(place_deg));
+                let place_m = terrain.place_m(place_deg);
                 place_m.map_err(|error| {
                     let [lon, lat] = place_deg;
                     BadInput(format!("{lat}N,{lon}E is given in degrees, and {error}: give X,Y in metres"))

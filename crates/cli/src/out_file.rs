@@ -7,7 +7,7 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 use report::{RoutePage, route_page};
 use serde::Serialize;
 use service::TrackForm;
-use terrain::{Terrain, Warning};
+use terrain::{Terrain, Warning, crs::EarthError};
 
 use crate::{failure::BadInput, files, output, picture};
 
@@ -80,7 +80,10 @@ impl OutFile {
     /// # Errors
     /// A missing folder, or a form that needs a place on earth which the map does not have.
     pub(crate) fn check(&self, terrain: &Terrain) -> Result<(), BadInput> {
-        self.check_of(terrain, &[TrackForm::Kml])
+        self.check_of(match self.form {
+            Form::Tracks(form) => form.unplaced(terrain),
+            _ => None,
+        })
     }
 
     /// The same for contours, which GPX has no local metres for.
@@ -88,19 +91,20 @@ impl OutFile {
     /// # Errors
     /// As [`OutFile::check`].
     pub(crate) fn check_contours(&self, terrain: &Terrain) -> Result<(), BadInput> {
-        self.check_of(terrain, &[TrackForm::Kml, TrackForm::Gpx])
+        self.check_of(match self.form {
+            Form::Tracks(TrackForm::Kml | TrackForm::Gpx) => terrain.earth().err(),
+            _ => None,
+        })
     }
 
-    fn check_of(&self, terrain: &Terrain, placed: &[TrackForm]) -> Result<(), BadInput> {
+    fn check_of(&self, unplaced: Option<EarthError>) -> Result<(), BadInput> {
         files::check(&self.path).map_err(|BadInput(why)| BadInput(format!("--out {why}")))?;
         let path = self.path.display();
-        let needs_earth = placed.iter().any(|form| self.form == Form::Tracks(*form));
-        match terrain.earth() {
-            Err(error) if needs_earth => Err(BadInput(format!(
+        unplaced.map_or(Ok(()), |error| {
+            Err(BadInput(format!(
                 "--out {path}: this form is longitude and latitude, and {error}: give the map a `crs`, as EPSG:32632, or write .geojson or .csv"
-            ))),
-            _ => Ok(()),
-        }
+            )))
+        })
     }
 
     /// Writes an answer, and says where to.

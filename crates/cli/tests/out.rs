@@ -33,6 +33,10 @@ fn folder() -> tempfile::TempDir {
     fs::write(folder.path().join("local.json"), map.to_string()).unwrap();
     map["crs"] = json!("EPSG:32632");
     fs::write(folder.path().join("placed.json"), map.to_string()).unwrap();
+    // The datum of Switzerland takes a grid of corrections.
+    map["crs"] = json!("EPSG:2056");
+    map["origin_m"] = json!([2_600_000.0, 1_200_000.0]);
+    fs::write(folder.path().join("swiss.json"), map.to_string()).unwrap();
     folder
 }
 
@@ -115,11 +119,18 @@ fn what_cannot_be_written_is_refused_before_the_work_and_leaves_no_file() {
     let local = |command: &[&'static str]| -> Vec<&'static str> {
         command.iter().map(|word| if *word == "placed.json" { "local.json" } else { word }).collect()
     };
+    let swiss = |command: &[&'static str]| -> Vec<&'static str> {
+        command.iter().map(|word| if *word == "placed.json" { "swiss.json" } else { word }).collect()
+    };
     for (question, file, said) in [
         (QUESTIONS[0].to_vec(), "path.pdf", ".geojson, .gpx, .kml, .csv, .png, .svg, .html, .json"),
         (QUESTIONS[0].to_vec(), "none/path.svg", "there is no folder none"),
         (local(QUESTIONS[0]), "path.kml", "crs"),
         (local(QUESTIONS[2]), "reach.gpx", "crs"),
+        (swiss(QUESTIONS[0]), "path.kml", "EPSG:2056"),
+        (swiss(QUESTIONS[0]), "path.gpx", "EPSG:2056"),
+        (swiss(QUESTIONS[1]), "paths.gpx", "EPSG:2056"),
+        (swiss(QUESTIONS[3]), "mission.gpx", "EPSG:2056"),
     ] {
         let output = joulepath(folder.path(), &[&question[..], &["--out", file]].concat());
         let error = text(&output.stderr);
@@ -132,7 +143,19 @@ fn what_cannot_be_written_is_refused_before_the_work_and_leaves_no_file() {
     assert_eq!(joulepath(folder.path(), &outside).status.code(), Some(2));
     assert_eq!(fs::read_to_string(folder.path().join("kept.svg")).unwrap(), "before");
     let names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
-    assert_eq!(names.len(), 3, "{names:?}");
+    assert_eq!(names.len(), 4, "{names:?}");
+}
+
+/// Nobody takes 0° N 0° E for a place of a map that says nothing of where it lies.
+#[test]
+fn a_track_of_a_map_without_a_crs_counts_metres_from_nought() {
+    let folder = folder();
+    let local: Vec<&str> =
+        QUESTIONS[0].iter().map(|word| if *word == "placed.json" { "local.json" } else { word }).collect();
+    let output = joulepath(folder.path(), &[&local[..], &["--out", "path.gpx"]].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let track = fs::read_to_string(folder.path().join("path.gpx")).unwrap();
+    assert!(track.contains("<trkpt lat=\"0.000000000\" lon=\"0.000000000\">") && track.contains("0 N 0 E"));
 }
 
 #[test]

@@ -22,6 +22,9 @@ const MOST_READ_AGAIN: usize = 4 << 20;
 /// # Errors
 /// The place of whatever is no JSON, mistyped, unknown or given twice, or all missing fields.
 pub fn from_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Error> {
+    /// Byte order mark of UTF-8, which a reader may ignore (RFC 8259, section 8.1).
+    const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+    let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     if text.trim_ascii().is_empty() {
         return Err(Error::of(whole("the document is empty".to_owned())));
     }

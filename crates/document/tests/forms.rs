@@ -176,7 +176,7 @@ fn broken_json_is_located_by_line_and_column() {
         ("{\"count\": 01}", "this is no valid JSON: invalid number (line 1, column 12)"),
         ("{\"count\": 1e999, \"start\": 2}", "count: the number is too large to be represented (line 1, "),
         ("{\"start\"", "this is no valid JSON: EOF while parsing an object"),
-        ("\u{feff}{}", "this is no valid JSON: expected value (line 1, column 1)"),
+        ("\u{feff}{}", "missing fields `start`, `ground`"),
     ] {
         let said = read(text).unwrap_err().to_string();
         assert!(said.starts_with(expected), "{text}: {said}");

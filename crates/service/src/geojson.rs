@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use serde::{Serialize, Serializer};
 use serde_json::json;
+use terrain::crs::Crs;
 
 use crate::{
     antimeridian,
@@ -13,13 +14,14 @@ use crate::{
 
 /// Writes paths with their totals, each a 3-D line string or, where start and goal are one place, a point, and stops as points. A line has
 /// two positions or more (RFC 7946, 3.1.4). Where nothing says where on earth the map lies, coordinates are its own metres, and a member
-/// `crs` says so: with the name of the system, as GeoJSON had it before RFC 7946, or null.
+/// `crs` says so: with the name of the system, as GeoJSON had it before RFC 7946, or null where that counts in another unit.
 pub(crate) fn write(found: &Tracks<'_>, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(br#"{"type":"FeatureCollection","#)?;
     let first = found.tracks.iter().find_map(|track| track.poses.first());
     if first.is_some_and(|pose| pose.lon_deg.is_none()) {
         let named = |name: &&str| json!({ "type": "name", "properties": { "name": name } });
-        write!(out, "\"crs\":{},", json!(found.crs.as_ref().map(named)))?;
+        let metres = found.crs.as_ref().filter(|text| Crs::counts_metres(text));
+        write!(out, "\"crs\":{},", json!(metres.map(named)))?;
     }
     out.write_all(br#""features":["#)?;
     for (i, track) in found.tracks.iter().enumerate() {

@@ -74,13 +74,15 @@ impl MapReader {
         })
     }
 
-    /// The reader for a body, which is an array whatever its content type if it begins as one.
+    /// The reader for a body, which is an array whatever its content type if it begins as one, and a GeoTIFF where the content type says no
+    /// more than that these are bytes.
     ///
     /// # Errors
     /// Another body of a content type that no map has.
     pub(crate) fn for_body(self, body: &[u8]) -> Result<Self, Problem> {
         match self {
             _ if io::npy::is_npy(body) => Ok(MapReader::Npy),
+            MapReader::Cells if io::geotiff::is_tiff(body) => Ok(MapReader::GeoTiff),
             MapReader::Unknown(kind) => Err(unsupported(&kind)),
             known => Ok(known),
         }
@@ -160,4 +162,17 @@ fn ros_yaml_alone(image: &str) -> Problem {
 
 fn invalid(error: &terrain::Error) -> Problem {
     Problem::invalid_map(error, "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_begin_as_a_tiff_are_one_where_nothing_else_is_said_of_them() {
+        let reader = |reader: MapReader, body: &[u8]| reader.for_body(body).ok();
+        assert!(matches!(reader(MapReader::Cells, b"II*\0rest"), Some(MapReader::GeoTiff)));
+        assert!(matches!(reader(MapReader::Cells, b"JPT1rest"), Some(MapReader::Cells)));
+        assert!(matches!(reader(MapReader::Ascii, b"II*\0rest"), Some(MapReader::Ascii)));
+    }
 }

@@ -1,6 +1,6 @@
 //! Places of a request: in the map's own metres, or in degrees of WGS 84 where the map says where on earth it lies.
 
-use terrain::Terrain;
+use terrain::{Terrain, crs::EarthError};
 
 use crate::{
     problem::{Problem, ProblemType},
@@ -59,16 +59,29 @@ pub(crate) trait Place {
         if !(x_m.is_nan() && y_m.is_nan()) {
             return refuse("/lon_deg", format!("{name} has both metres and degrees: give one of them"));
         }
-        let place = terrain.earth().and_then(|earth| earth.place_m([lon_deg, lat_deg]));
+        let place = terrain.place_m([lon_deg, lat_deg]);
         match place {
             Ok(place_m) => {
                 [*x_m, *y_m] = place_m;
                 Ok(())
             }
+            Err(error @ EarthError::OtherWayRound { .. }) => {
+                Err(Problem::new(outside(pointer), format!("{name}: {error}"))
+                    .at(format!("{pointer}/lat_deg")))
+            }
             Err(error) => {
                 refuse("/lon_deg", format!("{name} is given in degrees, and {error}: give x_m and y_m"))
             }
         }
+    }
+}
+
+/// The type of a place off the map.
+fn outside(pointer: &str) -> ProblemType {
+    match pointer.split('/').nth(1) {
+        Some("start") => ProblemType::StartOutsideMap,
+        Some("goal" | "goals") => ProblemType::GoalOutsideMap,
+        _ => ProblemType::WaypointOutsideMap,
     }
 }
 
@@ -106,4 +119,27 @@ pub(crate) fn settle_all<P: Place>(
     pointer: &str,
 ) -> Result<(), Problem> {
     places.iter_mut().enumerate().try_for_each(|(i, place)| place.settle(terrain, &format!("{pointer}/{i}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn latitude_and_longitude_the_other_way_round_are_said() {
+        let map = json!({"cell_size_m": 1.0, "rows": 30, "columns": 40, "origin_m": [512_000.0, 5_422_960.0],
+            "crs": "EPSG:32632", "elevation_m": vec![vec![0.0; 40]; 30]});
+        let terrain = terrain::io::json::read(&map.to_string()).unwrap();
+        let settle = |lon_deg: f64, lat_deg: f64| {
+            let mut pose: StartPose =
+                serde_json::from_value(json!({"lon_deg": lon_deg, "lat_deg": lat_deg})).unwrap();
+            pose.settle(&terrain, "/start")
+        };
+        let [lon_deg, lat_deg] = terrain.earth().unwrap().place_deg([512_010.0, 5_422_970.0]).unwrap();
+        assert!(settle(lon_deg, lat_deg).is_ok());
+        let problem = format!("{:?}", settle(lat_deg, lon_deg).unwrap_err());
+        assert!(problem.contains("the other way round"), "{problem}");
+    }
 }

@@ -42,31 +42,35 @@ pub(crate) fn csv(found: &Tracks<'_>, out: &mut dyn Write) -> io::Result<()> {
 /// Metres of a degree along the equator of WGS 84, whose radius is 6 378 137 m.
 const M_PER_DEGREE: f64 = 111_319.490_793_273_57;
 
-/// Writes paths as GPX 1.1 tracks, and stops as its waypoints. Of a map that does not say where on earth it lies the first start is put at
-/// 0° N 0° E, where a degree of both is as many metres, and x and y count from there.
+/// Writes paths as GPX 1.1 tracks, and stops as its waypoints. Of a map without a `crs` the first start is put at 0° N 0° E, where a degree of
+/// both is as many metres, and x and y count from there.
+///
+/// # Errors
+/// A pose without longitude and latitude on a map with a `crs`, or an output that cannot be written to.
 pub(crate) fn gpx(found: &Tracks<'_>, out: &mut dyn Write) -> io::Result<()> {
     let Some(start) = found.tracks.iter().find_map(|track| track.poses.first()) else {
         return writeln!(out, "{GPX_HEAD}<trk><trkseg>\n</trkseg></trk></gpx>");
     };
-    let degrees = |lon_deg: Option<f64>, lat_deg: Option<f64>, x_m: f64, y_m: f64| match (lon_deg, lat_deg) {
-        (Some(lon_deg), Some(lat_deg)) => (lon_deg, lat_deg),
-        _ => ((x_m - start.x_m) / M_PER_DEGREE, (y_m - start.y_m) / M_PER_DEGREE),
+    let is_placed = found.crs.is_some();
+    let degrees = |lon_deg: Option<f64>, lat_deg: Option<f64>, x_m: f64, y_m: f64| match is_placed {
+        true => placed(lon_deg, lat_deg),
+        false => Ok(((x_m - start.x_m) / M_PER_DEGREE, (y_m - start.y_m) / M_PER_DEGREE)),
     };
     write!(out, "{GPX_HEAD}")?;
     for stop in found.stops {
-        let (east, north) = degrees(stop.lon_deg, stop.lat_deg, stop.x_m, stop.y_m);
+        let (east, north) = degrees(stop.lon_deg, stop.lat_deg, stop.x_m, stop.y_m)?;
         let name = stop.name();
         writeln!(out, "<wpt lat=\"{north:.9}\" lon=\"{east:.9}\"><name>{}</name></wpt>", escape(&name))?;
     }
     for track in &found.tracks {
         let name = track.name.as_ref().map_or(String::new(), |name| format!("<name>{}</name>", escape(name)));
-        let about = match start.lon_deg {
-            Some(_) => "",
-            None => "<desc>Metres east and north of the start, as degrees at 0 N 0 E</desc>",
+        let about = match is_placed {
+            true => "",
+            false => "<desc>Metres east and north of the start, as degrees at 0 N 0 E</desc>",
         };
         writeln!(out, "<trk>{name}{about}<trkseg>")?;
         for p in track.poses {
-            let (east, north) = degrees(p.lon_deg, p.lat_deg, p.x_m, p.y_m);
+            let (east, north) = degrees(p.lon_deg, p.lat_deg, p.x_m, p.y_m)?;
             writeln!(out, "<trkpt lat=\"{north:.9}\" lon=\"{east:.9}\"><ele>{:.3}</ele></trkpt>", p.z_m)?;
         }
         write!(out, "</trkseg></trk>")?;

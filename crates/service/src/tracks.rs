@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use axum::http::HeaderMap;
 use serde_json::{Map, Value, json};
-use terrain::{Terrain, Warning};
+use terrain::{Terrain, Warning, crs::EarthError};
 
 use crate::{
     accept::preferred,
@@ -53,19 +53,29 @@ impl TrackForm {
         (media_type, TrackForm::ALL.into_iter().find(|form| form.media_type() == media_type))
     }
 
+    /// Why a path over a map has no coordinates in the format, if it has none: KML and GPX are longitude and latitude. Only GPX of a map
+    /// without any `crs` is written about 0° N 0° E, where nobody takes it for a place.
+    #[must_use]
+    pub fn unplaced(self, terrain: &Terrain) -> Option<EarthError> {
+        let error = terrain.earth().err()?;
+        match self {
+            TrackForm::GeoJson | TrackForm::Csv => None,
+            TrackForm::Gpx if error == EarthError::NoCrs => None,
+            TrackForm::Gpx | TrackForm::Kml => Some(error),
+        }
+    }
+
     /// Refuses a format that a map has no coordinates for.
     ///
     /// # Errors
-    /// KML of a map that does not say where on earth it lies.
+    /// What [`TrackForm::unplaced`] says.
     pub fn check(self, terrain: &Terrain) -> Result<(), Problem> {
-        if self != TrackForm::Kml {
-            return Ok(());
-        }
-        terrain.earth().map(drop).map_err(|error| {
+        let name = if self == TrackForm::Gpx { "GPX" } else { "KML" };
+        self.unplaced(terrain).map_or(Ok(()), |error| {
             let detail = format!(
-                "KML is longitude and latitude, and {error}: send the map with a `crs` that is placed on earth, as EPSG:32632, or ask for application/json, application/geo+json or text/csv"
+                "{name} is longitude and latitude, and {error}: send the map with a `crs` that is placed on earth, as EPSG:32632, or ask for application/json, application/geo+json or text/csv"
             );
-            Problem::new(ProblemType::InvalidMap, detail).at("/map")
+            Err(Problem::new(ProblemType::InvalidMap, detail).at("/map"))
         })
     }
 }
@@ -124,7 +134,7 @@ impl<'a> Tracks<'a> {
     /// Writes them in a format.
     ///
     /// # Errors
-    /// An output that cannot be written to, or KML of poses without longitude and latitude.
+    /// An output that cannot be written to, or KML or GPX of poses without longitude and latitude.
     pub fn write(&self, form: TrackForm, out: &mut dyn Write) -> io::Result<()> {
         match form {
             TrackForm::GeoJson => geojson::write(self, out),

@@ -17,11 +17,10 @@ mod unit;
 mod warp;
 mod wkt;
 
+use self::method::Described;
 pub(crate) use self::{
     earth::registered_code,
-    ground::{Size, UNTOLD_CELLS, UTM_SCALE_ERROR, refuse_stretched, square_cells, to_ground},
-    mercator::is_of_earth,
-    method::Described,
+    ground::{GridSystem, Size, UNTOLD_CELLS, UTM_SCALE_ERROR, square_cells, to_ground},
     warp::{DegreeFrame, Regridding, Unwarped, Warp},
 };
 pub use self::{
@@ -111,6 +110,22 @@ impl Crs {
             Some(_) => Ok(text),
             None => Err(Error::Crs { found: text.chars().take(60).collect() }),
         }
+    }
+
+    /// Whether coordinates of the system that a text names are metres, as those of a map are; so is a text that names none.
+    ///
+    /// ```
+    /// use terrain::crs::Crs;
+    /// assert!(Crs::counts_metres("EPSG:27700") && !Crs::counts_metres("EPSG:32040"));
+    /// ```
+    pub fn counts_metres(text: &str) -> bool {
+        Crs::parse(text).and_then(|crs| crs.unit).is_none_or(|unit| unit.is_metre())
+    }
+
+    /// Its projection, whichever kind it is.
+    fn any_projection(&self) -> Option<Projection> {
+        let of_mercator = || self.mercator.map(|mercator| Projection::of(mercator.definition()));
+        self.projection.clone().or_else(of_mercator)
     }
 
     /// Whether nothing is known of the system but what the registry says of its code.

@@ -2,6 +2,7 @@
 //!
 //! Each doubt rests on something that ground cannot do, not on how examples look; all of them are said, and none refuses a map.
 
+mod coarse;
 mod fill;
 mod picture;
 mod range;
@@ -10,6 +11,7 @@ mod steps;
 use std::sync::Arc;
 
 use self::{
+    coarse::coarse_heights,
     fill::fill_value,
     picture::{aspect, byte_picture, image},
     range::unusual_elevation,
@@ -23,17 +25,37 @@ struct Values {
     highest_m: f64,
     /// Whether all are whole numbers.
     are_whole: bool,
+    /// The largest of some round lengths that all are multiples of [m].
+    round_step_m: Option<f64>,
 }
+
+/// Steps that heights are rounded to: metres, feet, and decimetres [m].
+const ROUND_STEPS_M: [f64; 3] = [1.0, 0.3048, 0.1];
+
+/// Share of a step by which single precision may miss a multiple of it.
+const SINGLE_PRECISION: f64 = 1e-3;
 
 impl Values {
     fn of(terrain: &Terrain) -> Self {
-        let mut values = Values { lowest_m: f64::INFINITY, highest_m: f64::NEG_INFINITY, are_whole: true };
+        let mut values = Values {
+            lowest_m: f64::INFINITY,
+            highest_m: f64::NEG_INFINITY,
+            are_whole: true,
+            round_step_m: None,
+        };
+        let mut are_multiples = [true; ROUND_STEPS_M.len()];
         for relative_m in terrain.relative_m.iter().filter(|z| !z.is_nan()) {
             let z_m = terrain.base_m + f64::from(*relative_m);
             values.lowest_m = values.lowest_m.min(z_m);
             values.highest_m = values.highest_m.max(z_m);
             values.are_whole &= z_m.fract() == 0.0;
+            for (is_multiple, step_m) in are_multiples.iter_mut().zip(ROUND_STEPS_M) {
+                let steps = z_m / step_m;
+                *is_multiple &= (steps - steps.round()).abs() < SINGLE_PRECISION;
+            }
         }
+        values.round_step_m =
+            are_multiples.iter().zip(ROUND_STEPS_M).find(|(is, _)| **is).map(|(_, step_m)| step_m);
         values
     }
 }
@@ -63,7 +85,9 @@ impl Terrain {
         let picture = image(&values).or_else(|| aspect(&values, &steps));
         // A picture's slopes are no second doubt.
         let slopes = if picture.is_none() { impossible_slopes(&steps) } else { None };
-        for warning in [fill, picture, slopes, unusual_elevation(&values)].into_iter().flatten() {
+        // A picture's levels are none of ground.
+        let coarse = if picture.is_none() { coarse_heights(&values, &steps) } else { None };
+        for warning in [fill, picture, slopes, coarse, unusual_elevation(&values)].into_iter().flatten() {
             terrain = terrain.with_warning(warning);
         }
         terrain

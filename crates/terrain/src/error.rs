@@ -196,6 +196,12 @@ pub enum Error {
         /// What the first bytes say it is.
         found: Option<&'static str>,
     },
+    /// Bytes that do not begin as a TIFF does.
+    #[error("not a readable GeoTIFF: by its first bytes this is {found}")]
+    NotTiff {
+        /// What it is.
+        found: &'static str,
+    },
     /// The TIFF decoder refused the file.
     #[error("not a readable GeoTIFF: {0}")]
     Tiff(#[from] tiff::TiffError),

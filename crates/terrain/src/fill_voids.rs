@@ -1,5 +1,7 @@
 //! Holes of unknown ground, filled from the ground around them.
 
+mod width;
+
 use std::sync::Arc;
 
 use crate::{Cell, Error, Grid, Terrain, Warning, WarningKind};

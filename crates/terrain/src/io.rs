@@ -128,6 +128,9 @@ pub fn read_bytes(format: Format, bytes: &[u8], options: &Options) -> Result<Ter
 }
 
 fn read_geotiff(bytes: &[u8], beside: &geotiff::Sidecars, options: &Options) -> Result<Terrain, Error> {
+    if !geotiff::is_tiff(bytes) {
+        return Err(Error::NotTiff { found: what_bytes_are(bytes) });
+    }
     let unwarped = geotiff::read_unwarped(bytes, options.most_cells, beside).map_err(Error::in_geotiff)?;
     Unwarped { is_of_bytes: holds_bytes(bytes), ..unwarped }.into_metres(options)
 }
@@ -186,6 +189,23 @@ fn named_by_magic(bytes: &[u8]) -> Option<&'static str> {
     MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
 }
 
+/// What bytes are that should be a TIFF, and what their file should be called.
+fn what_bytes_are(bytes: &[u8]) -> &'static str {
+    /// Bytes by which text is told: longer than the longest header.
+    const BEGINNING: usize = 1024;
+    let beginning = &bytes[..bytes.len().min(BEGINNING)];
+    let is_text = !beginning.is_empty()
+        && beginning.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
+    match named_by_magic(bytes) {
+        Some(name) => name,
+        None if !is_text => "no TIFF",
+        None if beginning.trim_ascii_start().starts_with(b"{") => {
+            "text, as of a JSON grid, whose name ends in .json"
+        }
+        None => "text, as of an ESRI ASCII grid, whose name ends in .asc",
+    }
+}
+
 fn unpacked(bytes: &[u8], path: &Path, most_bytes: u64) -> Result<Vec<u8>, Error> {
     let mut text = Vec::new();
     let read = MultiGzDecoder::new(bytes).take(most_bytes).read_to_end(&mut text);
@@ -238,6 +258,15 @@ mod tests {
         assert_eq!(read_path(&path).unwrap(), plain);
         fs::write(&path, b"\x1f\x8b broken").unwrap();
         assert!(read_path(&path).unwrap_err().to_string().contains("Ground.ASC.gz"));
+    }
+
+    #[test]
+    fn text_in_the_place_of_a_tiff_is_named() {
+        let said =
+            |bytes: &[u8]| read_bytes(Format::GeoTiff, bytes, &Options::default()).unwrap_err().to_string();
+        assert!(said(GRID.as_bytes()).contains("ESRI ASCII grid, whose name ends in .asc"));
+        assert!(said(b" {\"rows\": 1}").contains("JSON grid"));
+        assert!(said(b"\x89PNG").contains("a PNG image") && said(b"").contains("no TIFF"));
     }
 
     #[test]

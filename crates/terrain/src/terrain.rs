@@ -84,8 +84,9 @@ impl Terrain {
     pub const SMALLEST_CELL_M: f64 = 0.01;
     /// Smallest and largest edge of a cell [m].
     pub(crate) const CELL_SIZE_M: (f64, f64) = (Self::SMALLEST_CELL_M, 100.0);
-    /// Projected coordinates stay below the circumference of the earth.
-    const ORIGIN_LIMIT_M: f64 = 5e7;
+    /// Projected coordinates stay below the circumference of the earth (4.0e7 m), or a million metres for each zone number before them:
+    /// Gauss-Krüger zones of 3° are counted to 64 (EPSG:2581).
+    const ORIGIN_LIMIT_M: f64 = 6.5e7;
 
     /// Builds ground from row-major elevations, southernmost row first, NaN where unknown. Conventional fill values that no
     /// ground has ([`fill_value::is_never_ground`]) are unknown too, with a warning.
@@ -189,6 +190,23 @@ impl Terrain {
     /// A map without a system, or with one that is not known to the millimetre.
     pub fn earth(&self) -> Result<Earth, EarthError> {
         Earth::of(self.crs.as_deref().ok_or(EarthError::NoCrs)?)
+    }
+
+    /// The place of the map at a longitude and latitude in degrees [m].
+    ///
+    /// # Errors
+    /// As [`Terrain::earth`], a place beyond the projection's area, or one off the map that lies on it with both numbers exchanged.
+    pub fn place_m(&self, place_deg: [f64; 2]) -> Result<[f64; 2], EarthError> {
+        let earth = self.earth()?;
+        let place = earth.place_m(place_deg);
+        let is_on_map = |place: &Result<[f64; 2], EarthError>| {
+            place.as_ref().is_ok_and(|[x_m, y_m]| self.grid.cell_at(*x_m, *y_m).is_some())
+        };
+        let [lon_deg, lat_deg] = place_deg;
+        if !is_on_map(&place) && is_on_map(&earth.place_m([lat_deg, lon_deg])) {
+            return Err(EarthError::OtherWayRound { lon_deg, lat_deg });
+        }
+        place
     }
 
     /// Lowest known elevation [m].

@@ -54,6 +54,8 @@ pub enum WarningKind {
     UnwrittenBlocks,
     /// A file beside the map contradicts it, or could not be used.
     BesideFile,
+    /// Heights are rounded so coarsely that most slopes between cells are rounding.
+    CoarseHeights,
     /// Cells far larger than the robot.
     CoarseCells,
     /// Moving the ends to the centres of cells matters to the energy.
@@ -78,7 +80,15 @@ impl WarningKind {
     /// Whether the map's cells alone give rise to it, so that it is found anew whenever they are looked at.
     pub(crate) fn is_from_cells(self) -> bool {
         use WarningKind as K;
-        matches!(self, K::FillValue | K::Image | K::Aspect | K::ImpossibleSlopes | K::UnusualElevation)
+        matches!(
+            self,
+            K::FillValue
+                | K::Image
+                | K::Aspect
+                | K::ImpossibleSlopes
+                | K::CoarseHeights
+                | K::UnusualElevation
+        )
     }
 }
 

@@ -68,7 +68,7 @@ fn small_departures_stay_as_they_are() {
         ("EPSG:3035", [4_321_000.0, 2_765_157.5]),
         ("EPSG:27700", [336_038.76, 567_734.86]),
         ("EPSG:3067", [175_799.85, 6_777_654.09]),
-        ("EPSG:3375", [800_000.0, 400_000.0]),
+        ("EPSG:28191", [150_167.21, 134_194.73]),
     ] {
         let terrain = read(prj, place_m).unwrap();
         assert_eq!((terrain.grid.cell_size_m, terrain.crs.as_deref()), (2.0, Some(prj)));
@@ -140,6 +140,69 @@ fn what_is_not_known_of_a_scale_is_said() {
     assert!(scale_said(&beyond).unwrap().detail.contains("beyond the area"));
     let national = format!(r#"PROJCS["x",{WGS_84},PROJECTION["Cassini"],UNIT["Meter",1.0]]"#);
     assert_eq!(scale_said(&read(&national, [1000.0, 2000.0]).unwrap()), None);
+    assert!(scale_said(&read(&national, [500_000.0, 2000.0]).unwrap()).unwrap().detail.contains("0.31 %"));
+    let moon = r#"PROJCS["ps",GEOGCS["Moon",DATUM["D_Moon",SPHEROID["Moon",1737400,0]],PRIMEM["m",0],UNIT["degree",0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],UNIT["metre",1]]"#;
+    for (prj, said) in [
+        (moon, "of another body than the earth"),
+        ("+proj=eqc +lat_ts=15 +R=3396190", "of another body than the earth"),
+        ("EPSG:3375", "omerc) is not computed here"),
+        ("EPSG:27200", "nzmg) is not computed here"),
+        ("EPSG:65000", "the projection of EPSG:65000 is not known here"),
+        ("+proj=gnom +lat_0=45 +lon_0=9 +datum=WGS84", "gnom) is not computed here"),
+        ("Projection STATEPLANE\nUnits METERS\n", "stateplane) is not computed here"),
+    ] {
+        let terrain = read(prj, [444_864.56, 343_000.63]).unwrap();
+        let detail = &scale_said(&terrain).unwrap().detail;
+        assert!(detail.contains(said) && detail.contains("were taken for the ground's"), "{prj}: {detail}");
+    }
+    let local = read("LOCAL_CS[\"yard\",UNIT[\"metre\",1]]", [0.0, 0.0]).unwrap();
+    assert_eq!(scale_said(&local), None, "a frame of its own is metres of the ground");
+}
+
+/// Scales (ground by map) by PROJ 9.5; of some nothing is known here, which is said.
+#[test]
+fn systems_that_are_newer_than_the_definitions_have_their_scale_or_say_that_it_is_not_known() {
+    let refused = read("EPSG:10598", [-1_662_395.73, -1_582_506.35]).err().unwrap().to_string();
+    assert!(refused.contains("1.0013 m of ground along x"), "{refused}");
+    let antarctica = read("EPSG:9354", [0.0, 1_605_785.93]).unwrap();
+    assert!((antarctica.grid.cell_size_m / 2.0 / 1.031_248 - 1.0).abs() < 1e-5, "{:?}", antarctica.grid);
+    assert!(scale_said(&antarctica).unwrap().detail.contains("1.0312"));
+    assert!(json("EPSG:9354", [0.0, 1_605_785.93]).err().unwrap().to_string().contains("1.0312 m of ground"));
+    for (crs, place_m) in [
+        ("EPSG:9311", [-5_505_212.18, -993_460.44]),
+        ("EPSG:9311", [-1_645_296.78, 521_000.04]),
+        ("EPSG:27704", [7_483_531.13, 771_739.81]),
+    ] {
+        let said = match read(crs, place_m) {
+            Ok(terrain) => scale_said(&terrain).unwrap().detail.clone(),
+            Err(error) => error.to_string(),
+        };
+        assert!(said.contains(crs) && said.contains("metre"), "{said}");
+    }
+}
+
+#[test]
+fn a_grid_whose_scale_is_not_known_says_so() {
+    let doubted = json("EPSG:3375", [444_864.56, 343_000.63]).unwrap();
+    assert!(scale_said(&doubted).unwrap().detail.contains("EPSG:3375, omerc"));
+    assert_eq!(scale_said(&json("EPSG:32632", [500_000.0, 5_423_000.0]).unwrap()), None);
+}
+
+#[test]
+fn a_mercator_of_any_size_keeps_its_place() {
+    // By pyproj: 10° east, 48° north.
+    for (code, place_m, side) in [
+        (3857, [1_113_194.908, 6_106_854.835], 40),
+        (3857, [1_113_194.908, 6_106_854.835], 120),
+        (3395, [1_113_194.908, 6_075_085.090], 120),
+    ] {
+        let terrain = read_cells(&format!("EPSG:{code}"), place_m, side, 1.5).unwrap();
+        let middle_m =
+            [0, 1].map(|axis| terrain.grid.origin_m[axis] + side as f64 / 2.0 * terrain.grid.cell_size_m);
+        let [lon_deg, lat_deg] = terrain.earth().unwrap().place_deg(middle_m).unwrap();
+        assert!((lon_deg - 10.0).abs() < 1e-7 && (lat_deg - 48.0).abs() < 1e-7, "{lon_deg} {lat_deg}");
+        assert!(json(terrain.crs.as_deref().unwrap(), middle_m).is_ok());
+    }
 }
 
 #[test]
@@ -164,6 +227,10 @@ fn systems_whose_coordinates_run_west_and_south_are_refused() {
     let wkt = format!(
         r#"PROJCS["Hartebeesthoek94 / Lo29",{WGS_84},PROJECTION["Transverse_Mercator_South_Orientated"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",29],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1],AXIS["Y",WEST],AXIS["X",SOUTH]]"#
     );
+    for prj in ["EPSG:2065", "EPSG:5513", "EPSG:8352", "EPSG:5515", "EPSG:2218"] {
+        let refused = read(prj, [700_000.0, 1_050_000.0]).unwrap_err().to_string();
+        assert!(refused.contains("run west and south") && refused.contains("-t_srs EPSG:32"), "{refused}");
+    }
     for prj in ["EPSG:2053", wkt.as_str()] {
         let refused = read(prj, [-10_011.77, 2_876_838.4]).unwrap_err().to_string();
         assert!(

@@ -13,7 +13,11 @@ use planner::{Patience, Planner};
 use routing::{Kind, Polygon, Reach, Waypoint, available_j, reach};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use terrain::{MapFile, Warning, crs::Earth, io::geotiff};
+use terrain::{
+    MapFile, Warning,
+    crs::{Crs, Earth},
+    io::geotiff,
+};
 use utoipa::ToSchema;
 
 use super::{
@@ -369,7 +373,8 @@ impl Found {
     /// latitude, null where nothing is known of it.
     fn member_crs(&self) -> Option<serde_json::Value> {
         let named = |name: &String| json!({ "type": "name", "properties": { "name": name } });
-        self.earth.is_none().then(|| json!(self.crs.as_ref().map(named)))
+        let metres = self.crs.as_ref().filter(|text| Crs::counts_metres(text));
+        self.earth.is_none().then(|| json!(metres.map(named)))
     }
 
     /// The least energy of every cell as a GeoTIFF [J].

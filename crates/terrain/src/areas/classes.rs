@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::{AreaError, Areas, class_table::ClassTable};
 use crate::{
     Error, Terrain,
-    crs::{Earth, EarthError},
+    crs::{Earth, EarthError, registered_code},
     io::geotiff::ClassRaster,
     resample::Affine,
 };
@@ -153,6 +153,14 @@ impl Frames {
             }
             let own = terrain.earth().map_err(placed("map"))?;
             return Ok(Frames { affine: raster.affine, ways: Some((own, None)) });
+        }
+        // The same registered system, though its coordinates were multiplied to be the map's.
+        let [own, other] =
+            [terrain.crs.as_deref(), crs.text.as_deref()].map(|text| text.and_then(registered_code));
+        if let (Some((own, [unit_x_m, unit_y_m])), Some((other, _))) = (own, other)
+            && own == other
+        {
+            return Ok(Frames { affine: raster.affine.scaled(unit_x_m, unit_y_m), ways: None });
         }
         let unit_m = crs.unit.map_or(1.0, |unit| unit.metres);
         let affine = raster.affine.scaled(unit_m, unit_m);

@@ -2,7 +2,7 @@
 
 use proj4rs::{Proj, transform::transform};
 
-use super::{Crs, LinearUnit, epsg, multiplied};
+use super::{Crs, epsg, multiplied};
 
 /// A projected system as a map's x and y are in it, in metres, and its way to WGS 84.
 ///
@@ -17,8 +17,8 @@ use super::{Crs, LinearUnit, epsg, multiplied};
 pub struct Earth {
     projected: Proj,
     wgs84: Proj,
-    /// Length of the system's own unit [m].
-    unit_m: f64,
+    /// Length of the system's own unit in the map's metres, along x and y [m].
+    units_m: [f64; 2],
 }
 
 /// Why a system's way to WGS 84 is not known here.
@@ -27,16 +27,24 @@ pub enum EarthError {
     /// A map that does not say.
     #[error("the map has no crs, so that nothing says where on earth it lies")]
     NoCrs,
-    /// Text that names no system of the EPSG registry.
+    /// Text that names no system of the EPSG registry, and no projection that is computed here.
     #[error(
-        "the map's crs, `{found}`, names no code of the EPSG registry, and other systems are not placed on earth here"
+        "the map's crs, `{found}`, names no code of the EPSG registry and no projection that is known here, so that it is not placed on earth"
     )]
     NoCode {
         /// Its beginning.
         found: String,
     },
-    /// A code that is not known here.
-    #[error("the projection of EPSG:{code} is not known here")]
+    /// A system without a code on a datum that is not known to be WGS 84.
+    #[error(
+        "the map's crs, `{found}`, does not say that its datum is that of WGS 84, so that it is not placed on earth"
+    )]
+    OwnDatum {
+        /// Its beginning.
+        found: String,
+    },
+    /// A code whose places are not known here.
+    #[error("where on WGS 84 the places of EPSG:{code} lie is not known here")]
     UnknownCode {
         /// The code.
         code: u32,
@@ -46,6 +54,16 @@ pub enum EarthError {
     Datum {
         /// The code.
         code: u32,
+    },
+    /// A place off the map whose latitude and longitude, the other way round, lie on it.
+    #[error(
+        "latitude {lat_deg}°, longitude {lon_deg}° lies outside the map, and the same numbers the other way round lie on it: give latitude {lon_deg}° and longitude {lat_deg}°"
+    )]
+    OtherWayRound {
+        /// Longitude as given [°].
+        lon_deg: f64,
+        /// Latitude as given [°].
+        lat_deg: f64,
     },
     /// A place that the projection does not reach.
     #[error("{x}, {y} lies beyond the area that the map's crs is for")]
@@ -68,6 +86,9 @@ const MISPLACED: [u32; 6] = [3973, 3974, 3975, 6871, 6996, 6997];
 /// Datums by name that are, or are set equal to, WGS 84.
 const SET_EQUAL: [&str; 2] = ["+datum=WGS84", "+datum=NAD83"];
 
+/// Longitude and latitude of WGS 84.
+const WGS_84: &str = "+proj=longlat +datum=WGS84 +no_defs";
+
 /// Largest distance between a place and where it comes back to [m]: more tells of a place beyond the projection's area.
 const CLOSES_M: f64 = 1e-3;
 
@@ -79,17 +100,32 @@ impl Earth {
     pub fn of(crs: &str) -> Result<Self, EarthError> {
         let no_code = || EarthError::NoCode { found: crs.chars().take(60).collect() };
         let parsed = Crs::parse(crs).ok_or_else(no_code)?;
-        let code = parsed.text.as_deref().and_then(code_of).ok_or_else(no_code)?;
+        let Some(code) = parsed.text.as_deref().and_then(code_of) else {
+            return Self::described(&parsed, crs);
+        };
         let unknown = || EarthError::UnknownCode { code };
         let definition = epsg::definition(code).filter(|_| !MISPLACED.contains(&code)).ok_or_else(unknown)?;
         if !is_earth_centred(&definition) {
             return Err(EarthError::Datum { code });
         }
         // The map's coordinates are metres whatever unit its own text has; the projection counts in that of its code.
-        let unit_m = unit_of(crs, code).ok_or_else(unknown)?.metres;
+        let units_m = units_of(crs, code).ok_or_else(unknown)?;
         let projected = Proj::from_proj_string(&definition).map_err(|_| unknown())?;
-        let wgs84 = Proj::from_proj_string("+proj=longlat +datum=WGS84 +no_defs").map_err(|_| unknown())?;
-        Ok(Earth { projected, wgs84, unit_m })
+        let wgs84 = Proj::from_proj_string(WGS_84).map_err(|_| unknown())?;
+        Ok(Earth { projected, wgs84, units_m })
+    }
+
+    /// The way of a system without a code, by its projection and datum.
+    fn described(parsed: &Crs, crs: &str) -> Result<Self, EarthError> {
+        let found = || crs.chars().take(60).collect::<String>();
+        let no_code = || EarthError::NoCode { found: found() };
+        let projection = parsed.any_projection().filter(|one| one.is_of_earth()).ok_or_else(no_code)?;
+        let projected = Proj::from_proj_string(&projection.definition).map_err(|_| no_code())?;
+        if !is_earth_centred(&projection.definition) {
+            return Err(EarthError::OwnDatum { found: found() });
+        }
+        let wgs84 = Proj::from_proj_string(WGS_84).map_err(|_| no_code())?;
+        Ok(Earth { projected, wgs84, units_m: projection.multiplied_by })
     }
 
     /// Longitude and latitude of a place of the map [°].
@@ -127,7 +163,8 @@ impl Earth {
     }
 
     fn inverse(&self, [x_m, y_m]: [f64; 2]) -> Option<[f64; 2]> {
-        let mut point = (x_m / self.unit_m, y_m / self.unit_m, 0.0);
+        let [unit_x_m, unit_y_m] = self.units_m;
+        let mut point = (x_m / unit_x_m, y_m / unit_y_m, 0.0);
         transform(&self.projected, &self.wgs84, &mut point).ok()?;
         finite([point.0.to_degrees(), point.1.to_degrees()])
     }
@@ -135,7 +172,7 @@ impl Earth {
     fn forward(&self, [lon_deg, lat_deg]: [f64; 2]) -> Option<[f64; 2]> {
         let mut point = (lon_deg.to_radians(), lat_deg.to_radians(), 0.0);
         transform(&self.wgs84, &self.projected, &mut point).ok()?;
-        finite([point.0 * self.unit_m, point.1 * self.unit_m])
+        finite([point.0 * self.units_m[0], point.1 * self.units_m[1]])
     }
 }
 
@@ -143,28 +180,30 @@ fn finite(pair: [f64; 2]) -> Option<[f64; 2]> {
     pair.iter().all(|value| value.is_finite()).then_some(pair)
 }
 
-/// The code of the EPSG registry of a map's `crs`, with the unit of its coordinates; `None` where it has none, or where the unit is not known.
-pub(crate) fn registered_code(crs: &str) -> Option<(u32, LinearUnit)> {
+/// The code of the EPSG registry of a map's `crs`, with the length of its unit in the map's metres along x and y; `None` where it has none,
+/// or where the unit is not known.
+pub(crate) fn registered_code(crs: &str) -> Option<(u32, [f64; 2])> {
     let code = code_of(Crs::parse(crs)?.text.as_deref()?)?;
     epsg::definition(code)?;
-    (!Crs::from_epsg(code).is_geographic).then(|| unit_of(crs, code)).flatten().map(|unit| (code, unit))
+    (!Crs::from_epsg(code).is_geographic)
+        .then(|| units_of(crs, code))
+        .flatten()
+        .map(|units_m| (code, units_m))
 }
 
-/// The unit of a code in metres of the map, which may be multiples of those of the registered system.
-fn unit_of(crs: &str, code: u32) -> Option<LinearUnit> {
-    match multiplied::read(crs) {
-        Some((code, by)) => multiplied::unit(code, by),
-        None => Crs::from_epsg(code).unit,
-    }
+/// The unit of a code in metres of the map along x and y, which may be multiples of those of the registered system.
+fn units_of(crs: &str, code: u32) -> Option<[f64; 2]> {
+    let by = multiplied::read(crs).map_or([1.0; 2], |multiplied| multiplied.by);
+    multiplied::units_m(code, by)
 }
 
 /// The code of a text of [`Crs::text`]: `EPSG:code`, or WKT that names its code or is one of the UTM zones by the names that ESRI's files have.
 fn code_of(text: &str) -> Option<u32> {
     if let Some(code) = text.strip_prefix("EPSG:") {
-        return code.split('+').next()?.parse().ok();
+        return code.split('+').next()?.parse().ok().map(epsg::registered);
     }
-    if let Some((code, _)) = multiplied::read(text) {
-        return Some(code);
+    if let Some(multiplied) = multiplied::read(text) {
+        return multiplied.code;
     }
     let name = text.split('"').nth(1)?.to_ascii_uppercase().replace([' ', '/'], "_");
     let (datum, zone) = name.split_once("_UTM_ZONE_")?;

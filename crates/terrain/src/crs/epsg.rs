@@ -9,8 +9,13 @@ use super::{Crs, LinearUnit, Mercator, Vertical, by_epsg_code, by_name, mercator
 /// Codes of Web Mercator outside the EPSG registry (Google's first, OSGeo's, and two of Esri), and the registry's with heights, which
 /// PROJ's definitions lack a word for.
 const WEB_MERCATORS: [u32; 5] = [900_913, 41_001, 102_100, 102_113, 6871];
+const WEB_MERCATOR: u32 = 3857;
 /// Codes of Esri's World Mercator on the ellipsoid: the earlier and the present one.
 const WORLD_MERCATORS: [u32; 2] = [54_004, 3395];
+const WORLD_MERCATOR: u32 = 3395;
+
+/// Codes of systems that count southings and westings, whose definitions lack the word for it (EPSG v11.022, axes by pyproj 3.7.2).
+const SOUTH_WEST: [u32; 5] = [2065, 5513, 8044, 8045, 8352];
 
 /// Projections of the world by Esri's codes.
 const OF_ESRI: [(u32, &str); 10] = [
@@ -82,20 +87,34 @@ pub(super) fn horizontal(code: u32) -> Crs {
         let mercator = Some(mercator::WORLD);
         return Crs { text, unit: Some(LinearUnit::METRE), mercator, ..Crs::default() };
     }
-    if let Some(unit) = newer::unit(code) {
-        return Crs { text, unit: Some(unit), ..Crs::default() };
-    }
     if let Some((_, definition)) = OF_ESRI.iter().find(|(known, _)| *known == code) {
         return Crs { text, ..by_definition(definition) };
     }
-    let Some(definition) = definition(code) else { return Crs { text, ..Crs::default() } };
+    let Some(definition) = any_definition(code) else { return Crs { text, ..Crs::default() } };
     Crs { text, ..by_definition(&definition) }
+}
+
+/// The definition of a code, though nothing be known of its datum.
+pub(super) fn any_definition(code: u32) -> Option<String> {
+    let definition = definition(code).or_else(|| newer::definition(code))?;
+    let axes = if SOUTH_WEST.contains(&code) { " +axis=swu" } else { "" };
+    Some(definition + axes)
+}
+
+/// The registry's code of the same projection, for codes of others.
+pub(super) fn registered(code: u32) -> u32 {
+    match code {
+        code if WEB_MERCATORS.contains(&code) => WEB_MERCATOR,
+        code if WORLD_MERCATORS.contains(&code) => WORLD_MERCATOR,
+        code => code,
+    }
 }
 
 /// What the registry says of a code as PROJ writes it, with the scale under the name that `proj4rs` reads for every projection.
 pub(super) fn definition(code: u32) -> Option<String> {
     let definition = u16::try_from(code).ok().and_then(crs_definitions::from_code)?;
-    Some(definition.proj4.replace("+k_0=", "+k="))
+    // Of some codes the table has an empty one.
+    Some(definition.proj4).filter(|words| words.contains("+proj=")).map(|words| words.replace("+k_0=", "+k="))
 }
 
 /// What a PROJ definition says of axes, unit, heights and projection.

@@ -26,6 +26,27 @@ pub(super) fn code_by_name(name: &str) -> Option<u32> {
     NAMED.iter().find(|(names, _)| names.contains(&plain.as_str())).map(|(_, code)| *code)
 }
 
+/// The datum of a geographic system by its code, as PROJ defines it, where that is set equal to WGS 84; `None` for all others, and where the
+/// file has another ellipsoid for it (semi-major axis [m] and inverse flattening).
+pub(super) fn earth_centred_datum(code: u32, ellipsoid: Option<[f64; 2]>) -> Option<String> {
+    /// Semi-major axis [m] and inverse flattening of GRS 80, which those of WGS 84 equal to 2e-6 (NIMA TR8350.2, table 3.1; Moritz 2000).
+    const GRS_80: [f64; 2] = [6_378_137.0, 298.257_222_101];
+    /// Digits with which files round a flattening.
+    const WRITTEN: f64 = 1e-3;
+    let is_other = |[major_m, inverse_flattening]: [f64; 2]| {
+        (major_m - GRS_80[0]).abs() > WRITTEN || (inverse_flattening - GRS_80[1]).abs() > WRITTEN
+    };
+    if ellipsoid.is_some_and(is_other) {
+        return None;
+    }
+    Crs::from_epsg(code).earth_centred_degrees()?;
+    let definition = crs_definitions::from_code(u16::try_from(code).ok()?)?.proj4;
+    let keys = ["+datum=", "+ellps=", "+towgs84="];
+    let words =
+        definition.split_ascii_whitespace().filter(|word| keys.iter().any(|key| word.starts_with(key)));
+    Some(words.collect::<Vec<_>>().join(" "))
+}
+
 impl Crs {
     /// The name of a geographic system whose degrees are those of WGS 84; `None` for all other systems.
     ///

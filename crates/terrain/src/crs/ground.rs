@@ -1,7 +1,7 @@
 //! From a system's coordinates to metres of the ground, or the refusal that says how to bring a map there.
 
 use super::{
-    Crs, GroundScale, Mercator, ScaleRefusal, mercator::ECCENTRICITY_2, projection::AxisScale,
+    Crs, GroundScale, Mercator, ScaleRefusal, mercator::ECCENTRICITY_2, multiplied, projection::AxisScale,
     scale::projected_to_ground,
 };
 use crate::{
@@ -44,21 +44,47 @@ impl Affine {
     }
 }
 
+/// The system of a grid whose cells are metres of the ground, with what is doubtful of it.
+pub(crate) struct GridSystem {
+    text: Option<String>,
+    doubt: Option<Warning>,
+}
+
+impl GridSystem {
+    /// The system that a text names.
+    ///
+    /// # Errors
+    /// A system that is none of metres, or whose metres are no metres of the ground there.
+    pub(crate) fn of(text: Option<String>, grid: &Grid) -> Result<Self, Error> {
+        let text = text.map(Crs::of_metres).transpose()?;
+        let doubt = text.as_deref().map_or(Ok(None), |text| refuse_stretched(grid, text))?;
+        Ok(GridSystem { text, doubt })
+    }
+
+    /// The ground in this system.
+    pub(crate) fn on(self, terrain: Terrain) -> Terrain {
+        let terrain = Terrain { crs: self.text, ..terrain };
+        self.doubt.into_iter().fold(terrain, Terrain::with_warning)
+    }
+}
+
 /// Refuses a system whose metres are no metres of the ground where a grid lies, of a grid that says that they are. Up to e² of the
-/// ellipsoid, 0.7 %, the metres of a sphere are taken for those of the ground, as they are where a Mercator is brought to it.
+/// ellipsoid, 0.7 %, the metres of a sphere are taken for those of the ground, as they are where a Mercator is brought to it. Returns a
+/// warning where nothing is known of the system's scale.
 ///
 /// # Errors
 /// [`Error::StretchedCrs`] with the command that mends.
-pub(crate) fn refuse_stretched(grid: &Grid, text: &str) -> Result<(), Error> {
-    let Some(crs) = Crs::parse(text) else { return Ok(()) };
+fn refuse_stretched(grid: &Grid, text: &str) -> Result<Option<Warning>, Error> {
+    let Some(crs) = Crs::parse(text) else { return Ok(None) };
     let half_m = |cells: usize| cells as f64 * grid.cell_size_m / 2.0;
     let middle_m = [grid.origin_m[0] + half_m(grid.columns), grid.origin_m[1] + half_m(grid.rows)];
-    let Some((scale, [longitude_deg, latitude_deg])) = scale_at(&crs, middle_m)? else { return Ok(()) };
+    crs.refuse_south_orientated(middle_m, "tif")?;
+    if let Some(warning) = crs.unchecked_scale(&[middle_m], "tif")? {
+        return Ok(Some(warning));
+    }
+    let Some((scale, [longitude_deg, latitude_deg])) = scale_at(&crs, middle_m) else { return Ok(None) };
     let epsg = utm_epsg(longitude_deg, latitude_deg);
     let found = || text.chars().take(60).collect::<String>();
-    if crs.projection.is_some_and(|projection| projection.is_south_orientated()) {
-        return Err(ScaleRefusal::SouthOrientated { crs: found(), ending: "tif", epsg }.into());
-    }
     let AxisScale { x, y, shear } = scale;
     if (scale.mean() - 1.0).abs() > ECCENTRICITY_2 {
         return Err(Error::StretchedCrs { found: found(), scale: scale.mean(), epsg });
@@ -67,25 +93,18 @@ pub(crate) fn refuse_stretched(grid: &Grid, text: &str) -> Result<(), Error> {
         let angle_deg = shear.acos().to_degrees();
         return Err(ScaleRefusal::Uneven { crs: found(), x, y, angle_deg, ending: "tif", epsg }.into());
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Ground by map at a place, and its longitude and latitude, of a projection that is computed here.
-///
-/// # Errors
-/// A projection of the world that is not.
-fn scale_at(crs: &Crs, place_m: [f64; 2]) -> Result<Option<(AxisScale, [f64; 2])>, ScaleRefusal> {
+fn scale_at(crs: &Crs, place_m: [f64; 2]) -> Option<(AxisScale, [f64; 2])> {
     if let Some(mercator) = crs.mercator {
         let GroundScale { east, north } = mercator.ground_scale(place_m[1]);
         let scale = AxisScale { x: east, y: north, shear: 0.0 };
-        return Ok(Some((scale, mercator.place_deg(place_m[0], place_m[1]))));
+        return Some((scale, mercator.place_deg(place_m[0], place_m[1])));
     }
-    let Some(projection) = &crs.projection else { return Ok(None) };
-    let Some(conversion) = projection.conversion() else {
-        let name = crs.text.clone().unwrap_or_default();
-        return projection.refuse_world(&name, "tif").map(|()| None);
-    };
-    Ok(conversion.axis_scale(place_m).zip(conversion.place_deg(place_m)))
+    let conversion = crs.projection.as_ref()?.conversion()?;
+    conversion.axis_scale(place_m).zip(conversion.place_deg(place_m))
 }
 
 /// Brings projected coordinates to metres of the ground: by the system's unit and by the scale of its projection. Returns the text of the
@@ -146,9 +165,9 @@ fn mercator_to_ground(
     );
     warnings.push(Warning::new(WarningKind::ProjectionScale, detail));
     if (scale.east / mean - 1.0).abs() * longest <= UNTOLD_CELLS {
-        return Ok((affine.scaled(mean, mean), mercator.scaled_wkt(mean)));
+        return Ok((affine.scaled(mean, mean), multiplied::text(crs, [mean; 2])));
     }
-    Ok((affine.scaled(scale.east, scale.north), None))
+    Ok((affine.scaled(scale.east, scale.north), multiplied::text(crs, [scale.east, scale.north])))
 }
 
 /// The grid of upright square cells in some system, brought to metres of the ground, and the text of the system that it is in then;

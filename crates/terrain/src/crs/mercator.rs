@@ -26,6 +26,20 @@ pub enum Spacing {
     Even,
 }
 
+/// Parameters of a cylindrical projection as files have them.
+pub(crate) struct Parameters {
+    pub(crate) spacing: Spacing,
+    pub(crate) is_on_wgs84: bool,
+    /// Parallel that is true to scale [°].
+    pub(crate) true_scale_deg: f64,
+    /// Latitude from which northings count [°].
+    pub(crate) origin_latitude_deg: f64,
+    /// Scale on the equator, which stands above the parallel.
+    pub(crate) scale: Option<f64>,
+    pub(crate) central_meridian_deg: f64,
+    pub(crate) false_origin_m: [f64; 2],
+}
+
 /// Lengths on the ground by lengths on the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundScale {
@@ -50,11 +64,13 @@ pub(super) const WORLD: Mercator = Mercator { spacing: Spacing::Conformal, ..WEB
 pub(super) const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// First eccentricity squared of WGS 84 (NIMA TR8350.2, table 3.3).
 pub(super) const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
+/// Inverse flattening of WGS 84 (NIMA TR8350.2, table 3.1).
+const INVERSE_FLATTENING: f64 = 298.257_223_563;
 
-/// Whether a semi-major axis is one of the earth's: those of the EPSG registry lie within 3e-4 of that of WGS 84. Of other
-/// bodies nothing is known here [m].
+/// Whether a semi-major axis is one of the earth's: those of the EPSG registry lie within 3e-4 of that of WGS 84, spheres of the earth's mean
+/// radius (6 371 km) 1.1e-3 below it. Venus, the nearest body, is 5e-2 smaller. Of other bodies nothing is known here [m].
 pub(crate) fn is_of_earth(semi_major_m: f64) -> bool {
-    const SPREAD: f64 = 1e-3;
+    const SPREAD: f64 = 2e-3;
     (semi_major_m / SEMI_MAJOR_M - 1.0).abs() <= SPREAD
 }
 
@@ -66,21 +82,43 @@ impl Mercator {
             return None;
         }
         let number = |key: &str| value(key).and_then(|text| text.parse::<f64>().ok());
-        let true_scale_rad = number("lat_ts").unwrap_or(0.0).to_radians();
+        let radius_m = number("a").or(number("R"));
+        if radius_m.is_some_and(|radius_m| !is_of_earth(radius_m)) {
+            return None;
+        }
         let is_spherical = value("a").is_some() && value("a") == value("b");
-        Some(Mercator {
+        Some(Self::of(&Parameters {
             spacing: match (is_even, is_spherical) {
                 (true, _) => Spacing::Even,
                 (false, true) => Spacing::Spherical,
                 (false, false) => Spacing::Conformal,
             },
             is_on_wgs84: is_spherical || value("datum") == Some("WGS84"),
-            equator_scale: number("k")
-                .or(number("k_0"))
-                .unwrap_or_else(|| Self::equator_scale_of(true_scale_rad)),
+            true_scale_deg: number("lat_ts").unwrap_or(0.0),
+            origin_latitude_deg: number("lat_0").unwrap_or(0.0),
+            scale: number("k").or(number("k_0")),
             central_meridian_deg: number("lon_0").unwrap_or(0.0),
             false_origin_m: [number("x_0").unwrap_or(0.0), number("y_0").unwrap_or(0.0)],
-        })
+        }))
+    }
+
+    /// The projection with the parameters that files have. An equidistant cylindrical one counts northings from its latitude of origin, and is
+    /// true to scale on its parallel as on a sphere, as PROJ has it (`eqc`); Mercators count from the equator.
+    pub(crate) fn of(parameters: &Parameters) -> Self {
+        let Parameters { spacing, is_on_wgs84, central_meridian_deg, false_origin_m: [x_m, y_m], .. } =
+            *parameters;
+        let is_even = spacing == Spacing::Even;
+        let true_scale_rad = parameters.true_scale_deg.to_radians();
+        let on_parallel = if is_even { true_scale_rad.cos() } else { Self::equator_scale_of(true_scale_rad) };
+        let origin_north_m =
+            if is_even { SEMI_MAJOR_M * parameters.origin_latitude_deg.to_radians() } else { 0.0 };
+        Mercator {
+            spacing,
+            is_on_wgs84,
+            equator_scale: parameters.scale.filter(|scale| *scale > 0.0 && !is_even).unwrap_or(on_parallel),
+            central_meridian_deg,
+            false_origin_m: [x_m, y_m - origin_north_m],
+        }
     }
 
     /// Scale on the equator of a Mercator that is true to scale on a parallel.
@@ -94,25 +132,27 @@ impl Mercator {
         latitude_rad.cos() / (1.0 - ECCENTRICITY_2 * latitude_rad.sin().powi(2)).sqrt()
     }
 
-    /// WKT of the projection with its coordinates multiplied; `None` where its datum is not known.
-    pub(crate) fn scaled_wkt(&self, by: f64) -> Option<String> {
-        let (scale, meridian_deg) = (self.equator_scale * by, self.central_meridian_deg);
-        let [x_m, y_m] = self.false_origin_m.map(|metres| metres * by);
-        // PROJ's words say what WKT 1 has none for: latitudes of the ellipsoid as if on a sphere.
-        let sphere = format!(
-            ",EXTENSION[\"PROJ4\",\"+proj=merc +a={SEMI_MAJOR_M} +b={SEMI_MAJOR_M} +lat_ts=0 +lon_0={meridian_deg} +x_0={x_m} \
-             +y_0={y_m} +k={scale} +units=m +nadgrids=@null +wktext +no_defs\"]"
-        );
-        (self.is_on_wgs84 && self.spacing != Spacing::Even).then(|| {
-            format!(
-                "PROJCS[\"Mercator in metres of the ground\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",\
-                 6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],\
-                 PROJECTION[\"Mercator_1SP\"],PARAMETER[\"central_meridian\",{meridian_deg}],\
-                 PARAMETER[\"scale_factor\",{scale}],PARAMETER[\"false_easting\",{x_m}],\
-                 PARAMETER[\"false_northing\",{y_m}],UNIT[\"metre\",1]{}]",
-                if self.spacing == Spacing::Spherical { sphere.as_str() } else { "" }
-            )
-        })
+    /// The projection as PROJ defines it, in metres; without a datum where that is not WGS 84.
+    pub(super) fn definition(&self) -> String {
+        let Mercator { equator_scale, central_meridian_deg, .. } = self;
+        let [x_m, y_m] = self.false_origin_m;
+        let frame = format!("+lon_0={central_meridian_deg} +x_0={x_m} +y_0={y_m}");
+        let datum = if self.is_on_wgs84 {
+            "+datum=WGS84".to_owned()
+        } else {
+            format!("+a={SEMI_MAJOR_M} +rf={INVERSE_FLATTENING}")
+        };
+        match self.spacing {
+            Spacing::Conformal => format!("+proj=merc +k={equator_scale} {frame} {datum}"),
+            // Latitudes of the ellipsoid as if on a sphere, with the word by which PROJ takes them for those of WGS 84.
+            Spacing::Spherical => format!(
+                "+proj=merc +a={SEMI_MAJOR_M} +b={SEMI_MAJOR_M} +k={equator_scale} {frame}{}",
+                if self.is_on_wgs84 { " +nadgrids=@null" } else { "" }
+            ),
+            Spacing::Even => {
+                format!("+proj=eqc +lat_ts={} {frame} {datum}", equator_scale.acos().to_degrees())
+            }
+        }
     }
 
     /// Longitude and latitude of a place [deg].
@@ -188,17 +228,6 @@ mod tests {
     }
 
     #[test]
-    fn a_projection_brought_to_the_ground_is_true_to_scale_and_keeps_its_places() {
-        let (y_m, by) = (8_399_737.889_82, 0.500_8);
-        let ground = crate::crs::Crs::parse(&WEB.scaled_wkt(by).unwrap()).unwrap().mercator.unwrap();
-        assert_eq!(ground.spacing, Spacing::Spherical);
-        let [longitude_deg, latitude_deg] = ground.place_deg(1_113_194.907_93 * by, y_m * by);
-        assert_abs_diff_eq!(longitude_deg, 10.0, epsilon = 1e-9);
-        assert_abs_diff_eq!(latitude_deg, 60.0, epsilon = 1e-9);
-        assert_abs_diff_eq!(ground.ground_scale(y_m * by).east, 0.501_260 / by, epsilon = 1e-5);
-    }
-
-    #[test]
     fn evenly_spaced_parallels_keep_north_and_stretch_east() {
         let even = crate::crs::Crs::from_epsg(4087).mercator.unwrap();
         let y_m = SEMI_MAJOR_M * 60f64.to_radians();
@@ -207,6 +236,19 @@ mod tests {
         assert_abs_diff_eq!(scale.east, 0.501_260, epsilon = 2e-6);
         // The meridian's radius of curvature at 60° by the equator's: 6 383 453.857 / 6 378 137.
         assert_abs_diff_eq!(scale.north, 1.000_834, epsilon = 2e-6);
+    }
+
+    #[test]
+    fn an_even_spacing_counts_from_its_latitude_of_origin() {
+        for (definition, y_m, east) in [
+            // By pyproj: 9.01° east, 49.01° north lies at (730.3, 1113.2); ν cos φ / (a cos 49°) there.
+            ("+proj=eqc +lat_0=49 +lat_ts=49 +lon_0=9 +datum=WGS84", 1_113.194_907_93, 1.001_711),
+            ("+proj=eqc +lat_0=49 +lat_ts=0 +lon_0=9 +datum=WGS84", 1_113.194_907_93, 0.657_181),
+        ] {
+            let even = crate::crs::Crs::from_proj(definition).unwrap().mercator.unwrap();
+            assert_abs_diff_eq!(even.place_deg(0.0, y_m)[1], 49.01, epsilon = 1e-9);
+            assert_abs_diff_eq!(even.ground_scale(y_m).east, east, epsilon = 2e-6);
+        }
     }
 
     #[test]

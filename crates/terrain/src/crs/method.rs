@@ -8,6 +8,8 @@ pub(crate) struct Described<'a> {
     pub(crate) method: &'a str,
     /// A parameter by the first of some names that the file has, in the same letters; lengths in the system's unit.
     pub(crate) number: &'a dyn Fn(&[&str]) -> Option<f64>,
+    /// Its datum as PROJ defines it, where that is set equal to WGS 84.
+    pub(crate) datum: Option<String>,
     /// Semi-major axis [m] and inverse flattening of the ellipsoid, if the file says them.
     pub(crate) ellipsoid: Option<[f64; 2]>,
     /// Length of the system's unit [m].
@@ -128,10 +130,12 @@ impl Described<'_> {
             format!("+{key}={length_m} ")
         };
         let ellipsoid = match self.ellipsoid {
+            _ if self.datum.is_some() => self.datum.clone().unwrap_or_default(),
             // WKT writes a sphere with an inverse flattening of 0.
             Some([major_m, 0.0]) => format!("+a={major_m} +b={major_m}"),
             Some([major_m, inverse_flattening]) => format!("+a={major_m} +rf={inverse_flattening}"),
-            None => "+ellps=WGS84".into(),
+            // Without a word for the datum, which nothing says.
+            None => "+a=6378137 +rf=298.257223563".into(),
         };
         format!("{angles}{}{}{ellipsoid}", length("x_0", EASTING), length("y_0", NORTHING))
     }
@@ -174,7 +178,7 @@ mod tests {
             names.iter().find_map(|name| parameters.iter().find(|(known, _)| known == name)).map(|(_, v)| *v)
         };
         let ellipsoid = Some([6_378_137.0, 298.257_223_563]);
-        Described { method, number: &number, ellipsoid, unit_m: 1.0 }.projection().definition
+        Described { method, number: &number, datum: None, ellipsoid, unit_m: 1.0 }.projection().definition
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The older `.prj` of ArcInfo, a word and a value a line.
 
-use super::{Crs, LinearUnit, Vertical, by_name, geographic, mercator};
+use super::{Crs, LinearUnit, Projection, Vertical, by_name, geographic, mercator};
 
 /// The `.prj` of ArcInfo: `Projection UTM`, `Zone 15`, `Datum WGS84`, `Units METERS`, a word and a value a line. `None` without a
 /// projection, and with shifts of the coordinates that are not those of a southern zone.
@@ -32,10 +32,14 @@ pub(super) fn parse_words(text: &str) -> Option<Crs> {
     let code = zone
         .zip(value("Datum"))
         .and_then(|(zone, datum)| zone_code(&datum, zone.unsigned_abs(), is_southern || zone < 0));
+    // Of others than UTM nothing but the name is read.
+    let other = || (!is_mercator).then(|| Projection::of(format!("+proj={}", projection.to_lowercase())));
+    let projection = code.and_then(|code| Crs::from_epsg(code).projection).or_else(other);
     Some(Crs {
         text: code.map(|code| format!("EPSG:{code}")),
         unit: value("Units").map_or(code.map(|_| LinearUnit::METRE), |name| unit(&name)),
         mercator: is_mercator.then_some(mercator::WORLD),
+        projection,
         vertical,
         ..Crs::default()
     })

@@ -3,11 +3,11 @@
 mod refusal;
 
 pub use self::refusal::ScaleRefusal;
-use super::{Crs, Projection, Size, UTM_SCALE_ERROR, multiplied, projection::AxisScale};
+use super::{
+    Crs, Projection, Size, UTM_SCALE_ERROR, multiplied,
+    projection::{AxisScale, Conversion},
+};
 use crate::{Error, Warning, WarningKind, io::degrees::utm_epsg, resample::Affine};
-
-/// Projections that are not computed here and stay close to the ground in the country or strip that each was made for.
-const FAITHFUL: [&str; 6] = ["omerc", "somerc", "krovak", "cass", "nzmg", "labrd"];
 
 /// Projections of the world that are not computed here, and whose metres are those of the ground nowhere or on a line alone.
 const STRETCHED: [&str; 10] =
@@ -31,21 +31,15 @@ pub(super) fn projected_to_ground(
     warnings: &mut Vec<Warning>,
 ) -> Result<(Affine, Option<String>), Error> {
     let as_it_stands = (affine, crs.text.clone());
-    let Some(projection) = &crs.projection else { return Ok(as_it_stands) };
-    let name = || {
-        crs.text.clone().unwrap_or_else(|| "of the file's own".into()).chars().take(60).collect::<String>()
-    };
-    let Some(conversion) = projection.conversion() else {
-        projection.refuse_world(&name(), ending)?;
-        let method = projection.name();
-        if !FAITHFUL.contains(&method) {
-            warnings.push(unknown(&format!("the projection ({}, {method}) is not computed here", name())));
-        }
+    let name = || crs.name();
+    let middle_m = affine.at(size.columns as f64 / 2.0, size.rows as f64 / 2.0);
+    crs.refuse_south_orientated(middle_m, ending)?;
+    let (columns, rows) = (size.columns as f64, size.rows as f64);
+    let corners_m = [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)].map(|(c, r)| affine.at(c, r));
+    let Some(conversion) = crs.conversion() else {
+        warnings.extend(crs.unchecked_scale(&corners_m, ending)?);
         return Ok(as_it_stands);
     };
-    let (columns, rows) = (size.columns as f64, size.rows as f64);
-    let middle_m = affine.at(columns / 2.0, rows / 2.0);
-    let corners_m = [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)].map(|(c, r)| affine.at(c, r));
     let scale_at = |place_m: &[f64; 2]| conversion.axis_scale(*place_m);
     let scales: Option<Vec<AxisScale>> = [middle_m].iter().chain(&corners_m).map(scale_at).collect();
     let (Some(scales), Some([longitude_deg, latitude_deg])) = (scales, conversion.place_deg(middle_m)) else {
@@ -57,9 +51,6 @@ pub(super) fn projected_to_ground(
         return Ok(as_it_stands);
     };
     let epsg = utm_epsg(longitude_deg, latitude_deg);
-    if projection.is_south_orientated() {
-        return Err(ScaleRefusal::SouthOrientated { crs: name(), ending, epsg }.into());
-    }
     let departure = scales.iter().map(AxisScale::departure).fold(0.0, f64::max);
     if departure <= NEAR_GROUND {
         warnings.extend((departure > UTM_SCALE_ERROR).then(|| off_by(&name(), departure)));
@@ -81,8 +72,67 @@ pub(super) fn projected_to_ground(
         name()
     );
     warnings.push(Warning::new(WarningKind::ProjectionScale, detail));
-    let text = crs.text.as_deref().and_then(|text| multiplied::text(text, scale));
-    Ok((affine.scaled(scale, scale), text))
+    Ok((affine.scaled(scale, scale), multiplied::text(crs, [scale; 2])))
+}
+
+impl Crs {
+    /// The beginning of its text, for messages.
+    pub(super) fn name(&self) -> String {
+        self.text.as_deref().unwrap_or("of the file's own").chars().take(60).collect()
+    }
+
+    fn conversion(&self) -> Option<Conversion> {
+        self.projection.as_ref()?.conversion()
+    }
+
+    /// Refuses coordinates that run west or south.
+    ///
+    /// # Errors
+    /// [`ScaleRefusal::SouthOrientated`].
+    pub(super) fn refuse_south_orientated(
+        &self,
+        middle_m: [f64; 2],
+        ending: &'static str,
+    ) -> Result<(), ScaleRefusal> {
+        if !self.projection.as_ref().is_some_and(Projection::is_south_orientated) {
+            return Ok(());
+        }
+        let place_deg = self.conversion().and_then(|conversion| conversion.place_deg(middle_m));
+        let epsg = place_deg.map(|[longitude_deg, latitude_deg]| utm_epsg(longitude_deg, latitude_deg));
+        Err(ScaleRefusal::SouthOrientated { crs: self.name(), ending, epsg })
+    }
+
+    /// A warning that nothing is known of the system's scale, where it is a projected one that is not computed here.
+    ///
+    /// # Errors
+    /// A projection of the world, which is refused by name.
+    pub(super) fn unchecked_scale(
+        &self,
+        places_m: &[[f64; 2]],
+        ending: &'static str,
+    ) -> Result<Option<Warning>, ScaleRefusal> {
+        if self.mercator.is_some() || self.is_geographic {
+            return Ok(None);
+        }
+        let name = self.name();
+        let Some(projection) = &self.projection else {
+            // A local frame has no projection; a code that is not known here may stand for any.
+            let is_unknown = self.is_code_alone();
+            return Ok(is_unknown.then(|| unknown(&format!("the projection of {name} is not known here"))));
+        };
+        if !projection.is_of_earth() {
+            return Ok(Some(unknown(&format!("the system ({name}) is of another body than the earth"))));
+        }
+        if projection.conversion().is_some() {
+            return Ok(None);
+        }
+        if let Some(departure) = projection.cassini_departure(places_m).filter(|off| *off <= NEAR_GROUND) {
+            return Ok((departure > UTM_SCALE_ERROR).then(|| off_by(&name, departure)));
+        }
+        projection.refuse_world(&name, ending)?;
+        let method = projection.name();
+        Ok(Some(unknown(&format!("the projection ({name}, {method}) is not computed here"))))
+    }
 }
 
 impl Projection {

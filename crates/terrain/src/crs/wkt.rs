@@ -26,8 +26,8 @@ struct Node<'a> {
 pub(super) fn parse(text: &str) -> Option<Crs> {
     let Some((node, rest)) = Node::read(text, 0) else { return prj::parse_words(text) };
     let mut crs = node.crs()?;
-    if let Some(projection) = multiplied::projection(text) {
-        crs.projection = Some(projection);
+    if let Some(multiplied) = multiplied::read(text) {
+        crs.projection = Some(multiplied.projection());
     }
     // Esri writes the vertical system behind the horizontal one, without a compound system around them.
     let beside = rest.trim_start().strip_prefix(',').and_then(|rest| Node::read(rest, 0));
@@ -194,17 +194,27 @@ impl<'a> Node<'a> {
         Some([words.get(1)?.parse().ok()?, words.get(2)?.parse().ok()?])
     }
 
-    /// The projection by its method and parameters; `None` for one of another body, and without a method.
+    /// The datum of a projected system as PROJ defines it, if its degrees are those of WGS 84; `None` for all others.
+    fn earth_centred_datum(&self) -> Option<String> {
+        let base = self.child(&BASE)?;
+        let datum = base.child(&["DATUM", "ENSEMBLE", "TRF", "GEODETICDATUM"]).unwrap_or(base);
+        let named =
+            || [datum, base].into_iter().find_map(|node| geographic::code_by_name(node.words.first()?));
+        let number = |node: &Node<'_>| node.words.get(1)?.parse::<f64>().ok();
+        let is_greenwich =
+            base.child(&["PRIMEM", "PRIMEMERIDIAN"]).is_none_or(|meridian| number(meridian) == Some(0.0));
+        let code = base.epsg_code().or_else(named).filter(|_| is_greenwich)?;
+        geographic::earth_centred_datum(code, self.ellipsoid())
+    }
+
+    /// The projection by its method and parameters; `None` without a method.
     fn projection(&self) -> Option<Projection> {
         let conversion = self.child(&["CONVERSION"]).unwrap_or(self);
         let method = plain(conversion.child(&["PROJECTION", "METHOD"])?.words.first()?);
-        let ellipsoid = self.ellipsoid();
-        if ellipsoid.is_some_and(|[semi_major_m, _]| !mercator::is_of_earth(semi_major_m)) {
-            return None;
-        }
+        let (ellipsoid, datum) = (self.ellipsoid(), self.earth_centred_datum());
         let unit_m = self.unit().map_or(1.0, |unit| unit.metres);
         let number = |names: &[&str]| conversion.parameter(names);
-        Some(Described { method: &method, number: &number, ellipsoid, unit_m }.projection())
+        Some(Described { method: &method, number: &number, datum, ellipsoid, unit_m }.projection())
     }
 
     fn mercator(&self) -> Option<Mercator> {
@@ -218,9 +228,6 @@ impl<'a> Node<'a> {
         }
         let number = |names: &[&str]| conversion.parameter(names);
         let metres = self.unit().map_or(1.0, |unit| unit.metres);
-        let true_scale_rad =
-            number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0).to_radians();
-        let scale = number(&["scalefactor", "scalefactoratnaturalorigin"]).filter(|scale| *scale > 0.0);
         let spherical = ["auxiliary", "pseudo", "visualisation", "web"];
         let words = |node: &Node<'_>| node.words.iter().any(|word| word.contains("+b=6378137"));
         let is_spherical = spherical.iter().any(|kind| method.contains(kind))
@@ -228,21 +235,23 @@ impl<'a> Node<'a> {
         if self.ellipsoid().is_some_and(|[semi_major_m, _]| !mercator::is_of_earth(semi_major_m)) {
             return None;
         }
-        let base = self.child(&BASE).and_then(|base| base.words.first());
-        Some(Mercator {
-            is_on_wgs84: base.is_some_and(|name| name.to_uppercase().contains("WGS")),
+        Some(Mercator::of(&mercator::Parameters {
+            is_on_wgs84: self.earth_centred_datum().is_some(),
             spacing: match () {
                 () if is_even => Spacing::Even,
                 () if is_spherical => Spacing::Spherical,
                 () => Spacing::Conformal,
             },
-            equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
+            true_scale_deg: number(&["standardparallel1", "latitudeof1ststandardparallel"]).unwrap_or(0.0),
+            origin_latitude_deg: number(&["latitudeoforigin", "latitudeofnaturalorigin", "latitudeofcenter"])
+                .unwrap_or(0.0),
+            scale: number(&["scalefactor", "scalefactoratnaturalorigin"]),
             central_meridian_deg: number(&["centralmeridian", "longitudeofnaturalorigin"]).unwrap_or(0.0),
             false_origin_m: [
                 number(&["falseeasting"]).unwrap_or(0.0) * metres,
                 number(&["falsenorthing"]).unwrap_or(0.0) * metres,
             ],
-        })
+        }))
     }
 }
 

@@ -10,6 +10,13 @@ pub(super) struct Steps {
     /// Edge of a cell [m].
     pub(super) cell_size_m: f64,
     pub(super) count: usize,
+    /// Sum of their squares [m²].
+    pub(super) squares_m2: f64,
+    /// Those that are not level.
+    pub(super) sloped: usize,
+    /// Those of them that are one round step of heights high ([`Values::round_step_m`]).
+    pub(super) single: usize,
+    round_step_m: f64,
     /// Those that are steeper than 45°.
     pub(super) steep: usize,
     /// Those of more than half a circle, were they degrees.
@@ -40,7 +47,8 @@ impl Steps {
     pub(super) fn of(terrain: &Terrain, values: &Values) -> Self {
         let candidates = candidates(terrain, values);
         let rows = 0..terrain.grid.rows;
-        let empty = || Steps::empty(terrain.grid.cell_size_m, &candidates);
+        let round_step_m = values.round_step_m.unwrap_or(0.0);
+        let empty = || Steps::empty(terrain.grid.cell_size_m, round_step_m, &candidates);
         rows.into_par_iter()
             .fold(empty, |mut steps, row| {
                 steps.add_row(terrain, row);
@@ -49,9 +57,19 @@ impl Steps {
             .reduce(empty, Steps::joined)
     }
 
-    fn empty(cell_size_m: f64, candidates: &[Candidate]) -> Self {
+    fn empty(cell_size_m: f64, round_step_m: f64, candidates: &[Candidate]) -> Self {
         let candidates = candidates.to_vec();
-        Steps { cell_size_m, count: 0, steep: 0, beyond_half_circle: 0, candidates }
+        Steps {
+            cell_size_m,
+            count: 0,
+            squares_m2: 0.0,
+            sloped: 0,
+            single: 0,
+            round_step_m,
+            steep: 0,
+            beyond_half_circle: 0,
+            candidates,
+        }
     }
 
     /// Adds the cells of a row, and its steps to the east and north.
@@ -84,6 +102,10 @@ impl Steps {
         let is_of_ground = !is_conventional(at_here) && !is_conventional(at_there);
         if is_of_ground {
             self.count += 1;
+            self.squares_m2 += step_m * step_m;
+            self.sloped += usize::from(step_m > 0.0);
+            // The next multiple is twice as high.
+            self.single += usize::from(step_m > 0.0 && step_m < 1.5 * self.round_step_m);
             self.steep += usize::from(step_m > self.cell_size_m);
             self.beyond_half_circle += usize::from(step_m > 180.0);
         }
@@ -111,6 +133,9 @@ impl Steps {
 
     fn joined(mut self, other: Steps) -> Self {
         self.count += other.count;
+        self.squares_m2 += other.squares_m2;
+        self.sloped += other.sloped;
+        self.single += other.single;
         self.steep += other.steep;
         self.beyond_half_circle += other.beyond_half_circle;
         for (own, other) in self.candidates.iter_mut().zip(other.candidates) {

@@ -7,6 +7,8 @@ mod notation;
 
 pub(crate) use self::beside::ProjectionFile;
 pub use self::error::AsciiError;
+use std::borrow::Cow;
+
 use self::{header::Header, notation::Notation};
 use super::{
     Options,
@@ -26,6 +28,7 @@ use crate::{
 /// # Errors
 /// The line of a header or value that cannot be right, the count when values are missing, or coordinates in degrees.
 pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
+    let text = &*with_line_feeds(text);
     let notation = Notation::of(text)?;
     let header = Header::read(text, notation)?;
     let coordinates = Coordinates {
@@ -45,6 +48,15 @@ pub fn read(text: &str, options: &Options) -> Result<Terrain, Error> {
     })
 }
 
+/// The text with lines that end in line feeds, where all end in carriage returns, as of old Macintoshes.
+fn with_line_feeds(text: &str) -> Cow<'_, str> {
+    if text.contains('\n') || !text.contains('\r') {
+        Cow::Borrowed(text)
+    } else {
+        Cow::Owned(text.replace('\r', "\n"))
+    }
+}
+
 /// An error of a grid in the words of a header in metres.
 fn in_header(error: Error) -> Error {
     match error {
@@ -62,12 +74,13 @@ const ENDING: &str = "asc";
 /// # Errors
 /// As [`read`], a grid of degrees that is not warped to metres, a system of depths, or one whose metres are not brought to the ground.
 pub(crate) fn read_in(text: &str, options: &Options, crs: &Crs) -> Result<Unwarped, Error> {
+    let text = &*with_line_feeds(text);
     let notation = Notation::of(text)?;
     let header = Header::read(text, notation)?;
     let mut warnings = Vec::new();
     let heights = Heights::of(&BandMetadata::default(), crs, ENDING, &mut warnings)?;
     let values = Values::of(&header, notation, heights, options);
-    let frame = DegreeFrame::checked(header.origin, header.cell_size, [header.columns, header.rows])?;
+    let frame = DegreeFrame::checked(header.origin, [header.cell_size; 2], [header.columns, header.rows])?;
     if crs.is_geographic {
         let warp = Warp::plan(frame, crs, ENDING, options.most_cells)?;
         let terrain = values.terrain(text, &header, warp.source_grid())?;
@@ -208,6 +221,14 @@ mod tests {
                 "{header}, {cell}"
             );
         }
+    }
+
+    #[test]
+    fn lines_may_end_in_carriage_returns_alone_and_the_header_of_grass_is_named() {
+        assert_eq!(read(&SMALL.replace('\n', "\r")).unwrap().content_id(), read(SMALL).unwrap().content_id());
+        let grass = "north: 40\nsouth: 20\neast: 50\nwest: 10\nrows: 2\ncols: 4\n1 2 3 4\n5 6 7 8\n";
+        let said = read(grass).unwrap_err().to_string();
+        assert!(said.contains("GRASS") && said.contains("gdal_translate"), "{said}");
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod layout;
 mod lerc;
 mod masks;
 mod metadata;
+mod own_system;
 mod placement;
 mod raster;
 mod sample;
@@ -224,6 +225,12 @@ fn from_south_west<T>(samples: &mut [T], columns: usize, rows_from_north: bool, 
     let (north, south) = samples.split_at_mut(rows / 2 * columns);
     let from_south = south.chunks_mut(columns).rev();
     north.chunks_mut(columns).zip(from_south).for_each(|(one, other)| one.swap_with_slice(other));
+}
+
+/// Whether bytes begin as a TIFF or BigTIFF.
+pub fn is_tiff(bytes: &[u8]) -> bool {
+    const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+    MAGIC.iter().any(|magic| bytes.starts_with(magic))
 }
 
 #[cfg(test)]

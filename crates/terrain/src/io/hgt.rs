@@ -22,7 +22,7 @@ pub enum HgtError {
     },
     /// A size that no tile has.
     #[error(
-        "{bytes} bytes are no tile: 1201 × 1201 heights take 2884802 and 3601 × 3601 take 25934402; unpack or download it again"
+        "{bytes} bytes are no tile: 1201 × 1201 heights take 2884802, 3601 × 3601 take 25934402 and 3601 × 1801 take 12970802; unpack or download it again"
     )]
     Size {
         /// Bytes found.
@@ -30,8 +30,8 @@ pub enum HgtError {
     },
 }
 
-/// Samples along an edge, of three seconds of arc and of one.
-const EDGES: [usize; 2] = [1201, 3601];
+/// Rows and columns: of three seconds of arc, of one, and of one by two, as tiles north of 50° have them (GDAL, driver SRTMHGT).
+const SIZES: [[usize; 2]; 3] = [[1201, 1201], [3601, 3601], [3601, 1801]];
 
 /// Bytes of the largest tile.
 pub(super) const MOST_BYTES: u64 = 3601 * 3601 * 2;
@@ -48,14 +48,14 @@ const WGS_84: u32 = 4326;
 /// A name or a size that no tile has, or latitudes beyond those of UTM.
 pub(crate) fn read(bytes: &[u8], name: &str, options: &Options) -> Result<Unwarped, Error> {
     let south_west_deg = south_west_deg(name).ok_or_else(|| HgtError::Name { name: name.to_owned() })?;
-    let of_size = |edge: &usize| edge * edge * size_of::<i16>() == bytes.len();
-    let edge = EDGES.into_iter().find(of_size).ok_or(HgtError::Size { bytes: bytes.len() })?;
-    let step_deg = 1.0 / (edge - 1) as f64;
+    let of_size = |[rows, columns]: &[usize; 2]| rows * columns * size_of::<i16>() == bytes.len();
+    let [rows, columns] = SIZES.into_iter().find(of_size).ok_or(HgtError::Size { bytes: bytes.len() })?;
+    let step_deg = [columns, rows].map(|samples| 1.0 / (samples - 1) as f64);
     // Samples on the lines are the centres of cells.
-    let corner_deg = south_west_deg.map(|line_deg| line_deg - step_deg / 2.0);
-    let frame = DegreeFrame::checked(corner_deg, step_deg, [edge as u64; 2])?;
+    let corner_deg = [0, 1].map(|axis| south_west_deg[axis] - step_deg[axis] / 2.0);
+    let frame = DegreeFrame::checked(corner_deg, step_deg, [columns as u64, rows as u64])?;
     let warp = Warp::plan(frame, &Crs::from_epsg(WGS_84), "hgt", options.most_cells)?;
-    let rows = bytes.chunks_exact(edge * size_of::<i16>()).rev();
+    let rows = bytes.chunks_exact(columns * size_of::<i16>()).rev();
     let heights = rows.flat_map(|row| row.as_chunks().0).map(|sample| match i16::from_be_bytes(*sample) {
         VOID => f32::NAN,
         height_m => f32::from(height_m),
@@ -102,5 +102,20 @@ mod tests {
         ] {
             assert_eq!(south_west_deg(name), corner, "{name}");
         }
+    }
+
+    #[test]
+    fn a_tile_of_the_north_has_half_as_many_columns() {
+        let heights: Vec<u8> = (0..3601)
+            .flat_map(|_| (0..1801i16).map(|column| 300 + column / 10))
+            .flat_map(i16::to_be_bytes)
+            .collect();
+        let unwarped = read(&heights, "N61E010.hgt", &Options::default()).unwrap();
+        let grid = unwarped.terrain.grid;
+        assert_eq!((grid.rows, grid.columns), (3601, 1801));
+        // At 61.5° a second of arc of longitude is 0.48 of one of latitude: cells of two seconds are all but square.
+        assert!((29.0..31.0).contains(&grid.cell_size_m), "{}", grid.cell_size_m);
+        let said = read(&heights[2..], "N61E010.hgt", &Options::default()).err().unwrap().to_string();
+        assert!(said.contains("3601 × 1801"), "{said}");
     }
 }

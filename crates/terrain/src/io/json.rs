@@ -1,19 +1,17 @@
 //! The JSON grid.
 
+mod count;
 mod layer;
 mod text;
 
 use serde::Deserialize;
 
+use self::count::{pair, whole_number};
 pub use self::{
     layer::{Cells, Layer, SurfaceNames},
     text::JsonText,
 };
-use crate::{
-    Error, Terrain, Warning,
-    areas::Areas,
-    crs::{Crs, refuse_stretched},
-};
+use crate::{Error, Terrain, Warning, areas::Areas, crs::GridSystem};
 
 /// A map as JSON: rows from the south, `null` elevation for unknown ground.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -23,13 +21,15 @@ pub struct MapFile {
     /// Edge of a cell, 0.01 to 100 [m].
     pub cell_size_m: f64,
     /// South-west corner of the first cell, x and y [m]. Default: [0, 0].
-    #[serde(default)]
+    #[serde(default, deserialize_with = "pair")]
     #[cfg_attr(feature = "openapi", schema(min_items = 2, max_items = 2))]
     pub origin_m: [f64; 2],
     /// Number of rows.
+    #[serde(deserialize_with = "whole_number")]
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub rows: u64,
     /// Number of columns.
+    #[serde(deserialize_with = "whole_number")]
     #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub columns: u64,
     /// Coordinate reference system whose easting and northing, in metres, are the map's x and y: `EPSG:` and a code, or WKT.
@@ -89,8 +89,7 @@ impl TryFrom<MapFile> for Terrain {
 
     fn try_from(file: MapFile) -> Result<Self, Error> {
         let grid = Terrain::check_size(file.rows, file.columns, file.cell_size_m, file.origin_m)?;
-        let crs = file.crs.map(Crs::of_metres).transpose()?;
-        crs.as_deref().map_or(Ok(()), |text| refuse_stretched(&grid, text))?;
+        let system = GridSystem::of(file.crs, &grid)?;
         let shape = (grid.rows, grid.columns);
         let mut terrain = Terrain::new(grid, &file.elevation_m.shaped("elevation_m", shape)?)?;
         if let Some(surface) = file.surface {
@@ -99,7 +98,7 @@ impl TryFrom<MapFile> for Terrain {
         if let Some(obstacle) = file.obstacle {
             terrain = terrain.with_obstacles(obstacle.shaped("obstacle", shape)?);
         }
-        terrain.crs = crs;
+        terrain = system.on(terrain);
         if let Some(filled) = file.filled {
             terrain = terrain.with_filled(filled.shaped("filled", shape)?);
         }
@@ -168,14 +167,30 @@ mod tests {
                 "{found}"
             );
         }
+        // Newer than the definitions: true to scale on its parallels of 18° and 36° south (y by pyproj), by 2.5 % not between.
+        assert!(read(&with(r#""EPSG:9473", "origin_m": [0, -1922185.5]"#)).is_ok());
+        assert!(refused(&with(r#""EPSG:9473", "origin_m": [0, -3000000]"#)).contains("m of ground along x"));
         assert!(
-            read(&with(r#""EPSG:9473", "origin_m": [0, -3000000]"#)).is_ok(),
-            "newer than the definitions"
+            read(&with(r#""EPSG:26931", "origin_m": [54500000, 700000]"#)).unwrap().warnings().len() == 1
         );
         let web = |north_m: f64| with(&format!(r#""EPSG:3857", "origin_m": [0, {north_m}]"#));
         assert!(read(&web(0.0)).is_ok(), "true to scale on the equator");
         let stretched = refused(&web(8_399_737.0));
         assert!(stretched.contains("0.5008 m of ground") && stretched.contains("EPSG:32631"), "{stretched}");
+    }
+
+    #[test]
+    fn counts_may_be_written_with_decimals_and_texts_begin_with_a_byte_order_mark() {
+        let text = r#"{"cell_size_m": 1, "rows": 1.0, "columns": 2e0, "elevation_m": [[1, 2]]}"#;
+        assert_eq!(read(text).unwrap().grid, read(&format!("\u{feff}{text}")).unwrap().grid);
+        for wrong in ["1.5", "-1.0", "1e30", "\"1\"", "null"] {
+            let message = refused(&text.replace("1.0", wrong));
+            assert!(message.contains("rows"), "{wrong}: {message}");
+        }
+        for origin in ["[]", "[1]", "[1, 2, 0]", "1"] {
+            let message = refused(&text.replace("\"rows\"", &format!("\"origin_m\": {origin}, \"rows\"")));
+            assert!(message.contains("origin_m") && message.contains("x and y"), "{origin}: {message}");
+        }
     }
 
     #[test]

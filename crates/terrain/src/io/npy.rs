@@ -14,11 +14,7 @@ use self::{
 };
 pub use self::{error::NpyError, header::is_npy};
 use super::Options;
-use crate::{
-    Error, Grid, Terrain,
-    crs::{Crs, refuse_stretched},
-    fill_value,
-};
+use crate::{Error, Grid, Terrain, crs::GridSystem, fill_value};
 
 /// The number of cells that an array's header claims, however many follow.
 ///
@@ -41,12 +37,11 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Terrain, Error> {
     let place = &options.georeference;
     let cell_size_m = place.cell_size_m.ok_or(NpyError::NoCellSize)?;
     let grid = Terrain::check_size(rows, columns, cell_size_m, place.origin_m.unwrap_or_default())?;
-    let crs = place.crs.clone().map(Crs::of_metres).transpose()?;
-    crs.as_deref().map_or(Ok(()), |text| refuse_stretched(&grid, text))?;
+    let system = GridSystem::of(place.crs.clone(), &grid)?;
     let fortran_rows = header.is_fortran_order.then_some(grid.rows);
     let elements = Elements { bytes: header.elements_of(bytes)?, fortran_rows };
     let terrain = terrain(grid, header.dtype, elements, options)?;
-    let terrain = Terrain { crs, ..terrain }.as_asked(options)?;
+    let terrain = system.on(terrain).as_asked(options)?;
     Ok(if header.dtype.bytes() == 1 { terrain.with_doubt_of_bytes() } else { terrain })
 }
 

@@ -1,12 +1,15 @@
 //! Whether unknown ground is why there is no path, and how to fill it.
 
 use planner::{Blocked, Error, Planner};
-use terrain::{Terrain, gaps::gap_between};
+use terrain::{Cell, Terrain, gaps::gap_between};
 
 use crate::problem::Problem;
 
 /// Multiples of the width at the narrowest place that are tried for the width of the whole.
 const WIDENINGS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+
+/// What is said of unknown ground that no width fills.
+const UNFILLABLE: &str = "it is too wide or open to the border to be filled from the ground around (--fill-voids-m): survey the ground there";
 
 /// Why a planner has no path between two places, x and y [m], with the unknown ground that is in the way and how to fill it.
 pub(crate) fn no_plan_over(planner: &Planner, ends_m: [[f64; 2]; 2], error: &Error) -> Problem {
@@ -15,8 +18,12 @@ pub(crate) fn no_plan_over(planner: &Planner, ends_m: [[f64; 2]; 2], error: &Err
     let hint = match error {
         Error::NoPath { .. } | Error::NoRoomToTurn { .. } => parted(&lattice.terrain, ends_m)
             .or_else(|| small_holes(&lattice.terrain, lattice.robot.wheelbase_m)),
-        Error::PlaceBlocked { reason: Blocked::Unknown { .. }, .. } => {
-            small_holes(&lattice.terrain, lattice.robot.wheelbase_m)
+        Error::PlaceBlocked { reason: Blocked::Unknown { cell }, x_m, y_m, .. } => {
+            let beneath = lattice.terrain.grid.cell_at(*x_m, *y_m);
+            let reach_m = lattice.robot.wheelbase_m.hypot(lattice.robot.track_m);
+            let cells: Vec<Cell> =
+                around(&lattice.terrain, [*x_m, *y_m], reach_m).chain([*cell]).chain(beneath).collect();
+            Some(hole_beneath(&lattice.terrain, &cells))
         }
         _ => None,
     };
@@ -42,20 +49,48 @@ fn parted(terrain: &Terrain, ends_m: [[f64; 2]; 2]) -> Option<String> {
     };
     let mend = match WIDENINGS.map(|factor| factor * width_m).iter().find(|width_m| joins(width_m)) {
         Some(width_m) => mend(*width_m),
-        None => "it is too wide or open to the border to be filled from the ground around (--fill-voids-m): survey the ground there".to_owned(),
+        None => UNFILLABLE.to_owned(),
     };
     Some(format!(
         "unknown ground parts the map between start and goal: where it is narrowest, near ({x_m:.2}, {y_m:.2}), the strip is {cells} ({width_m} m) wide; {mend}"
     ))
 }
 
-/// How many cells are unknown, and how to fill holes that are smaller than the robot; none where all is known.
+/// How many cells are unknown, and how to fill holes that are smaller than the robot; none where all is known, or nothing is so small.
 fn small_holes(terrain: &Terrain, wheelbase_m: f64) -> Option<String> {
-    let unknown = terrain.relative_m().iter().filter(|z| z.is_nan()).count();
+    let unknown = unknown_cells(terrain);
     let width_m = whole_millimetres(wheelbase_m.max(terrain.grid.cell_size_m));
-    (unknown > 0).then(|| {
+    let filled =
+        terrain.clone().with_filled_voids(width_m).ok().filter(|filled| unknown_cells(filled) < unknown);
+    filled.map(|_| {
         format!("{unknown} cells of the map are unknown ground, which no wheel may touch; {}", mend(width_m))
     })
+}
+
+/// How many cells are unknown, and how to fill the holes that a robot stands over.
+fn hole_beneath(terrain: &Terrain, cells: &[Cell]) -> String {
+    let unknown = unknown_cells(terrain);
+    let cure = terrain
+        .void_width_m(cells)
+        .filter(|width_m| *width_m > 0.0)
+        .map_or_else(|| UNFILLABLE.to_owned(), mend);
+    format!("{unknown} cells of the map are unknown ground, which no wheel may touch; {cure}")
+}
+
+fn unknown_cells(terrain: &Terrain) -> usize {
+    terrain.relative_m().iter().filter(|z| z.is_nan()).count()
+}
+
+/// Cells within a distance of a place, along x and y.
+fn around(terrain: &Terrain, [x_m, y_m]: [f64; 2], reach_m: f64) -> impl Iterator<Item = Cell> {
+    let grid = terrain.grid;
+    let along = move |at_m: f64, axis: usize, count: usize| {
+        let cell =
+            |at_m: f64| ((at_m - grid.origin_m[axis]) / grid.cell_size_m).clamp(0.0, count as f64) as usize;
+        cell(at_m - reach_m)..(cell(at_m + reach_m) + 1).min(count)
+    };
+    let columns = along(x_m, 0, grid.columns);
+    along(y_m, 1, grid.rows).flat_map(move |row| columns.clone().map(move |column| Cell { row, column }))
 }
 
 /// A width rounded up to millimetres, but for rounding itself [m].

@@ -1,141 +1,32 @@
-//! Projected systems of the EPSG registry that are newer than the definitions, which hold some 6200 (EPSG v12, by pyproj 3.7).
+//! Projected systems of the EPSG registry that are newer than the definitions, which hold some 6200.
 
-use crate::crs::{LinearUnit, by_epsg_code};
+/// A code and its definition for PROJ a line, in the order of codes; made by `tests/newer_systems.py`. Of systems that PROJ has no definition
+/// for it has the method's name and the unit. Datums are left to their ellipsoid: they say nothing of places on WGS 84.
+const DEFINITIONS: &str = include_str!("newer.txt");
 
-/// Those in other units than the metre: first and last code, code of the unit.
-const IN_OTHER_UNITS: [(u32, u32, u32); 10] = [
-    (3139, 3139, 9098),
-    (9748, 9749, 9003),
-    (10_481, 10_481, 9003),
-    (10_516, 10_516, 9003),
-    (10_622, 10_622, 9003),
-    (10_911, 10_916, 9003),
-    (10_980, 10_987, 9002),
-    (20_050, 20_050, 9002),
-    (22_300, 22_300, 9036),
-    (23_301, 23_333, 9003),
-];
+/// The definition of a projected system that is newer than the definitions; `None` for all other codes.
+pub(super) fn definition(code: u32) -> Option<String> {
+    let line = DEFINITIONS.lines().find_map(|line| {
+        let (known, definition) = line.split_once(' ')?;
+        (known.parse() == Ok(code)).then_some(definition)
+    })?;
+    Some(line.replace("+k_0=", "+k="))
+}
 
-/// Those in metres: first and last code.
-const IN_METRES: [(u32, u32); 111] = [
-    (2218, 2218),
-    (2221, 2221),
-    (2296, 2307),
-    (2963, 2963),
-    (2985, 2986),
-    (3052, 3053),
-    (3144, 3145),
-    (3173, 3173),
-    (5017, 5017),
-    (5224, 5225),
-    (5515, 5516),
-    (6244, 6275),
-    (7082, 7082),
-    (8950, 8951),
-    (9039, 9040),
-    (9141, 9141),
-    (9149, 9150),
-    (9154, 9159),
-    (9191, 9222),
-    (9249, 9250),
-    (9252, 9252),
-    (9254, 9254),
-    (9265, 9265),
-    (9271, 9273),
-    (9284, 9285),
-    (9295, 9297),
-    (9300, 9300),
-    (9311, 9311),
-    (9354, 9360),
-    (9367, 9367),
-    (9373, 9373),
-    (9377, 9377),
-    (9387, 9387),
-    (9391, 9391),
-    (9404, 9407),
-    (9456, 9456),
-    (9473, 9473),
-    (9476, 9498),
-    (9549, 9549),
-    (9674, 9674),
-    (9678, 9680),
-    (9697, 9699),
-    (9709, 9709),
-    (9712, 9713),
-    (9716, 9716),
-    (9741, 9741),
-    (9761, 9761),
-    (9766, 9766),
-    (9793, 9865),
-    (9869, 9869),
-    (9874, 9880),
-    (9895, 9895),
-    (9943, 9943),
-    (9945, 9947),
-    (9967, 9967),
-    (9972, 9972),
-    (9977, 9977),
-    (10_160, 10_160),
-    (10_183, 10_183),
-    (10_188, 10_188),
-    (10_194, 10_194),
-    (10_199, 10_199),
-    (10_207, 10_207),
-    (10_212, 10_212),
-    (10_217, 10_217),
-    (10_222, 10_222),
-    (10_227, 10_227),
-    (10_235, 10_235),
-    (10_240, 10_240),
-    (10_250, 10_250),
-    (10_254, 10_254),
-    (10_258, 10_258),
-    (10_262, 10_262),
-    (10_266, 10_266),
-    (10_270, 10_270),
-    (10_275, 10_275),
-    (10_280, 10_280),
-    (10_285, 10_291),
-    (10_306, 10_306),
-    (10_314, 10_317),
-    (10_329, 10_329),
-    (10_448, 10_465),
-    (10_471, 10_471),
-    (10_477, 10_480),
-    (10_592, 10_603),
-    (10_626, 10_626),
-    (10_632, 10_632),
-    (10_665, 10_665),
-    (10_674, 10_674),
-    (10_731, 10_733),
-    (11_114, 11_118),
-    (20_002, 20_002),
-    (20_042, 20_042),
-    (20_047, 20_049),
-    (20_904, 20_932),
-    (21_004, 21_032),
-    (21_207, 21_264),
-    (21_307, 21_364),
-    (22_207, 22_232),
-    (22_239, 22_265),
-    (22_307, 22_322),
-    (22_337, 22_357),
-    (22_407, 22_465),
-    (22_607, 22_657),
-    (22_707, 22_765),
-    (22_807, 22_822),
-    (27_701, 27_707),
-    (29_874, 29_874),
-    (32_159, 32_159),
-    (32_600, 32_600),
-    (32_700, 32_700),
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crs::epsg;
 
-/// The unit of a projected system that is newer than the definitions; `None` for all other codes.
-pub(super) fn unit(code: u32) -> Option<LinearUnit> {
-    let is_within = |first: u32, last: u32| (first..=last).contains(&code);
-    match IN_OTHER_UNITS.iter().find(|(first, last, _)| is_within(*first, *last)) {
-        Some((_, _, unit)) => by_epsg_code(*unit),
-        None => IN_METRES.iter().any(|(first, last)| is_within(*first, *last)).then_some(LinearUnit::METRE),
+    #[test]
+    fn every_line_is_a_system_that_the_other_table_lacks_and_has_a_unit() {
+        let codes: Vec<u32> =
+            DEFINITIONS.lines().map(|line| line.split(' ').next().unwrap().parse().unwrap()).collect();
+        assert!(codes.is_sorted() && codes.len() > 600, "{}", codes.len());
+        for code in codes {
+            assert_eq!(epsg::definition(code), None, "EPSG:{code}");
+            let crs = epsg::horizontal(code);
+            assert!(crs.unit.is_some() && crs.projection.is_some(), "EPSG:{code}");
+        }
     }
 }

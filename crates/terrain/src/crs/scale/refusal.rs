@@ -50,16 +50,21 @@ pub enum ScaleRefusal {
         /// Ending of the file's name.
         ending: &'static str,
     },
-    /// Coordinates that run west and south.
+    /// Coordinates that run west or south.
     #[error(
-        "the map is in a system ({crs}) whose coordinates run west and south, but x must point east and y north: bring it to UTM with `gdalwarp -t_srs EPSG:{epsg} -r bilinear in.{ending} out.tif`"
+        "the map is in a system ({crs}) whose coordinates run west and south, but x must point east and y north: bring it to UTM with `gdalwarp -t_srs EPSG:{} -r bilinear in.{ending} out.tif`{}",
+        epsg.unwrap_or(EXAMPLE_ZONE),
+        if epsg.is_none() { ", with 326 and the number of its zone, or 327 south of the equator" } else { "" }
     )]
     SouthOrientated {
         /// The coordinate reference system.
         crs: String,
         /// Ending of the file's name.
         ending: &'static str,
-        /// EPSG code of the UTM zone of the middle.
-        epsg: u32,
+        /// EPSG code of the UTM zone of the middle, where that is known.
+        epsg: Option<u32>,
     },
 }
+
+/// A zone of UTM, to show the form of a command.
+const EXAMPLE_ZONE: u32 = 32_632;

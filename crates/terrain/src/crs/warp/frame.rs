@@ -26,14 +26,14 @@ impl DegreeFrame {
     /// No cells, or more than a map may have.
     pub(crate) fn checked(
         south_west_deg: [f64; 2],
-        step_deg: f64,
+        step_deg: [f64; 2],
         [columns, rows]: [u64; 2],
     ) -> Result<Self, Error> {
         /// Any size that a map may have: only the counts are asked about.
         const ANY_M: f64 = 1.0;
         let grid = Terrain::check_size(rows, columns, ANY_M, [0.0; 2])?;
         let size = Size { columns: grid.columns, rows: grid.rows };
-        Ok(DegreeFrame { south_west_deg, step_deg: [step_deg; 2], size })
+        Ok(DegreeFrame { south_west_deg, step_deg, size })
     }
 
     /// West, south, east and north edge [°].

@@ -14,6 +14,14 @@ pub enum AsciiError {
         /// What stands there.
         found: String,
     },
+    /// The header of another format.
+    #[error(
+        "line {line}: this is the header of a GRASS ASCII raster, which is not read: make a GeoTIFF of it with `gdal_translate in.asc out.tif`, and name its system with `-a_srs EPSG:CODE`"
+    )]
+    Grass {
+        /// Line number from 1.
+        line: usize,
+    },
     /// A header line whose value cannot be right.
     #[error("line {line}: {key} is `{found}`, but must be {expected}")]
     HeaderValue {

@@ -17,6 +17,9 @@ const KEYS: [(&str, &[&str]); 10] = [
     ("NODATA_value", &["nodata_value", "nodata"]),
 ];
 
+/// Keys that a GRASS ASCII raster begins with (r.in.ascii).
+const GRASS_KEYS: [&str; 6] = ["north", "south", "east", "west", "rows", "cols"];
+
 /// What a header says.
 pub(super) struct Header {
     pub(super) columns: u64,
@@ -90,7 +93,11 @@ impl<'a> Fields<'a> {
                 if notation.number(word).is_some() || !fields.lacks_any() {
                     break;
                 }
-                return Err(AsciiError::Header { line: index + 1, found: excerpt(line) });
+                let line_number = index + 1;
+                return Err(match lower.strip_suffix(':') {
+                    Some(key) if GRASS_KEYS.contains(&key) => AsciiError::Grass { line: line_number },
+                    _ => AsciiError::Header { line: line_number, found: excerpt(line) },
+                });
             };
             if fields.find(key).is_some() {
                 return Err(AsciiError::HeaderTwice { line: index + 1, key });

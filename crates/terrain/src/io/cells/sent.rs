@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use super::{LAYERS, LAYERS_AT, MAGIC, read};
-use crate::{
-    Error, Terrain, Warning,
-    crs::{Crs, refuse_stretched},
-};
+use crate::{Error, Terrain, Warning, crs::GridSystem};
 
 /// The number of cells that the first bytes of a map claim, however many follow.
 ///
@@ -43,8 +40,7 @@ pub fn read_sent(bytes: &[u8]) -> Result<Terrain, Error> {
 /// The map anew from what was sent, by the checks of every other format.
 fn checked(sent: Terrain) -> Result<Terrain, Error> {
     let Terrain { grid, base_m, relative_m, surfaces, obstacle, filled, warnings, areas, crs, .. } = sent;
-    let crs = crs.map(Crs::of_metres).transpose()?;
-    crs.as_deref().map_or(Ok(()), |text| refuse_stretched(&grid, text))?;
+    let system = GridSystem::of(crs, &grid)?;
     if warnings.len() > Warning::MOST {
         return Err(Error::TooManyWarnings { found: warnings.len(), limit: Warning::MOST });
     }
@@ -53,7 +49,8 @@ fn checked(sent: Terrain) -> Result<Terrain, Error> {
         return Err(Error::LongWarning { index, found: warnings[index].detail.len(), limit });
     }
     let elevation_m: Vec<f64> = relative_m.iter().map(|z| f64::from(*z) + base_m).collect();
-    let mut terrain = Terrain { crs, surfaces, obstacle, filled, ..Terrain::new(grid, &elevation_m)? };
+    let terrain = Terrain { surfaces, obstacle, filled, ..Terrain::new(grid, &elevation_m)? };
+    let mut terrain = system.on(terrain);
     let told = Arc::clone(&terrain.warnings);
     terrain.warnings = warnings;
     let new = told.iter().filter(|warning| !terrain.warnings.contains(warning)).cloned();

@@ -5,66 +5,23 @@ use tiff::tags::Tag;
 use super::directory::Tags;
 use crate::{
     Error, Warning, WarningKind,
-    crs::{
-        Crs, Described, LinearUnit, Mercator, Projection, Spacing, Vertical, by_epsg_code, is_of_earth,
-        vertical,
-    },
+    crs::{Crs, LinearUnit, Vertical, by_epsg_code, vertical},
 };
 
 pub(super) const MODEL_TYPE: u16 = 1024;
 pub(super) const RASTER_TYPE: u16 = 1025;
 pub(super) const CITATION: u16 = 1026;
-const GEODETIC_CRS: u16 = 2048;
+pub(super) const GEODETIC_CRS: u16 = 2048;
 const ANGULAR_UNITS: u16 = 2054;
-const SEMI_MAJOR_AXIS: u16 = 2057;
-const SEMI_MINOR_AXIS: u16 = 2058;
-const INVERSE_FLATTENING: u16 = 2059;
+pub(super) const SEMI_MAJOR_AXIS: u16 = 2057;
+pub(super) const SEMI_MINOR_AXIS: u16 = 2058;
+pub(super) const INVERSE_FLATTENING: u16 = 2059;
 pub(super) const PROJECTED_CRS: u16 = 3072;
 pub(super) const PROJECTED_CITATION: u16 = 3073;
-const PROJECTION_METHOD: u16 = 3075;
 pub(super) const LINEAR_UNITS: u16 = 3076;
 const LINEAR_UNIT_SIZE: u16 = 3077;
-const STANDARD_PARALLEL: u16 = 3078;
-const NATURAL_ORIGIN_LONGITUDE: u16 = 3080;
-const FALSE_EASTING: u16 = 3082;
-const FALSE_NORTHING: u16 = 3083;
-const NATURAL_ORIGIN_SCALE: u16 = 3092;
 const VERTICAL_CRS: u16 = 4096;
 const VERTICAL_UNITS: u16 = 4099;
-
-/// Methods of projection (`CT_*` of GeoTIFF 1.0, which GDAL writes) as WKT names them, in letters and digits of lower case.
-const METHODS: [(u32, &str); 19] = [
-    (1, "transversemercator"),
-    (3, "obliquemercator"),
-    (4, "labordeobliquemercator"),
-    (8, "lambertconformalconic2sp"),
-    (9, "lambertconformalconic1sp"),
-    (10, "lambertazimuthalequalarea"),
-    (11, "albersconicequalarea"),
-    (12, "azimuthalequidistant"),
-    (13, "equidistantconic"),
-    (15, "polarstereographic"),
-    (16, "obliquestereographic"),
-    (18, "cassinisoldner"),
-    (20, "millercylindrical"),
-    (22, "polyconic"),
-    (23, "robinson"),
-    (24, "sinusoidal"),
-    (25, "vandergrinten"),
-    (26, "newzealandmapgrid"),
-    (28, "cylindricalequalarea"),
-];
-
-/// Parameters of projections by the same names, with the keys that may hold them.
-const PARAMETERS: [(&str, &[u16]); 7] = [
-    ("standardparallel1", &[STANDARD_PARALLEL]),
-    ("standardparallel2", &[3079]),
-    ("centralmeridian", &[NATURAL_ORIGIN_LONGITUDE, 3084, 3088, 3095]),
-    ("latitudeoforigin", &[3081, 3085, 3089]),
-    ("falseeasting", &[FALSE_EASTING, 3086, 3090]),
-    ("falsenorthing", &[FALSE_NORTHING, 3087, 3091]),
-    ("scalefactor", &[NATURAL_ORIGIN_SCALE, 3093]),
-];
 
 pub(super) const USER_DEFINED: u16 = 32767;
 const USER_DEFINED_CODE: u32 = USER_DEFINED as u32;
@@ -91,17 +48,17 @@ impl GeoKeys {
     }
 
     /// The value of a key that is there and not zero, which stands for undefined.
-    fn code(&self, key: u16) -> Option<u32> {
+    pub(super) fn code(&self, key: u16) -> Option<u32> {
         let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 0)?;
         Some(u32::from(entry[3])).filter(|value| *value != 0)
     }
 
-    fn double(&self, key: u16) -> Option<f64> {
+    pub(super) fn double(&self, key: u16) -> Option<f64> {
         let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 34736)?;
         self.doubles.get(usize::from(entry[3])).copied().filter(|value| value.is_finite())
     }
 
-    fn citation(&self, key: u16) -> Option<&str> {
+    pub(super) fn citation(&self, key: u16) -> Option<&str> {
         let entry = self.entries.iter().find(|entry| entry[0] == key && entry[1] == 34737)?;
         let start = usize::from(entry[3]);
         let end = self.text.len().min(start + usize::from(entry[2]));
@@ -165,67 +122,6 @@ impl GeoKeys {
         Ok(crs)
     }
 
-    /// A system without a code: Esri writes its text into the citation, others its parameters into keys.
-    fn own_system(&self) -> Crs {
-        const MERCATOR: u32 = 7;
-        const EQUIRECTANGULAR: u32 = 17;
-        const WGS_84: u32 = 4326;
-        let citations = [self.citation(PROJECTED_CITATION), self.citation(CITATION)];
-        let of_esri =
-            citations.iter().flatten().find_map(|text| Crs::parse(text.strip_prefix(ESRI_CITATION)?));
-        if let Some(crs) = of_esri {
-            return crs;
-        }
-        let method = self.code(PROJECTION_METHOD);
-        let major_m = self.double(SEMI_MAJOR_AXIS);
-        if major_m.is_some_and(|major_m| !is_of_earth(major_m)) {
-            return Crs::default();
-        }
-        if method != Some(MERCATOR) && method != Some(EQUIRECTANGULAR) {
-            return Crs { projection: method.and_then(|method| self.projection(method)), ..Crs::default() };
-        }
-        let is_sphere = major_m.is_some() && major_m == self.double(SEMI_MINOR_AXIS)
-            || self.double(INVERSE_FLATTENING) == Some(0.0);
-        let names = citations.iter().flatten().copied().collect::<String>().to_lowercase();
-        let spherical = ["pseudo", "web", "google", "visualisation", "sphere"];
-        let true_scale_rad = self.double(STANDARD_PARALLEL).unwrap_or(0.0).to_radians();
-        let scale = self.double(NATURAL_ORIGIN_SCALE).filter(|scale| *scale > 0.0);
-        let mercator = Some(Mercator {
-            is_on_wgs84: self.code(GEODETIC_CRS) == Some(WGS_84),
-            spacing: match () {
-                () if method == Some(EQUIRECTANGULAR) => Spacing::Even,
-                () if is_sphere || spherical.iter().any(|word| names.contains(word)) => Spacing::Spherical,
-                () => Spacing::Conformal,
-            },
-            equator_scale: scale.unwrap_or_else(|| Mercator::equator_scale_of(true_scale_rad)),
-            central_meridian_deg: self.double(NATURAL_ORIGIN_LONGITUDE).unwrap_or(0.0),
-            false_origin_m: [
-                self.double(FALSE_EASTING).unwrap_or(0.0),
-                self.double(FALSE_NORTHING).unwrap_or(0.0),
-            ],
-        });
-        Crs { mercator, ..Crs::default() }
-    }
-
-    /// The projection of a method by its parameters; `None` for a method that is not known here.
-    fn projection(&self, method: u32) -> Option<Projection> {
-        let (_, method) = METHODS.iter().find(|(code, _)| *code == method)?;
-        let number = |names: &[&str]| {
-            let keys = PARAMETERS.iter().filter(|(name, _)| names.contains(name)).flat_map(|(_, keys)| *keys);
-            keys.copied().find_map(|key| self.double(key))
-        };
-        let flattening = self.double(INVERSE_FLATTENING).unwrap_or(0.0);
-        let minor_m = self.double(SEMI_MINOR_AXIS);
-        let ellipsoid = self.double(SEMI_MAJOR_AXIS).map(|major_m| match minor_m {
-            Some(minor_m) if minor_m < major_m && flattening == 0.0 => {
-                [major_m, major_m / (major_m - minor_m)]
-            }
-            _ => [major_m, flattening],
-        });
-        let unit_m = self.linear_unit().ok().flatten().map_or(1.0, |unit| unit.metres);
-        Some(Described { method, number: &number, ellipsoid, unit_m }.projection())
-    }
-
     /// Refuses longitudes and latitudes that are counted in another unit than the degree.
     fn refuse_other_angles(&self) -> Result<(), Error> {
         /// EPSG's codes of the degree: its own and the one that leaves the notation open.
@@ -240,7 +136,7 @@ impl GeoKeys {
         }
     }
 
-    fn linear_unit(&self) -> Result<Option<LinearUnit>, Error> {
+    pub(super) fn linear_unit(&self) -> Result<Option<LinearUnit>, Error> {
         const TAG: &str = "linear unit (ProjLinearUnitsGeoKey)";
         let size = self.double(LINEAR_UNIT_SIZE);
         if let Some(size) = size.filter(|size| *size <= 0.0) {

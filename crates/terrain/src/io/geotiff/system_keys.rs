@@ -28,12 +28,14 @@ impl SystemKeys {
     /// in metres.
     pub(super) fn of(crs: Option<&str>) -> Self {
         let Some(text) = crs else { return Self::own_metres(None) };
-        if let Some((code, unit)) = registered_code(text)
+        if let Some((code, [unit_x_m, unit_y_m])) = registered_code(text)
             && let Ok(code) = u16::try_from(code)
+            && unit_x_m == unit_y_m
         {
-            return Self::registered(code, unit.metres);
+            return Self::registered(code, unit_x_m);
         }
         let parsed = Crs::parse(text).filter(|crs| text.contains(['[', '(']) && !crs.is_geographic);
+        // As maps that were stored by earlier versions are named.
         let mercator = parsed.as_ref().and_then(|crs| crs.mercator);
         if let Some((mercator, code)) = mercator.and_then(|mercator| Some((mercator, base_code(&mercator)?)))
         {
@@ -127,22 +129,41 @@ mod tests {
         assert_eq!(round_trip(Some(zone)).1.as_deref(), Some("EPSG:26915"));
     }
 
+    /// A Mercator as maps of earlier versions name it.
+    fn earlier_text(meridian_deg: f64, extension: &str) -> String {
+        format!(
+            "PROJCS[\"Mercator in metres of the ground\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],\
+             PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Mercator_1SP\"],\
+             PARAMETER[\"central_meridian\",{meridian_deg}],PARAMETER[\"scale_factor\",0.69],PARAMETER[\"false_easting\",0],\
+             PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]{extension}]"
+        )
+    }
+
     #[test]
     fn a_scaled_mercator_is_written_in_the_coordinates_that_its_scale_was_applied_to() {
-        for code in [3857, 3395] {
-            let scaled = Crs::from_epsg(code).mercator.unwrap().scaled_wkt(0.69).unwrap();
-            let keys = SystemKeys::of(Some(&scaled));
-            assert!(keys.directory.contains(&(code as u16)) && (keys.unit_m - 0.69).abs() < 1e-12);
+        let sphere = ",EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +k=0.69 +nadgrids=@null\"]";
+        for (code, text) in [
+            (3857, "PROJCS[\"EPSG:3857 times 0.69\",GEOGCS[\"g\"],PROJECTION[\"custom_proj4\"],UNIT[\"metre\",1]]".to_owned()),
+            (3857, earlier_text(0.0, sphere)),
+            (3395, earlier_text(0.0, "")),
+        ] {
+            let keys = SystemKeys::of(Some(&text));
+            assert!(keys.directory.contains(&code) && (keys.unit_m - 0.69).abs() < 1e-12, "{text}");
         }
-        let elsewhere = Mercator { central_meridian_deg: 100.0, ..Crs::from_epsg(3857).mercator.unwrap() };
-        let keys = SystemKeys::of(Some(&elsewhere.scaled_wkt(0.69).unwrap()));
+        let keys = SystemKeys::of(Some(&earlier_text(100.0, "")));
         assert!(keys.directory.contains(&USER_DEFINED) && keys.citation.is_some() && keys.unit_m == 1.0);
+        let of_each_axis = "LOCAL_CS[\"EPSG:3857 times 0.69 and 0.688\",UNIT[\"metre\",1]]";
+        assert_eq!(
+            round_trip_at([300_000.0, 4_034_000.0], Some(of_each_axis)).1.as_deref(),
+            Some(of_each_axis),
+            "no unit is two lengths"
+        );
     }
 
     #[test]
     fn what_is_not_known_is_named_and_in_metres() {
         assert_eq!(round_trip(None).1, None);
-        for crs in ["EPSG:54004", "EPSG:9473", "EPSG:900913"] {
+        for crs in ["EPSG:9473", "EPSG:54030"] {
             let keys = SystemKeys::of(Some(crs));
             assert!(keys.directory.contains(&USER_DEFINED), "{crs}");
             assert_eq!(keys.citation.unwrap(), format!("{crs}, in metres|"));
