@@ -3,7 +3,7 @@
 use model::Robot;
 use recording::{PowerForm, Recording, Watch};
 
-use super::{Doubt, driving::ALIKE_S};
+use super::{Doubt, change::EVIDENCE, driving::ALIKE_S};
 use crate::{
     Drives, Error,
     drives::Stretch,
@@ -19,8 +19,6 @@ const STEP_S: f64 = 0.1;
 const USUAL_S: f64 = 0.45;
 /// A delay is believed when power then follows at least so well (r²).
 const FOLLOWS: f64 = 0.5;
-/// And when the evidence for it is very strong: twice the logarithm of the ratio of likelihoods (Kass & Raftery 1995: above 10).
-const EVIDENCE: f64 = 10.0;
 /// And when what is not followed shrinks to this share: a delay that hardly changes it is none that matters.
 const CLEARLY_BETTER: f64 = 0.9;
 /// Rows that are looked at, in pieces spread over all drives.

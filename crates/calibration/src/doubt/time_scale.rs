@@ -86,7 +86,7 @@ fn by_positions(recording: &Recording) -> Option<Doubt> {
 }
 
 /// One sigma of the noise of positions \[m\].
-fn noise_m(values: &[f64]) -> f64 {
+pub(super) fn noise_m(values: &[f64]) -> f64 {
     let bent = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).filter(|m| m.is_finite());
     median(bent.collect()).unwrap_or(0.0) / SECOND_DIFFERENCE
 }
