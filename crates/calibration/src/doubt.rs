@@ -9,6 +9,7 @@ mod beyond;
 mod cells;
 mod change;
 mod charging;
+mod clipped;
 mod dead;
 mod delay;
 mod driving;
@@ -30,6 +31,7 @@ mod time_scale;
 mod turning;
 mod two_powers;
 mod unfollowed;
+mod way;
 
 use std::borrow::Cow;
 
@@ -37,6 +39,7 @@ use model::Robot;
 use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
+pub(crate) use self::clipped::clipped_note;
 pub use self::{change::mends, scale::speeds};
 use self::{follow::Followed, second::Second};
 use crate::Error;
@@ -68,8 +71,10 @@ pub fn circumstances(robot: &Robot, recording: &Recording, watch: &Watch) -> Res
         let rest = rest.thinned_watched(watch)?;
         let seconds = second::seconds(robot, &rest, watch)?;
         let odd = sensors(robot, &rest, &seconds, watch)?;
-        let lifted = if odd.is_empty() { lifted::lifted(robot, &rest, &seconds) } else { None };
-        doubts.extend(odd.into_iter().chain(lifted));
+        let saturated = || saturated::saturated(robot, &rest);
+        let other =
+            if odd.is_empty() { lifted::lifted(robot, &rest, &seconds).or_else(saturated) } else { None };
+        doubts.extend(odd.into_iter().chain(other));
     }
     Ok(doubts)
 }
@@ -149,6 +154,7 @@ fn together(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<D
     let Looked { doubts: mut all, rest } = cells(robot, recording, watch)?;
     let Some(rest) = rest else { return Ok(all) };
     let recording = &*rest.thinned_watched(watch)?;
+    all.extend(measure::wheel_radius(robot, recording));
     all.extend(two_powers::contradicting(recording));
     let opposed = opposed::opposed(robot, recording);
     let is_mirrored = opposed.iter().any(|doubt| doubt.name.ends_with("_speed_sign"));
@@ -164,7 +170,9 @@ fn together(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<D
         return Ok(all);
     }
     let known = all.len();
-    all.extend(scale::speeds(robot, recording));
+    let speeds = scale::speeds(robot, recording);
+    let way = if speeds.is_empty() { way::way(robot, recording) } else { None };
+    all.extend(speeds.into_iter().chain(way));
     let followed = follow::of(robot, recording, watch)?;
     all.extend(reasons(robot, recording, (&followed, &seconds), watch)?);
     if all.len() == known {

@@ -22,7 +22,9 @@ pub(super) fn dead(recording: &Recording) -> Option<Doubt> {
     let all: Option<Vec<_>> = channels.map(stands).collect();
     let said: Vec<String> = all?
         .into_iter()
-        .map(|(channel, value, rows)| format!("`{}` stands at {value} in all of {rows} rows", channel.name()))
+        .map(|(channel, value, rows)| {
+            format!("`{}` stands at {value} (it is {value} in every row of {rows})", channel.name())
+        })
         .collect();
     (!said.is_empty()).then(|| Doubt {
         name: "power_stuck",

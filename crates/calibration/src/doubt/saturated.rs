@@ -59,5 +59,5 @@ fn line(pairs: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
     let [xx, xy] =
         known.iter().fold([0.0; 2], |[xx, xy], [x, y]| [xx + (x - x0).powi(2), xy + (x - x0) * (y - y0)]);
     let factor = xy / xx;
-    (factor > 0.0).then(|| [y0 - factor * x0, factor])
+    (factor > 0.0).then_some([y0 - factor * x0, factor])
 }

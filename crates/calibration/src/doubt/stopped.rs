@@ -36,7 +36,7 @@ pub(super) fn stopped(robot: &Robot, recording: &Recording, seconds: &[Second]) 
     Some(Doubt {
         name: "wheels_stopped",
         statement: format!(
-            "`{}` and `{}` stand at 0 for {:.0} s, from {:.0} s of run `{}` on, while the gyroscope turns by {:.2} rad/s and {:.0} W are drawn in {:.0} s of \
+            "each of `{}` and `{}` stands at 0 for {:.0} s, from {:.0} s of run `{}` on, while the gyroscope turns by {:.2} rad/s and {:.0} W are drawn in {:.0} s of \
              these: the encoders do not count",
             Channel::LeftSpeed.name(),
             Channel::RightSpeed.name(),

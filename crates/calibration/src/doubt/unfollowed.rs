@@ -22,10 +22,10 @@ pub(super) fn unfollowed(followed: &Followed) -> Option<Doubt> {
     (highest < LEAST_R.atanh() && of_mean > LEAST_VARIATION).then(|| Doubt {
         name: "power_unrelated",
         statement: format!(
-            "power does not follow the wheels: it has {:.0} % of its variation in common with what they and the slopes ask for",
+            "power does not follow the wheels: it has {:.0} % of its variation in common with what they and the slopes ask for, as if they do not belong together",
             100.0 * r.max(0.0).powi(2)
         ),
-        cure: "do both belong to the same drive and robot, by one clock? Look at the sources of power, wheel speeds and pitch, at their units, \
+        cure: "are both of the same drive and robot, by clocks of one rate? Look at the sources of power, wheel speeds and pitch, at their units, \
                and whether a counter wraps"
             .to_owned(),
     })
