@@ -8,6 +8,7 @@ use crate::{
     Drives, DrivesCoverage, Error, HeldOut, Skill, SlipTrack,
     contradiction::contradictions,
     current_robot,
+    doubt::clipped_note,
     fit::NORMAL_975,
     held_out::{as_written, held_out},
     power_fit::{PowerFit, fit_power, fit_thinned},
@@ -107,7 +108,8 @@ pub fn calibrate_watched(
     Ok(found
         .covering(recording, &drives)
         .with_note(slopes_note(recording))
-        .with_note(rhythm_note(recording).as_deref()))
+        .with_note(rhythm_note(recording).as_deref())
+        .with_note(clipped_note(robot, recording).as_deref()))
 }
 
 /// What a fit of drives found.

@@ -3,10 +3,14 @@
 //! `predict`, `calibrate` and `diagnose` ask the same, before anything is believed. Nothing here changes a recording.
 
 mod alike;
+mod angles;
+mod askew;
 mod beyond;
 mod cells;
 mod change;
 mod charging;
+mod clipped;
+mod dead;
 mod delay;
 mod driving;
 mod follow;
@@ -14,12 +18,20 @@ mod frozen;
 mod heights;
 mod lifted;
 mod measure;
+mod of_runs;
+mod opposed;
+mod part_sign;
 mod placeholder;
+mod saturated;
 mod scale;
 mod second;
+mod stopped;
 mod stuck_sensor;
 mod time_scale;
 mod turning;
+mod two_powers;
+mod unfollowed;
+mod way;
 
 use std::borrow::Cow;
 
@@ -27,8 +39,9 @@ use model::Robot;
 use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
-use self::second::Second;
+pub(crate) use self::clipped::clipped_note;
 pub use self::{change::mends, scale::speeds};
+use self::{follow::Followed, second::Second};
 use crate::Error;
 
 /// A doubt about a recording, with the numbers that show it and what to do.
@@ -57,7 +70,11 @@ pub fn circumstances(robot: &Robot, recording: &Recording, watch: &Watch) -> Res
     if let Some(rest) = rest {
         let rest = rest.thinned_watched(watch)?;
         let seconds = second::seconds(robot, &rest, watch)?;
-        doubts.extend(sensors(robot, &rest, &seconds, watch)?);
+        let odd = sensors(robot, &rest, &seconds, watch)?;
+        let saturated = || saturated::saturated(robot, &rest);
+        let other =
+            if odd.is_empty() { lifted::lifted(robot, &rest, &seconds).or_else(saturated) } else { None };
+        doubts.extend(odd.into_iter().chain(other));
     }
     Ok(doubts)
 }
@@ -87,22 +104,23 @@ fn cells<'a>(robot: &Robot, recording: &'a Recording, watch: &Watch) -> Result<L
     Ok(Looked { doubts, rest: (!is_all).then_some(rest) })
 }
 
-/// Doubts about sensors that stand still, wheels in the air and turning without wheels.
+/// Doubts about sensors that stand still and turning without wheels.
 fn sensors(
     robot: &Robot,
     recording: &Recording,
     seconds: &[Second],
     watch: &Watch,
 ) -> Result<Vec<Doubt>, Error> {
+    if let Some(dead) = dead::dead(recording) {
+        return Ok(vec![dead]);
+    }
     let stuck = stuck(robot, recording, watch)?;
     if !stuck.is_empty() {
         return Ok(stuck);
     }
-    let turning = || {
-        let is_size = !scale::speeds(robot, recording).is_empty();
-        if is_size { None } else { turning::turning(robot, recording, seconds) }
-    };
-    Ok(lifted::lifted(robot, recording, seconds).or_else(turning).into_iter().collect())
+    let is_size = || !scale::speeds(robot, recording).is_empty();
+    let turning = turning::turning(robot, recording, seconds).filter(|_| !is_size());
+    Ok(turning.or_else(|| stopped::stopped(robot, recording, seconds)).into_iter().collect())
 }
 
 /// Doubts about sensors of one side.
@@ -123,14 +141,28 @@ pub fn charged(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Op
     Ok(charging::charging(recording, &second::seconds(robot, recording, watch)?))
 }
 
-/// All doubts about a recording of a robot.
+/// All doubts about a recording of a robot: of all drives together, and of each alone.
 ///
 /// # Errors
 /// As [`crate::predict_watched()`].
 pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
+    of_runs::with_runs(robot, recording, together(robot, recording, watch)?, watch)
+}
+
+/// Doubts about drives as one recording.
+fn together(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec<Doubt>, Error> {
     let Looked { doubts: mut all, rest } = cells(robot, recording, watch)?;
     let Some(rest) = rest else { return Ok(all) };
     let recording = &*rest.thinned_watched(watch)?;
+    all.extend(measure::wheel_radius(robot, recording));
+    all.extend(two_powers::contradicting(recording));
+    let opposed = opposed::opposed(robot, recording);
+    let is_mirrored = opposed.iter().any(|doubt| doubt.name.ends_with("_speed_sign"));
+    all.extend(opposed);
+    if is_mirrored {
+        // Power is not that of wheels which turn the other way.
+        return Ok(all);
+    }
     let seconds = second::seconds(robot, recording, watch)?;
     let odd = sensors(robot, recording, &seconds, watch)?;
     if !odd.is_empty() {
@@ -138,26 +170,48 @@ pub fn doubts(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<Vec
         return Ok(all);
     }
     let known = all.len();
-    all.extend(scale::speeds(robot, recording));
+    let speeds = scale::speeds(robot, recording);
+    let way = if speeds.is_empty() { way::way(robot, recording) } else { None };
+    all.extend(speeds.into_iter().chain(way));
     let followed = follow::of(robot, recording, watch)?;
-    let ratio_at = |recording: &Recording| follow::of(robot, recording, watch).ok().and_then(|of| of.ratio);
-    let measures: Vec<Doubt> = measure::voltage(robot, recording, &followed)
-        .into_iter()
-        .chain(measure::temperatures(recording, ratio_at))
-        .collect();
-    let heights = heights::heights(robot, recording, watch)?;
-    let is_told = heights.is_some() || !measures.is_empty();
-    all.extend(heights.into_iter().chain(measures));
-    if !is_told {
-        // What has a reason of its own is no unit of power, nor a sign.
-        all.extend(scale::power(&followed));
-        all.extend(change::better(robot, recording, &followed, watch)?);
+    all.extend(reasons(robot, recording, (&followed, &seconds), watch)?);
+    if all.len() == known {
+        all.extend(lifted::lifted(robot, recording, &seconds));
     }
     if all.len() == known {
         all.extend(delay::delay(robot, recording, watch)?);
     }
     if all.len() == known {
-        all.extend(charging::charging(recording, &seconds));
+        let charged = charging::charging(recording, &seconds);
+        all.extend(unfollowed::unfollowed(&followed).or(charged));
     }
+    Ok(all)
+}
+
+/// Doubts about what is measured, its unit, sign and axes; what has a reason of its own is no unit of power, nor a sign.
+fn reasons(
+    robot: &Robot,
+    recording: &Recording,
+    (followed, seconds): (&Followed, &[Second]),
+    watch: &Watch,
+) -> Result<Vec<Doubt>, Error> {
+    let ratio_at = |recording: &Recording| follow::of(robot, recording, watch).ok().and_then(|of| of.ratio);
+    let mut all: Vec<Doubt> = heights::heights(robot, recording, watch)?.into_iter().collect();
+    all.extend(measure::voltage(robot, recording, followed));
+    all.extend(measure::temperatures(recording, ratio_at));
+    let askew = askew::askew(robot, recording);
+    all.extend(saturated::saturated(robot, recording));
+    let better = change::better(robot, recording, followed, watch)?;
+    // Power tells whose sign is wrong where pitch and heights oppose each other.
+    let is_pitch = better.as_ref().is_some_and(|better| better.name == "pitch_sign");
+    all.extend(if is_pitch { better.clone() } else { askew });
+    if !all.is_empty() {
+        return Ok(all);
+    }
+    all.extend(scale::power(followed).or_else(|| scale::on_known_ground(robot, recording, followed)));
+    all.extend(match better {
+        Some(better) => Some(better),
+        None => part_sign::part_sign(robot, recording, (followed, seconds), watch)?,
+    });
     Ok(all)
 }

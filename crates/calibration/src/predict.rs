@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::{
     Coverage, Doubt, Drives, Error,
     coverage::coverage,
+    doubt::clipped_note,
     doubts,
     held_out::Skill,
     power::{PowerModel, columns_by_row, seen_w},
@@ -102,6 +103,7 @@ pub fn predict_watched(
     found.prediction.doubts = doubts(robot, recording, watch)?;
     found.prediction.notes.extend(slopes_note(recording).map(str::to_owned));
     found.prediction.notes.extend(rhythm_note(recording));
+    found.prediction.notes.extend(clipped_note(robot, recording));
     Ok(found)
 }
 

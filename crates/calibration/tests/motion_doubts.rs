@@ -8,7 +8,9 @@ use rand::RngExt;
 use recording::{Channel, Recording, unwatched};
 
 mod simulated;
-use simulated::{changed, drives, healthy, normal, seeded, with_battery_power, with_heat, with_power};
+use simulated::{
+    changed, drives, healthy, normal, placed, seeded, with_battery_power, with_heat, with_power,
+};
 
 const WHEELS: [Channel; 2] = [Channel::LeftSpeed, Channel::RightSpeed];
 
@@ -29,31 +31,6 @@ fn only(recording: &Recording, name: &str) -> Doubt {
 fn timed(mut recording: Recording, factor: f64) -> Recording {
     recording.t_s.iter_mut().for_each(|t_s| *t_s *= factor);
     recording.runs.iter_mut().for_each(|run| run.gap_s *= factor);
-    recording
-}
-
-/// Drives with the positions and heights that wheels and slopes bring them to.
-fn placed(mut recording: Recording) -> Recording {
-    let column = |channel| recording.channel(channel).unwrap().to_vec();
-    let (left, right, pitch) = (column(WHEELS[0]), column(WHEELS[1]), column(Channel::Pitch));
-    let mut pose = [0.0_f64; 4];
-    let places: Vec<[f64; 3]> = (0..recording.rows())
-        .map(|i| {
-            let [x, y, z, heading] = pose;
-            let (speed, turn) = ((left[i] + right[i]) / 2.0, (right[i] - left[i]) / robot().slip_track_m);
-            let way = 0.1 * speed;
-            pose = [
-                x + way * heading.cos(),
-                y + way * heading.sin(),
-                z + way * pitch[i].sin(),
-                heading + 0.1 * turn,
-            ];
-            [x, y, z]
-        })
-        .collect();
-    for (axis, channel) in [Channel::X, Channel::Y, Channel::Z].into_iter().enumerate() {
-        recording.channels.insert(channel, places.iter().map(|place| place[axis]).collect());
-    }
     recording
 }
 

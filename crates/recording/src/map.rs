@@ -49,6 +49,8 @@ pub struct Map {
     pub surface: Option<String>,
     /// The namespace of the robot that is meant by `*`, where a file holds several.
     pub namespace: Option<String>,
+    /// Radius of the wheels whose angular rates it makes rim speeds of \[m\].
+    pub wheel_radius_m: Option<f64>,
     /// Where each channel comes from.
     pub sources: Vec<Source>,
 }

@@ -283,6 +283,8 @@ impl Reading {
         report.channels.sort_by_key(|used| used.channel);
         map.iter().try_for_each(|map| map.derive_columns(&mut recording))?;
         report.repairs.extend(map.and_then(|map| map.settle_drawn_column(&mut recording, &report)));
+        recording.wheel_radius_m =
+            map.and_then(|map| map.wheel_radius_m).filter(|_| report.has_wheel_rates());
         report.describe(&recording, looks)?;
         report.suspicions = suspicions_watched(&recording, looks)?;
         Ok(Reading { recording, report })

@@ -29,6 +29,8 @@ pub struct Recording {
     /// By row, whether a reading of a power meter that is slower than the wheels ends with it: power then holds over the rows since the reading
     /// before, of which it is the mean. Empty where power has the rhythm of the rows.
     pub reading_ends: Vec<bool>,
+    /// Wheel radius that turned angular rates of wheels into rim speeds; `None` where rim speeds were recorded \[m\].
+    pub wheel_radius_m: Option<f64>,
 }
 
 /// One drive: consecutive rows.
@@ -151,6 +153,7 @@ impl Recording {
                 .map(|labels| Labels { names: labels.names.clone(), index: column(&kept, &labels.index) }),
             reading_ends: column(&kept, &self.reading_ends),
             runs: kept.iter().map(run).collect(),
+            wheel_radius_m: self.wheel_radius_m,
         }
     }
 
@@ -180,6 +183,7 @@ impl Recording {
 
     fn append(&mut self, part: Recording, names: &mut RunNames) {
         let (before, added) = (self.rows(), part.rows());
+        self.wheel_radius_m = self.wheel_radius_m.or(part.wheel_radius_m);
         self.t_s.extend(part.t_s);
         append_columns(&mut self.channels, part.channels, before, added);
         append_columns(&mut self.aside, part.aside, before, added);

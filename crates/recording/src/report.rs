@@ -167,6 +167,14 @@ pub struct Suspicion {
 }
 
 impl ReadingReport {
+    /// Whether wheel speeds came as angular rates.
+    pub(crate) fn has_wheel_rates(&self) -> bool {
+        let is_wheel =
+            |used: &&ChannelReport| matches!(used.channel, Channel::LeftSpeed | Channel::RightSpeed);
+        let rates = crate::units::unit_names(crate::Quantity::AngularRate);
+        self.channels.iter().filter(is_wheel).any(|used| rates.contains(&used.unit.as_str()))
+    }
+
     /// Fills in what can be told from the recording itself.
     pub(crate) fn describe(&mut self, recording: &Recording, looks: &Looks) -> Result<(), Error> {
         let mut looks = looks.clone();

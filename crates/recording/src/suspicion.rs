@@ -43,7 +43,7 @@ pub(crate) fn suspicions_watched(recording: &Recording, looks: &Looks) -> Result
             doubts.push(doubt(Kind::Constant, statement));
             continue;
         }
-        doubts.extend(saturated(&present).map(|statement| doubt(Kind::Saturated, statement)));
+        doubts.extend(saturated(channel, &present).map(|statement| doubt(Kind::Saturated, statement)));
         doubts.extend(mounting(channel, &present).map(|statement| doubt(Kind::Mounting, statement)));
         doubts.extend(magnitude(channel, &present).map(|statement| doubt(Kind::Unit, statement)));
     }
@@ -111,6 +111,9 @@ mod tests {
         assert_eq!(drive(C::Power, |_, _| 7.0), [(C::Power, Kind::Constant)]);
         assert_eq!(drive(C::Power, |_, p| p / 1000.0), [(C::Power, Kind::Unit)]);
         assert_eq!(drive(C::Power, |_, p| p.min(100.0)), [(C::Power, Kind::Saturated)]);
+        let counted = |r: usize, v: f64| if r % 100 < 30 { [0.9, 0.6][r / 200] } else { 0.99 * v };
+        let steady = drive(C::LeftSpeed, counted);
+        assert!(!steady.contains(&(C::LeftSpeed, Kind::Saturated)), "steady speeds by counts of an encoder");
         assert_eq!(drive(C::Power, |_, p| p.max(80.0)), [], "an offset at which a meter rests");
         assert_eq!(drive(C::Power, |r, p| if r < 300 { f64::NAN } else { p }), [(C::Power, Kind::Sparse)]);
         assert_eq!(drive(C::YawRate, |_, w| -w), [(C::YawRate, Kind::Opposed)]);

@@ -49,6 +49,7 @@ impl Recording {
                 true => Vec::new(),
                 false => all.iter().map(|rows| self.ends_reading(rows.end - 1)).collect(),
             },
+            wheel_radius_m: self.wheel_radius_m,
         };
         if let Some(headings_rad) = self.channel(Channel::Heading) {
             let means_rad = all.iter().map(|rows| mean_angle(&headings_rad[rows.clone()])).collect();

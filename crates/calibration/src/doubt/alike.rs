@@ -1,4 +1,4 @@
-//! The same power in the columns of both sides.
+//! One measurement in the columns of two: the power of both sides, or pitch and roll.
 
 use std::collections::BTreeSet;
 
@@ -13,6 +13,26 @@ const LEAST_ROWS: usize = 10;
 
 /// Tells of two columns that hold one measurement.
 pub(super) fn alike(recording: &Recording) -> Option<Doubt> {
+    angles_alike(recording).or_else(|| sides_alike(recording))
+}
+
+/// The same angle in the columns of pitch and roll.
+fn angles_alike(recording: &Recording) -> Option<Doubt> {
+    let (pitch, roll) = (recording.channel(Channel::Pitch)?, recording.channel(Channel::Roll)?);
+    let known = || pitch.iter().zip(roll).filter(|(p, r)| p.is_finite() && r.is_finite());
+    let values: BTreeSet<u64> = known().filter(|(p, r)| p == r).map(|(p, _)| p.to_bits()).collect();
+    let (rows, same) = (known().count(), known().filter(|(p, r)| p == r).count());
+    (values.len() >= LEAST_ROWS && same as f64 >= ALIKE * rows as f64).then(|| Doubt {
+        name: "angles_alike",
+        statement: format!(
+            "`pitch_rad` and `roll_rad` are the same to the last digit in {same} of {rows} rows: both columns seem to hold one angle"
+        ),
+        cure: "read pitch and roll from fields of their own; pitch is nose up, roll left side up".to_owned(),
+    })
+}
+
+/// The same power, or motor current, in the columns of both sides.
+fn sides_alike(recording: &Recording) -> Option<Doubt> {
     let pairs = [
         ([Channel::LeftPower, Channel::RightPower], "power"),
         ([Channel::LeftMotorCurrent, Channel::RightMotorCurrent], "motor current"),

@@ -1,5 +1,7 @@
 //! Cells beyond what a robot of a file can draw or drive, alone among cells within.
 
+use std::f64::consts::FRAC_PI_2;
+
 use model::{Robot, STANDARD_GRAVITY_MPS2, Sides};
 use recording::{Channel, PowerForm, Recording, Run};
 
@@ -38,7 +40,15 @@ struct Bounds {
 /// Cells that nothing explains but a glitch of the log.
 pub(super) fn beyond(robot: &Robot, recording: &Recording) -> Vec<Cells> {
     use Channel::{AmbientTemperature, LeftMotorTemperature, LeftSpeed, RightMotorTemperature, RightSpeed};
-    let others = [LeftSpeed, RightSpeed, AmbientTemperature, LeftMotorTemperature, RightMotorTemperature];
+    let others = [
+        LeftSpeed,
+        RightSpeed,
+        AmbientTemperature,
+        LeftMotorTemperature,
+        RightMotorTemperature,
+        Channel::Pitch,
+        Channel::Roll,
+    ];
     others
         .into_iter()
         .chain(power_channels(recording))
@@ -144,6 +154,9 @@ fn bounds(robot: &Robot, recording: &Recording, channel: Channel) -> Option<Boun
         Channel::AmbientTemperature | Channel::LeftMotorTemperature | Channel::RightMotorTemperature => {
             let words = format!("nothing drives outside {:.0} to {MOST_MOTOR_C:.0} °C", AIR_C[0]);
             Bounds { range: [AIR_C[0], MOST_MOTOR_C], jump: MOST_JUMP_K, usual: None, words }
+        }
+        Channel::Pitch | Channel::Roll => {
+            about(FRAC_PI_2, "no robot drives with its nose or a side farther than upright".to_owned())
         }
         Channel::LeftMotorCurrent | Channel::RightMotorCurrent => {
             let motor =

@@ -1,19 +1,27 @@
 //! Recordings that would follow the model if a side, a sign or an axis were another.
 
-use std::f64::consts::FRAC_PI_2;
-
 use model::Robot;
 use recording::{Channel, Recording, SuspicionKind, Watch, suspicions};
 
-use super::{Doubt, follow, follow::Followed};
+use super::{
+    Doubt,
+    angles::{exchanged, has_slopes, in_degrees, level, righted},
+    driving::ALIKE_S,
+    follow,
+    follow::Followed,
+};
 use crate::Error;
 
 /// A changed recording is believed when it leaves less than this share of the scatter that the given one leaves.
 const CLEARLY_BETTER: f64 = 0.5;
 /// And when predictions then follow the recording at least so well (r²).
-const FOLLOWS: f64 = 0.5;
+pub(super) const FOLLOWS: f64 = 0.5;
 /// Recordings that are followed so well are not doubted: half of the rest would be a twentieth of the scatter.
 pub(super) const FOLLOWS_WELL: f64 = 0.9;
+
+/// Evidence from which a change is believed, whatever the length of a drive: very strong, as of a delay (Kass & Raftery 1995: twice the
+/// logarithm of the ratio of likelihoods above 10).
+pub(super) const EVIDENCE: f64 = 10.0;
 
 /// What may have been wrong with a recording, and the recording with that mended; none where it lacks the channels.
 struct Change {
@@ -27,10 +35,12 @@ struct Change {
     mended: fn(&Recording) -> Option<Recording>,
 }
 
+const RIGHTED: &str =
+    "turn its orientation by its mounting before it is logged, or leave its topic out of the map";
 const SCALE: &str = "give its source \"scale\": -1 in a map";
 
 /// All changes that are tried.
-const CHANGES: [Change; 10] = [
+const CHANGES: [Change; 13] = [
     Change {
         name: "power_sign",
         words: "power seems to have the wrong sign (drawn from the battery must be positive, charging negative)",
@@ -91,6 +101,25 @@ const CHANGES: [Change; 10] = [
         cure: "name `orientation.roll` with \"scale\": -1 as the source of `pitch_rad` in a map, and `orientation.pitch` as that of `roll_rad`",
         mended: |of| has_slopes(of).then(|| exchanged(of, [-1.0, 1.0]))?,
     },
+    Change {
+        name: "imu_upside_down",
+        words: "roll is about half a turn all the time, as of an IMU that is mounted upside down",
+        cure: RIGHTED,
+        mended: |of| righted(of, 1.0),
+    },
+    Change {
+        name: "imu_upside_down",
+        words: "roll is about half a turn all the time and pitch of the wrong sign, as of an IMU that is mounted upside down",
+        cure: RIGHTED,
+        mended: |of| righted(of, -1.0),
+    },
+    Change {
+        name: "pitch_misleads",
+        words: "predictions with the recorded pitch and roll are worse than on level ground",
+        cure: "look at the source of `pitch_rad`: its axes, its unit and the order of a quaternion's elements (w first or last); or leave it out, so that the \
+               ground is taken for level",
+        mended: level,
+    },
 ];
 
 /// The change that would mend a recording best, if any clearly does.
@@ -112,77 +141,51 @@ pub(super) fn better(
     if given.r2 > FOLLOWS_WELL {
         return Ok(None);
     }
-    let mut best: Option<(f64, &Change)> = None;
+    let mut best: Option<(f64, Doubt)> = None;
     for change in &CHANGES {
         let Some(mended) = (change.mended)(recording) else { continue };
         if change.name == "sides_of_speeds" && turns_as_wheels_say(recording) {
             continue;
         }
         let other = follow::of(robot, &mended, watch)?;
-        let is_clear = other.r2 > FOLLOWS && 1.0 - other.r2 < CLEARLY_BETTER * (1.0 - given.r2);
-        // Sensors are mounted and wired the same in every run: two runs on grounds of their own differ by more than a sign.
-        let is_believed = is_clear && other.within_runs_r2 > given.within_runs_r2;
-        if is_believed && best.is_none_or(|(r2, _)| other.r2 > r2) {
-            best = Some((other.r2, change));
+        if is_believed(given, &other) && best.as_ref().is_none_or(|(r2, _)| other.r2 > *r2) {
+            best = Some((other.r2, change.doubt(given, &other)));
         }
     }
-    Ok(best.map(|(r2, change)| Doubt {
-        name: change.name,
-        statement: format!(
-            "{}: with that mended the model would follow {:.0} % of the variation {}",
-            change.words,
-            100.0 * r2,
-            if given.r2 > 0.0 {
-                format!("instead of {:.0} %", 100.0 * given.r2)
-            } else {
-                "and not run against it".to_owned()
-            }
-        ),
-        cure: change.cure.to_owned(),
-    }))
+    Ok(best.map(|(_, doubt)| doubt))
+}
+
+/// Whether a recording is followed so much better with something mended that it was wrong: clearly, and in more driving than chance explains.
+pub(super) fn is_believed(given: &Followed, mended: &Followed) -> bool {
+    let is_clear = mended.r2 > FOLLOWS && 1.0 - mended.r2 < CLEARLY_BETTER * (1.0 - given.r2);
+    let evidence = given.driven_s / ALIKE_S * ((1.0 - given.r2) / (1.0 - mended.r2)).ln();
+    // Sensors are mounted and wired the same in every run: two runs on grounds of their own differ by more than a sign.
+    is_clear && evidence >= EVIDENCE && mended.within_runs_r2 > given.within_runs_r2
+}
+
+/// How much better power would be followed, in words.
+pub(super) fn said_better(given: &Followed, mended: &Followed) -> String {
+    let instead = match given.r2 > 0.0 {
+        true => format!("instead of {:.0} %", 100.0 * given.r2),
+        false => "and not run against it".to_owned(),
+    };
+    format!("with that mended the model would follow {:.0} % of the variation {instead}", 100.0 * mended.r2)
+}
+
+impl Change {
+    fn doubt(&self, given: &Followed, mended: &Followed) -> Doubt {
+        Doubt {
+            name: self.name,
+            statement: format!("{}: {}", self.words, said_better(given, mended)),
+            cure: self.cure.to_owned(),
+        }
+    }
 }
 
 /// Whether a gyroscope or compass tells that the sides of wheel speeds are not swapped.
 fn turns_as_wheels_say(recording: &Recording) -> bool {
     let is_told = [Channel::YawRate, Channel::Heading].iter().any(|turn| recording.channel(*turn).is_some());
     is_told && !suspicions(recording).iter().any(|doubt| doubt.kind == SuspicionKind::Opposed)
-}
-
-/// Whether drives have slopes by which the axes of an inclinometer are told: on level ground they differ by its own error.
-fn has_slopes(recording: &Recording) -> bool {
-    /// What an inclinometer is askew by (2 degrees) \[rad\].
-    const ERROR_RAD: f64 = 0.035;
-    [Channel::Pitch, Channel::Roll]
-        .into_iter()
-        .filter_map(|axis| range(recording, axis))
-        .any(|x| x > ERROR_RAD)
-}
-
-/// How far pitch or roll ranges; what shakes does not count \[rad\].
-fn range(recording: &Recording, channel: Channel) -> Option<f64> {
-    /// Shares of rows between which it ranges farther.
-    const BETWEEN: [f64; 2] = [0.05, 0.95];
-    let mut all: Vec<f64> = recording.channel(channel)?.iter().copied().filter(|x| !x.is_nan()).collect();
-    all.sort_by(f64::total_cmp);
-    let [low, high] = BETWEEN.map(|share| all.get((share * all.len() as f64) as usize).copied());
-    Some(high? - low?)
-}
-
-/// Pitch and roll as they are if they were told in degrees: both, or the one of them that no robot can have in radians.
-fn in_degrees(recording: &Recording) -> Option<Recording> {
-    /// From the steepest descent that a robot is driven down to the steepest climb, by the default of `max_pitch_rad` \[rad\]. An inclinometer
-    /// that is askew ranges no farther than the ground.
-    const STEEPEST_RAD: f64 = 2.0 * 0.52;
-    let is_steep = |axis: Channel| range(recording, axis).is_some_and(|range| range > STEEPEST_RAD);
-    if !is_steep(Channel::Pitch) && !is_steep(Channel::Roll) {
-        return None;
-    }
-    let of = |channel: Channel| Some((channel, recording.channel(channel)?));
-    let angles: Vec<(Channel, &[f64])> = [Channel::Pitch, Channel::Roll].into_iter().filter_map(of).collect();
-    let impossible = angles.iter().filter(|(_, values)| values.iter().any(|x| x.abs() > FRAC_PI_2));
-    let channels: Vec<Channel> = impossible.map(|(channel, _)| *channel).collect();
-    let channels = if channels.is_empty() { vec![Channel::Pitch, Channel::Roll] } else { channels };
-    scaled(recording, &channels, f64::to_radians)
 }
 
 fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recording> {
@@ -193,11 +196,15 @@ fn swapped(recording: &Recording, left: Channel, right: Channel) -> Option<Recor
     Some(changed)
 }
 
-fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
+pub(super) fn turned(recording: &Recording, channels: &[Channel]) -> Option<Recording> {
     scaled(recording, channels, |x| -x)
 }
 
-fn scaled(recording: &Recording, channels: &[Channel], by: impl Fn(f64) -> f64) -> Option<Recording> {
+pub(super) fn scaled(
+    recording: &Recording,
+    channels: &[Channel],
+    by: impl Fn(f64) -> f64,
+) -> Option<Recording> {
     let mut changed = recording.clone();
     let mut any = false;
     for channel in channels {
@@ -207,13 +214,4 @@ fn scaled(recording: &Recording, channels: &[Channel], by: impl Fn(f64) -> f64) 
         }
     }
     any.then_some(changed)
-}
-
-/// Roll in the place of pitch and pitch in that of roll, each times a sign.
-fn exchanged(recording: &Recording, [of_roll, of_pitch]: [f64; 2]) -> Option<Recording> {
-    let mut changed = recording.clone();
-    let (pitch, roll) = (changed.channels.remove(&Channel::Pitch)?, changed.channels.remove(&Channel::Roll)?);
-    changed.channels.insert(Channel::Pitch, roll.iter().map(|x| of_roll * x).collect());
-    changed.channels.insert(Channel::Roll, pitch.iter().map(|x| of_pitch * x).collect());
-    Some(changed)
 }

@@ -3,7 +3,7 @@
 use model::Robot;
 use recording::{PowerForm, Recording, Watch};
 
-use super::{Doubt, driving::ALIKE_S};
+use super::{Doubt, change::EVIDENCE, driving::ALIKE_S};
 use crate::{
     Drives, Error,
     drives::Stretch,
@@ -19,8 +19,6 @@ const STEP_S: f64 = 0.1;
 const USUAL_S: f64 = 0.45;
 /// A delay is believed when power then follows at least so well (r²).
 const FOLLOWS: f64 = 0.5;
-/// And when the evidence for it is very strong: twice the logarithm of the ratio of likelihoods (Kass & Raftery 1995: above 10).
-const EVIDENCE: f64 = 10.0;
 /// And when what is not followed shrinks to this share: a delay that hardly changes it is none that matters.
 const CLEARLY_BETTER: f64 = 0.9;
 /// Rows that are looked at, in pieces spread over all drives.
@@ -62,8 +60,7 @@ pub(super) fn delay(robot: &Robot, recording: &Recording, watch: &Watch) -> Resu
 fn doubt(drives: &Drives, all: &[Follows]) -> Option<Doubt> {
     let best = all.iter().max_by(|a, b| a.r2.total_cmp(&b.r2))?;
     let given = all.iter().find(|one| one.delay_s.abs() < STEP_S / 2.0)?;
-    let driven_s: f64 = drives.averages.iter().map(|average| average.duration_s).sum();
-    let evidence = driven_s / ALIKE_S * ((1.0 - given.r2) / (1.0 - best.r2)).ln();
+    let evidence = compared_s(drives) / ALIKE_S * ((1.0 - given.r2) / (1.0 - best.r2)).ln();
     let is_inner = best.delay_s.abs() < MOST_S - STEP_S;
     let is_clear = evidence >= EVIDENCE && 1.0 - best.r2 < CLEARLY_BETTER * (1.0 - given.r2);
     // Delays are told to a row: readings in one may be a row apart.
@@ -84,6 +81,15 @@ fn doubt(drives: &Drives, all: &[Follows]) -> Option<Doubt> {
             -best.delay_s
         ),
     })
+}
+
+/// Time that is compared at all delays: without as much of both ends of a stretch \[s\].
+fn compared_s(drives: &Drives) -> f64 {
+    let of = |stretch: &Stretch| {
+        let rows = drives.rows.get(stretch.rows.clone()).unwrap_or_default();
+        rows.last().zip(rows.first()).map_or(0.0, |(last, first)| last.t_s - first.t_s - 2.0 * MOST_S)
+    };
+    drives.stretches.iter().map(of).filter(|compared_s| *compared_s > 0.0).sum()
 }
 
 /// Mean time between rows [s].

@@ -17,6 +17,23 @@ pub(crate) struct Followed {
     pub(crate) within_runs_r2: f64,
     /// Recorded over predicted, at best; of motor currents none.
     pub(crate) ratio: Option<f64>,
+    /// How the power of all sides varies as recorded and as predicted; of motor currents none.
+    pub(crate) varies: Option<Varies>,
+    /// Time that is compared \[s\].
+    pub(crate) driven_s: f64,
+}
+
+/// How the power of all sides varies over a recording.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Varies {
+    /// Correlation of recorded and predicted.
+    pub(crate) r: f64,
+    /// Standard deviation of recorded over that of predicted.
+    pub(crate) over_predicted: f64,
+    /// Standard deviation of predicted over its mean.
+    pub(crate) of_mean: f64,
+    /// Coefficient of determination of the prediction as it is.
+    pub(crate) determined: f64,
 }
 
 /// How a robot's predictions follow a recording.
@@ -46,7 +63,31 @@ pub(crate) fn of(robot: &Robot, recording: &Recording, watch: &Watch) -> Result<
         pairs.chunk_by(|a, b| a.0 == b.0).for_each(|run| within.add(run.iter().map(|(_, pair)| *pair)));
     }
     let ratio = (!is_current && whole.of[4] > 0.0).then(|| whole.of[3] / whole.of[4]);
-    Ok(Followed { r2: whole.r2(), within_runs_r2: within.r2(), ratio })
+    let varies = (!is_current).then(|| {
+        let total = |columns: [&[f64]; 2]| drives.averaged_by(|i| columns[0][i] + columns[1][i]);
+        let predicted = total([&sides.0, &sides.1]);
+        let recorded = drives.averaged_by(|i| drives.recorded.iter().map(|column| column[i]).sum());
+        let pairs = predicted.into_iter().zip(recorded).filter(|(p, r)| p.is_finite() && r.is_finite());
+        varies(&pairs.collect::<Vec<_>>())
+    });
+    let driven_s = drives.averages.iter().map(|average| average.duration_s).sum();
+    Ok(Followed { r2: whole.r2(), within_runs_r2: within.r2(), ratio, varies: varies.flatten(), driven_s })
+}
+
+/// How predicted and recorded vary together; `None` where either is constant.
+fn varies(pairs: &[(f64, f64)]) -> Option<Varies> {
+    let count = pairs.len() as f64;
+    let p0 = pairs.iter().map(|(p, _)| p).sum::<f64>() / count;
+    let mut sums = Sums::default();
+    sums.add(pairs.iter().copied());
+    let [both, recorded, predicted, ..] = sums.of;
+    let missed: f64 = pairs.iter().map(|(p, r)| (r - p).powi(2)).sum();
+    (recorded > 0.0 && predicted > 0.0).then(|| Varies {
+        r: both / (recorded * predicted).sqrt(),
+        over_predicted: (recorded / predicted).sqrt(),
+        of_mean: (predicted / count).sqrt() / p0.abs(),
+        determined: 1.0 - missed / recorded,
+    })
 }
 
 /// Sums of products of predicted and recorded, about means of their own.

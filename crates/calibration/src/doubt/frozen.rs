@@ -22,6 +22,10 @@ const TIMES_ORDINARY: f64 = 10.0;
 /// Steps of a meter that the power of a drive changes by, where the meter would have shown it.
 const STEPS: f64 = 4.0;
 
+/// Steps of a range up to which its scale is coarse: measured speeds have noise of a thousandth of it. Of fewer values of a fine scale some two lie
+/// nearer to each other than their range over their number.
+const RUNGS: f64 = 1000.0;
+
 /// A stretch of rows in which channels stand still.
 struct Held {
     run: usize,
@@ -60,7 +64,12 @@ fn told(
         })
     };
     let (ordinary_s, long) = stays(recording, &columns);
-    let is_frozen = |one: &Held| one.driven_s >= TIMES_ORDINARY * ordinary_s && lives(one) && is_missed(one);
+    let all_s: f64 = recording.runs.iter().map(|run| driven_s(recording, run, run.rows.clone())).sum();
+    // What is ordinary is told by as much other driving.
+    let is_known = |one: &Held| all_s - one.driven_s >= one.driven_s;
+    let is_frozen = |one: &Held| {
+        one.driven_s >= TIMES_ORDINARY * ordinary_s && is_known(one) && lives(one) && is_missed(one)
+    };
     let held: Vec<Held> = long.into_iter().filter(is_frozen).collect();
     let first = held.first()?;
     let total_s: f64 = held.iter().map(|one| one.driven_s).sum();
@@ -115,9 +124,13 @@ fn stays(recording: &Recording, columns: &[&[f64]]) -> (f64, Vec<Held>) {
 fn is_coarse(recording: &Recording, channels: &[Channel], held: &Held) -> bool {
     channels.iter().filter_map(|channel| recording.channel(*channel)).any(|values| {
         let others = (0..values.len()).filter(|row| !held.rows.contains(row) && drives(recording, *row));
-        let others: Vec<u64> = others.map(|row| values[row].to_bits()).collect();
-        let distinct: BTreeSet<&u64> = others.iter().collect();
-        others.len() >= LEAST_VALUES * distinct.len()
+        let mut others: Vec<f64> = others.map(|row| values[row]).filter(|x| x.is_finite()).collect();
+        let rows = others.len();
+        others.sort_by(f64::total_cmp);
+        others.dedup();
+        let rung = others.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let range = others.last().zip(others.first()).map_or(0.0, |(most, least)| most - least);
+        rows >= LEAST_VALUES * others.len() || range < RUNGS.min(rows as f64) * rung
     })
 }
 

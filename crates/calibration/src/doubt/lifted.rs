@@ -5,6 +5,7 @@ use recording::{Recording, SuspicionKind, suspicions};
 
 use super::{
     Doubt,
+    change::FOLLOWS,
     driving::TURNING_MPS,
     scale,
     second::{Second, mean, median, total_s},
@@ -48,7 +49,7 @@ pub(super) fn lifted(robot: &Robot, recording: &Recording, seconds: &[Second]) -
         (idle, "that is what wheels take which turn freely")
     };
     let air_s = total_s(&air);
-    if air_s < LEAST_S {
+    if air_s < LEAST_S || !is_followed_outside(seconds, &air) {
         return None;
     }
     let first = air.first()?;
@@ -67,16 +68,36 @@ pub(super) fn lifted(robot: &Robot, recording: &Recording, seconds: &[Second]) -
     })
 }
 
+/// Whether power follows the model outside of some seconds: where it does not, it is no lack of ground that explains these.
+fn is_followed_outside(seconds: &[Second], air: &[&Second]) -> bool {
+    let is_outside = |one: &&Second| !air.iter().any(|other| std::ptr::eq(*other, *one));
+    let outside: Vec<&Second> =
+        seconds.iter().filter(is_outside).filter(|one| one.recorded_w.is_finite()).collect();
+    let driven: Vec<&Second> = outside.iter().copied().filter(|one| one.rim_mps > TURNS_MPS).collect();
+    // Of hardly any driving nothing is told.
+    total_s(&driven) < LEAST_S || correlation(&outside) > FOLLOWS.sqrt()
+}
+
+/// Correlation of recorded and predicted power over some seconds.
+fn correlation(seconds: &[&Second]) -> f64 {
+    let [p0, r0] = [mean(seconds, |one| one.predicted_w), mean(seconds, |one| one.recorded_w)];
+    let about = |one: &Second| [one.predicted_w - p0, one.recorded_w - r0];
+    let both = mean(seconds, |one| about(one)[0] * about(one)[1]);
+    let [pp, rr] = [0, 1].map(|i| mean(seconds, |one| about(one)[i].powi(2)));
+    both / (pp * rr).sqrt()
+}
+
 /// Power while the robot stands: as recorded, or else as its file has it.
-fn standing_w(robot: &Robot, seconds: &[Second]) -> f64 {
+pub(super) fn standing_w(robot: &Robot, seconds: &[Second]) -> f64 {
     let stood = seconds.iter().filter(|one| one.rim_mps == 0.0 && one.recorded_w.is_finite());
     median(stood.map(|one| one.recorded_w).collect()).unwrap_or(robot.hotel_power_w)
 }
 
-/// The share of the motion meant by the wheels that gyroscope or positions show; NaN where neither tells.
+/// The share of the motion meant by the wheels that gyroscope or positions show, the greater of both; NaN where neither tells.
 fn share_moved(robot: &Robot, one: &Second) -> f64 {
-    let turned = one.yaw_rate_radps * robot.slip_track_m / one.difference_mps;
-    if turned.is_finite() && one.difference_mps.abs() > TURNING_MPS { turned.abs() } else { one.way_share }
+    let turned = (one.yaw_rate_radps * robot.slip_track_m / one.difference_mps).abs();
+    let turned = if one.difference_mps.abs() > TURNING_MPS { turned } else { f64::NAN };
+    turned.max(one.way_share)
 }
 
 fn is_still(robot: &Robot, one: &Second) -> bool {

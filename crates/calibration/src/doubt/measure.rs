@@ -19,6 +19,22 @@ const STEADY_K: f64 = 5.0;
 /// Motors at rest are as warm as air in which robots drive \[°C\].
 const COOL_C: [f64; 2] = [-20.0, 40.0];
 
+/// What the rolling radius of a wheel differs by from the one that is written on its tyre: air and load flatten it by so much at most.
+const TYRE: f64 = 0.05;
+
+/// A wheel radius of the map that is not that of the robot's file.
+pub(super) fn wheel_radius(robot: &Robot, recording: &Recording) -> Option<Doubt> {
+    let (used_m, file_m) = (recording.wheel_radius_m?, robot.wheel_radius_m);
+    let ratio = used_m / file_m;
+    ((ratio - 1.0).abs() > TYRE).then(|| Doubt {
+        name: "wheel_radius",
+        statement: format!(
+            "rim speeds were made with wheels of {used_m} m, and the robot's file has {file_m} m: speeds are {ratio:.2} times what its wheels turn at"
+        ),
+        cure: format!("give \"wheel_radius_m\": {file_m} in the map, or correct `wheel_radius_m` of the robot's file"),
+    })
+}
+
 /// A voltage that is not that of the robot's battery while power shows that it should be.
 pub(super) fn voltage(robot: &Robot, recording: &Recording, followed: &Followed) -> Option<Doubt> {
     if recording.power_form() != Some(PowerForm::CurrentAndVoltage) {

@@ -27,13 +27,15 @@ const TURNS_MPS: f64 = 0.1;
 const SLOWING_MPS2: f64 = 0.05;
 /// Share of the usual power of driving that is missed where a meter tells none.
 const LOADED: f64 = 0.5;
+/// Times that each value comes on a coarse scale, at least; of a fine one hardly any comes twice.
+const TIMES_EACH: usize = 10;
 /// Cells that are looked at for what is usual.
 const SAMPLE: usize = 4_000;
 
 /// Placeholders in the channels of power and of wheel speeds, with the value of each.
 pub(super) fn placeholders(robot: &Robot, recording: &Recording) -> Vec<(f64, Cells)> {
-    let wheels = [Channel::LeftSpeed, Channel::RightSpeed];
-    let channels = power_channels(recording).into_iter().chain(wheels);
+    let others = [Channel::LeftSpeed, Channel::RightSpeed, Channel::Pitch, Channel::Roll];
+    let channels = power_channels(recording).into_iter().chain(others);
     let of = |channel: Channel| {
         let values = recording.channel(channel)?;
         let is_folded = matches!(channel, Channel::LeftMotorCurrent | Channel::RightMotorCurrent)
@@ -79,13 +81,13 @@ struct Looked<'a> {
 impl Looked<'_> {
     /// The cells of the value that stand apart, where enough of them do.
     fn cells(&self) -> Option<Cells> {
-        let is_wheel = matches!(self.channel, Channel::LeftSpeed | Channel::RightSpeed);
-        let expected = if is_wheel { None } else { Some(Expected::new(self.robot, self.recording)?) };
+        let tells_power = self.channel.tells_power() || self.channel == Channel::Voltage;
+        let expected = if tells_power { Some(Expected::new(self.robot, self.recording)?) } else { None };
         let usual_w = match &expected {
             Some(expected) => self.usual_w(expected)?,
             None => 0.0,
         };
-        let least = SIGMAS * self.scatter()?;
+        let least = SIGMAS * self.scatter()?.max(self.rung() / 2.0) + self.rung();
         let (mut rows, mut missed, mut missed_apart) = (Vec::new(), 0, 0);
         let (mut changed, mut rest) = (0.0, 0.0);
         for run in &self.recording.runs {
@@ -96,12 +98,16 @@ impl Looked<'_> {
                 }
                 let Some([before, middle, after]) = self.between(run, row) else { continue };
                 let off = (middle - self.value).abs();
-                let is_apart = off > least;
+                // A slope passes through every angle between those around it.
+                let is_between = self.is_angle() && (before - self.value) * (after - self.value) <= 0.0;
+                let is_apart = off > least && !is_between;
                 let is_missed = match &expected {
                     Some(expected) => {
                         expected.of_channel(self.channel, row) > LOADED * usual_w
                             && !self.is_slowing(run, row)
                     }
+                    // An angle is not asked for: its cells have to lie apart from those around them.
+                    None if self.is_angle() => true,
                     None => self.is_impossible(run, row, [before, after]),
                 };
                 missed += usize::from(is_missed);
@@ -117,6 +123,23 @@ impl Looked<'_> {
             && missed_apart as f64 > LEAST_APART * missed as f64
             && changed > WORTH * rest;
         is_placeholder.then_some(Cells { channel: self.channel, rows })
+    }
+
+    fn is_angle(&self) -> bool {
+        matches!(self.channel, Channel::Pitch | Channel::Roll)
+    }
+
+    /// Step of the scale of a coarse meter, whose values come back again and again; nothing of a fine one. Rounding hides a scatter of half a step
+    /// and takes readings apart by a whole one.
+    fn rung(&self) -> f64 {
+        let mut known: Vec<f64> = self.values.iter().copied().filter(|x| x.is_finite()).collect();
+        let rows = known.len();
+        known.sort_by(f64::total_cmp);
+        known.dedup();
+        if known.len() * TIMES_EACH > rows {
+            return 0.0;
+        }
+        known.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min).min(f64::MAX)
     }
 
     fn between(&self, run: &Run, row: usize) -> Option<[f64; 3]> {

@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, ops::Range};
 use model::Robot;
 use recording::{Channel, Recording, SuspicionKind, suspicions};
 
-use super::{Doubt, driving::STANDS_MPS};
+use super::{Doubt, cells::Expected, driving::STANDS_MPS};
 
 /// Time for which a measured value does not stay the same to its last digit while the robot drives \[s\]: manoeuvres are shorter, and sensors
 /// have noise.
@@ -46,6 +46,15 @@ fn stuck(
     // What a side draws changes with its speed, and the other way round.
     let beside = beside(one).into_iter().find_map(|channel| recording.channel(channel));
     let mut stuck = Vec::new();
+    let expected = Expected::new(robot, recording);
+    // A meter that cannot read what a side gives back rests at nothing where the ground drives it.
+    let rests = |channel: Channel, rows: Range<usize>| {
+        let Some(expected) = expected.as_ref().filter(|_| values[rows.start] == 0.0 && !is_speed) else {
+            return false;
+        };
+        let asked = rows.clone().filter(|row| expected.of_channel(channel, *row) > 0.0).count();
+        values.iter().all(|x| *x >= 0.0 || x.is_nan()) && 2 * asked < rows.len()
+    };
     for run in &recording.runs {
         for rows in equal(values, run.rows.clone()) {
             let driven_s: f64 = rows
@@ -62,6 +71,7 @@ fn stuck(
                 && lives(living)
                 && beside.is_none_or(lives)
                 && !(is_speed && turns_so(robot, recording, rows.clone()))
+                && !rests(one, rows.clone())
             {
                 stuck.push((driven_s, rows.start, run));
             }

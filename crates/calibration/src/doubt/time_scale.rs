@@ -86,13 +86,19 @@ fn by_positions(recording: &Recording) -> Option<Doubt> {
 }
 
 /// One sigma of the noise of positions \[m\].
-fn noise_m(values: &[f64]) -> f64 {
+pub(super) fn noise_m(values: &[f64]) -> f64 {
     let bent = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).filter(|m| m.is_finite());
     median(bent.collect()).unwrap_or(0.0) / SECOND_DIFFERENCE
 }
 
-/// Median of ways by positions over ways by wheels, over a metre by positions each, or more where they are noisy.
+/// Median of ways by positions over ways by wheels.
 fn way_share(recording: &Recording) -> Option<f64> {
+    let shares = way_shares(recording, |_| true)?;
+    (shares.len() >= LEAST_WAYS).then(|| median(shares))?
+}
+
+/// Ways by positions over ways by wheels in rows that count, over a metre by positions each, or more where they are noisy.
+pub(super) fn way_shares(recording: &Recording, counts: impl Fn(usize) -> bool) -> Option<Vec<f64>> {
     let [x, y, left, right] =
         [Channel::X, Channel::Y, Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c));
     let (x, y, left, right) = (x?, y?, left?, right?);
@@ -103,7 +109,10 @@ fn way_share(recording: &Recording) -> Option<f64> {
         let (mut from, mut way_m) = (run.rows.start, 0.0);
         for i in run.rows.clone().skip(1) {
             let step_m = (recording.t_s[i] - recording.t_s[i - 1]) * (speed(i) + speed(i - 1)) / 2.0;
-            let is_ahead = speed(i).abs() > STANDS_MPS && speed(i) * speed(i - 1) > 0.0 && step_m.is_finite();
+            let is_ahead = counts(i)
+                && speed(i).abs() > STANDS_MPS
+                && speed(i) * speed(i - 1) > 0.0
+                && step_m.is_finite();
             if !is_ahead {
                 // Robots that stand, turn round or leave gaps go no way.
                 (from, way_m) = (i, 0.0);
@@ -117,7 +126,7 @@ fn way_share(recording: &Recording) -> Option<f64> {
             }
         }
     }
-    (shares.len() >= LEAST_WAYS).then(|| median(shares))?
+    Some(shares)
 }
 
 /// Times in which wheels speed up and slow down faster than tyres hold, or more slowly than robots do.

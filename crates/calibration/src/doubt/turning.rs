@@ -57,6 +57,12 @@ fn why(recording: &Recording) -> (String, &'static str) {
         [Channel::LeftSpeed, Channel::RightSpeed].map(|c| recording.channel(c).unwrap_or_default());
     let known = || left.iter().zip(right).filter(|(l, r)| l.is_finite() && r.is_finite());
     let (rows, alike) = (known().count(), known().filter(|(l, r)| l == r).count());
+    if known().all(|(l, r)| *l == 0.0 && *r == 0.0) {
+        return (
+            format!("both are 0 in all of {rows} rows"),
+            "read a field that is filled in; where wheels tell positions alone, name these with `derivative` in a map",
+        );
+    }
     if alike as f64 >= ALIKE * rows as f64 {
         return (
             format!("both columns hold one speed in {alike} of {rows} rows, as that of the chassis"),

@@ -129,8 +129,13 @@ pub(crate) fn over_two_grounds(mut recording: Recording, names: [&str; 2]) -> Re
 
 /// Healthy drives with the yaw rate that the wheels give a Husky, and roll.
 pub(crate) fn healthy() -> Recording {
+    healthy_of(400)
+}
+
+/// Three healthy drives of so many rows each.
+pub(crate) fn healthy_of(rows: usize) -> Recording {
     let mut random = seeded(5);
-    let mut plain = drives(&mut random, 3, 400);
+    let mut plain = drives(&mut random, 3, rows);
     let of = |recording: &Recording, channel| recording.channel(channel).unwrap().to_vec();
     let (left, right) = (of(&plain, Channel::LeftSpeed), of(&plain, Channel::RightSpeed));
     let yaw_rate =
@@ -149,6 +154,33 @@ pub(crate) fn changed(
 ) -> Recording {
     for channel in channels {
         recording.channels.get_mut(channel).unwrap().iter_mut().for_each(|value| *value = change(*value));
+    }
+    recording
+}
+
+/// Drives with the positions and heights that wheels and slopes bring them to.
+pub(crate) fn placed(mut recording: Recording) -> Recording {
+    let column = |channel| recording.channel(channel).unwrap().to_vec();
+    let (left, right, pitch) =
+        (column(Channel::LeftSpeed), column(Channel::RightSpeed), column(Channel::Pitch));
+    let mut pose = [0.0_f64; 4];
+    let places: Vec<[f64; 3]> = (0..recording.rows())
+        .map(|i| {
+            let [x, y, z, heading] = pose;
+            let (speed, turn) =
+                ((left[i] + right[i]) / 2.0, (right[i] - left[i]) / builtin::husky_a200().slip_track_m);
+            let way = 0.1 * speed;
+            pose = [
+                x + way * heading.cos(),
+                y + way * heading.sin(),
+                z + way * pitch[i].sin(),
+                heading + 0.1 * turn,
+            ];
+            [x, y, z]
+        })
+        .collect();
+    for (axis, channel) in [Channel::X, Channel::Y, Channel::Z].into_iter().enumerate() {
+        recording.channels.insert(channel, places.iter().map(|place| place[axis]).collect());
     }
     recording
 }

@@ -94,6 +94,7 @@ impl MapFile {
             max_gap_s: file.max_gap_s,
             surface: file.surface,
             namespace: file.namespace,
+            wheel_radius_m: file.wheel_radius_m,
             sources: sources.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect(),
         })
     }

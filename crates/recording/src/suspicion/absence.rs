@@ -43,7 +43,7 @@ pub(super) fn constant(present: &[f64]) -> Option<String> {
 
 /// A spike of equal values at an extreme. A driven robot does reach its top speed often, but then values just below are
 /// as frequent; a clipped signal has many times more at the limit itself.
-pub(super) fn saturated(present: &[f64]) -> Option<String> {
+pub(super) fn saturated(channel: Channel, present: &[f64]) -> Option<String> {
     /// Shares below this do little harm to a fit.
     const LEAST_SHARE: f64 = 0.01;
     /// How many times more frequent than the mean of its next neighbours an extreme must be.
@@ -70,10 +70,17 @@ pub(super) fn saturated(present: &[f64]) -> Option<String> {
     if counts.len() <= NEIGHBOURS {
         return None;
     }
+    // Encoders count, and a robot that drives or spins steadily stays at one count: it does so at others as well.
+    let is_steady = |value: f64, count: usize| {
+        let inner = counts.iter().filter(|(other, _)| *other != value && *other != 0.0);
+        let most = inner.map(|(_, count)| *count).max().unwrap_or(0) as f64;
+        matches!(channel, Channel::LeftSpeed | Channel::RightSpeed) && (count as f64) < SPIKE * most
+    };
     let spike = |ends: &mut dyn Iterator<Item = &(f64, usize)>| {
         let (value, count) = *ends.next()?;
         let near: usize = ends.take(NEIGHBOURS).map(|(_, count)| count).sum();
-        let clipped = often(value) && count as f64 >= SPIKE * near as f64 / NEIGHBOURS as f64;
+        let is_spike = count as f64 >= SPIKE * near as f64 / NEIGHBOURS as f64;
+        let clipped = often(value) && is_spike && !is_steady(value, count);
         clipped.then(|| format!("it stands at its limit {value} in {count} of {} rows", present.len()))
     };
     spike(&mut counts.iter().rev()).or_else(|| spike(&mut counts.iter()))

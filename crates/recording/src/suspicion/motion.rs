@@ -93,7 +93,8 @@ pub(super) fn mirrored(recording: &Recording) -> Option<Suspicion> {
     };
     let [of_difference, _] = together(|turn| &turn.pairs)?;
     let [of_sum, track_m] = together(|turn| &turn.sums)?;
-    if of_sum < LEAST_R2 || of_difference > LEAST_R2 {
+    // Of a side that stands nothing is explained, and its share is no number.
+    if of_sum.is_nan() || of_sum < LEAST_R2 || of_difference > LEAST_R2 {
         return None;
     }
     let (channel, side) = match track_m > 0.0 {
