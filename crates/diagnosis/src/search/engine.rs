@@ -94,14 +94,14 @@ pub(crate) fn find_about(
     let (whitening, strays) = one.weighted(observed, file);
     let Some(other) = other else {
         let part = |name: &str, share: f64| progress(name, 0.4 + 0.6 * share);
-        return one.find(observed, file, whitening, windows, &part);
+        return one.find(observed, file, &whitening, windows, &part);
     };
     // About the robot that the drives lie nearer to, fewer rows are strays.
     let of_other = other.weighted(observed, file);
     let whitening = if of_other.1 < strays { of_other.0 } else { whitening };
     let part = |from: f64| move |name: &str, share: f64| progress(name, from + 0.3 * share);
-    let found = one.find(observed, file, whitening.clone(), windows, &part(0.4))?;
-    Ok(likelier(found, other.find(observed, file, whitening, windows, &part(0.7))?))
+    let found = one.find(observed, file, &whitening, windows, &part(0.4))?;
+    Ok(likelier(found, other.find(observed, file, &whitening, windows, &part(0.7))?))
 }
 
 /// What was found about the robot beside which the likeliest explanation lies, each explanation with the better of its evidences.
@@ -168,7 +168,7 @@ impl About {
         self,
         observed: &Observations<'_>,
         file: &Robot,
-        weighted: Whitening,
+        weighted: &Whitening,
         windows: Windows,
         progress: &dyn Fn(&str, f64),
     ) -> Result<Found, Error> {
@@ -176,7 +176,7 @@ impl About {
             progress(name, share);
             observed.go_on()
         };
-        let temperature = self.temperature(observed, &weighted);
+        let temperature = self.temperature(observed, weighted);
         let About { baseline, effects, basis, .. } = self;
         let Basis { columns, amplitudes, shares: missed, beyond, run_variation } = basis;
         let whitening = weighted.scaled(|_| 1.0 / temperature.sqrt());
