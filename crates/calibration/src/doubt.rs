@@ -40,6 +40,7 @@ use recording::{Channel, Recording, Watch};
 use serde::Serialize;
 
 pub(crate) use self::clipped::clipped_note;
+pub(crate) use self::scale::POWER_LEVEL;
 pub use self::{change::mends, scale::speeds};
 use self::{follow::Followed, second::Second};
 use crate::Error;

@@ -4,7 +4,7 @@ use model::Robot;
 use recording::{Recording, Watch, unwatched};
 use serde::{Deserialize, Serialize};
 
-use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubts};
+use crate::{Calibration, Error, Options, calibrate_watched, dogru_marques, doubt::POWER_LEVEL, doubts};
 
 /// Name of the doubt that runs which were not fitted cast on a fit.
 const HELD_OUT: &str = "held_out";
@@ -86,6 +86,8 @@ impl Method {
     ) -> Result<Calibration, Error> {
         let (overruled, open): (Vec<_>, Vec<_>) =
             doubts(robot, recording, watch)?.into_iter().partition(|doubt| options.is_overruled(doubt.name));
+        // What may be wrong with the file is what a calibration is for.
+        let (told, open): (Vec<_>, Vec<_>) = open.into_iter().partition(|doubt| doubt.name == POWER_LEVEL);
         if !open.is_empty() {
             return Err(Error::Doubtful { doubts: open });
         }
@@ -94,6 +96,7 @@ impl Method {
             Method::DogruMarques => dogru_marques::calibrate(robot, recording, watch),
         }?;
         found.notes.extend(ground_note(robot, recording));
+        found.notes.extend(told.iter().map(|doubt| format!("a doubt: {doubt}")));
         found.notes.extend(overruled.iter().map(|doubt| format!("calibrated despite a doubt: {doubt}")));
         match &found.held_out {
             // Where nothing was determined nothing was fitted.

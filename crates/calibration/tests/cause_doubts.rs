@@ -175,7 +175,7 @@ fn half_of_the_power_is_doubted_on_ground_that_the_file_knows_by_name() {
         recording.surface = ground.map(|name| recording::Labels::constant(name, recording.rows()));
         recording
     };
-    assert!(only(&half(Some("marble")), "power_scale").statement.contains("ground that it knows"));
+    assert!(only(&half(Some("marble")), "power_level").statement.contains("ground that it knows"));
     assert_eq!(found(&half(None)), [], "unknown ground may be any");
     let mut unsure = robot();
     unsure.uncertainty.mu_roll = 0.5;

@@ -195,6 +195,9 @@ fn fastest_mps(recording: &Recording) -> Option<f64> {
     (sizes.len() >= LEAST_ROWS).then(|| *sizes.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
+/// Doubt about the size of power that may as well be the file's own: a calibration, which mends the file, tells it and goes on.
+pub(crate) const POWER_LEVEL: &str = "power_level";
+
 /// Standard deviations of what the robot's file states by which power lies beyond: by chance one in 370.
 const FAR_SIGMAS: f64 = 3.0;
 
@@ -213,7 +216,7 @@ pub(super) fn on_known_ground(robot: &Robot, recording: &Recording, followed: &F
     let (low, high) = (over_predicted * r, over_predicted / r);
     let is_beyond = r * r > LEAST_R2 && r > 0.0 && (high < 1.0 / most || low > most);
     (is_known && is_beyond && determined < 0.0).then(|| Doubt {
-        name: "power_scale",
+        name: POWER_LEVEL,
         statement: format!(
             "recorded power varies {over_predicted:.2} times as much as the robot's file predicts on ground that it knows, and its `uncertainty` lets it vary {:.2} to \
              {most:.2} times as much; it predicts worse than the mean does (R² {determined:.1})",

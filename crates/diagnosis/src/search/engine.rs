@@ -25,7 +25,7 @@ use crate::{
     observe::{observations::Observations, reach::Beyond},
     search::{
         basis::{Basis, shared, shares},
-        explanation::{Explanation, normalise},
+        explanation::{Explanation, merge},
         refine::Search,
         screen::Screen,
     },
@@ -108,14 +108,7 @@ pub(crate) fn find_about(
 fn likelier(one: Found, other: Found) -> Found {
     let best = |found: &Found| found.explanations.first().map_or(f64::NEG_INFINITY, |one| one.log);
     let (mut found, other) = if best(&other) > best(&one) { (other, one) } else { (one, other) };
-    for one in other.explanations {
-        let is_same = |own: &&mut Explanation| own.names == one.names && own.unlisted == one.unlisted;
-        match found.explanations.iter_mut().find(is_same) {
-            Some(own) => own.log = own.log.max(one.log),
-            None => found.explanations.push(Explanation { fitted: None, block: None, ..one }),
-        }
-    }
-    normalise(&mut found.explanations);
+    merge(&mut found.explanations, other.explanations);
     found
 }
 

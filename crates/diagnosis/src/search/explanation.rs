@@ -86,6 +86,19 @@ pub(crate) fn normalise(explanations: &mut [Explanation]) {
     explanations.sort_by(|a, b| b.probability.total_cmp(&a.probability));
 }
 
+/// Explanations of one search, each with the better of its evidences there and in another by the same noise; then those of the other alone, of
+/// which no fit is told.
+pub(crate) fn merge(own: &mut Vec<Explanation>, other: Vec<Explanation>) {
+    for one in other {
+        let is_same = |own: &&mut Explanation| own.names == one.names && own.unlisted == one.unlisted;
+        match own.iter_mut().find(is_same) {
+            Some(own) => own.log = own.log.max(one.log),
+            None => own.push(Explanation { fitted: None, block: None, ..one }),
+        }
+    }
+    normalise(own);
+}
+
 /// The likeliest explanations that hold the posterior together.
 pub(crate) fn credible(explanations: &[Explanation]) -> &[Explanation] {
     let mut total = 0.0;
@@ -102,6 +115,18 @@ mod tests {
 
     fn explanation(log: f64) -> Explanation {
         Explanation { names: vec![], unlisted: false, log, fitted: None, block: None, probability: 0.0 }
+    }
+
+    #[test]
+    fn of_two_searches_the_better_evidence_counts_and_nothing_is_lost() {
+        let named = |log: f64| Explanation { names: vec!["payload"], ..explanation(log) };
+        let mut own = vec![named(10.0), explanation(2.0)];
+        let unlisted = Explanation { unlisted: true, ..explanation(1.0) };
+        merge(&mut own, vec![explanation(9.0), unlisted, named(3.0)]);
+        let logs: Vec<f64> = own.iter().map(|one| one.log).collect();
+        assert_eq!(logs, [10.0, 9.0, 1.0], "nothing missing is judged where the model is near it");
+        assert!((own.iter().map(|one| one.probability).sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!((own[0].probability / own[1].probability - 1.0_f64.exp()).abs() < 1e-9);
     }
 
     #[test]

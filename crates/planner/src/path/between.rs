@@ -218,8 +218,8 @@ mod tests {
         let straight = along(0.5, plane, &ACROSS);
         assert!((straight.pitch_rad.value - 0.2_f64.atan()).abs() < 1e-5 && straight.roll_rad.value < 1e-5);
         assert!(straight.above_m.value < 1e-4);
-        // Marble's skid friction, 0.2815: the plane's slope over it.
-        assert!((straight.over_grip.value - 0.2 / 0.2815).abs() < 0.02, "{:?}", straight.over_grip);
+        let grip = builtin::husky_a200().surfaces["marble"].mu_skid;
+        assert!((straight.over_grip.value - 0.2 / grip).abs() < 1e-4, "{:?}", straight.over_grip);
         let turn = [[12.0, 12.0, 0.0], [12.0, 12.0, 1.5]];
         let turned = along(0.5, plane, &turn);
         assert!(
