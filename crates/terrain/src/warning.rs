@@ -66,8 +66,6 @@ pub enum WarningKind {
     Stops,
     /// Between its poses the path leads over ground beyond the robot's limits.
     BeyondLimits,
-    /// The path leads over ground that is steeper than its friction holds the robot.
-    Slides,
     /// Unknown ground is open to the robot.
     UnknownGround,
     /// How the areas' coordinates were read, or what of them means nothing here.

@@ -40,8 +40,6 @@ pub struct Stances {
     pub above_m: Most,
     /// Height up to which ground is let pass there: the robot's clearance, widened by the noise of the map's heights [m].
     pub allowed_above_m: f64,
-    /// Steepness of the plane over the friction by which the ground there holds the robot, μ_S: beyond 1 it slides [-].
-    pub over_grip: Most,
 }
 
 /// How the robot stands along the straights, arcs and turns between some poses of x, y \[m\] and heading \[rad\], where the ground under all of
@@ -79,7 +77,6 @@ impl Stances {
             roll_rad: most(self.roll_rad, other.roll_rad),
             above_m: most(self.above_m, other.above_m),
             allowed_above_m: self.allowed_above_m,
-            over_grip: most(self.over_grip, other.over_grip),
         }
     }
 }
@@ -127,8 +124,6 @@ impl<'l> Wheels<'l> {
                 Some(ground_m(ahead_m, left_m)? - (middle_m + along * ahead_m + left * left_m))
             })
             .fold(0.0, f64::max);
-        let steepness = along.hypot(left);
-        let grip = self.grip([x_m, y_m])?;
         let at_m = [x_m, y_m];
         let most = |value: f64| Most { value, at_m };
         Some(Stances {
@@ -136,16 +131,7 @@ impl<'l> Wheels<'l> {
             roll_rad: most(left.abs().atan()),
             above_m: most(above_m),
             allowed_above_m: self.allowed_above_m,
-            over_grip: most(if grip > 0.0 { steepness / grip } else { 0.0 }),
         })
-    }
-
-    /// Skid friction of the ground at a place [-].
-    fn grip(&self, [x_m, y_m]: [f64; 2]) -> Option<f64> {
-        let terrain = &self.lattice.terrain;
-        let cell = terrain.grid.cell_at(x_m, y_m)?;
-        let classes = &self.lattice.classes;
-        Some(classes.list[classes.at(terrain, cell)].surface.mu_skid)
     }
 }
 
@@ -218,8 +204,6 @@ mod tests {
         let straight = along(0.5, plane, &ACROSS);
         assert!((straight.pitch_rad.value - 0.2_f64.atan()).abs() < 1e-5 && straight.roll_rad.value < 1e-5);
         assert!(straight.above_m.value < 1e-4);
-        let grip = builtin::husky_a200().surfaces["marble"].mu_skid;
-        assert!((straight.over_grip.value - 0.2 / grip).abs() < 1e-4, "{:?}", straight.over_grip);
         let turn = [[12.0, 12.0, 0.0], [12.0, 12.0, 1.5]];
         let turned = along(0.5, plane, &turn);
         assert!(

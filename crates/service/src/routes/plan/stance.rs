@@ -9,8 +9,8 @@ use super::{PlanAnswer, PoseAnswer};
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 const CENTIMETRE_M: f64 = 0.01;
 
-/// Warnings where the path, or the refined one, leads over ground beyond the robot's limits or grip.
-pub(crate) fn between_poses(answer: &PlanAnswer, lattice: &Lattice, patience: &Patience) -> Vec<Warning> {
+/// A warning where the path, or the refined one, leads over ground beyond the robot's limits.
+pub(crate) fn between_poses(answer: &PlanAnswer, lattice: &Lattice, patience: &Patience) -> Option<Warning> {
     let refined = answer.refined.as_ref().map(|refined| ("the refined path", refined.poses.as_slice()));
     let paths = [Some(("the path", answer.poses.as_slice())), refined];
     let found = paths.into_iter().flatten().filter_map(|(which, poses)| {
@@ -18,11 +18,8 @@ pub(crate) fn between_poses(answer: &PlanAnswer, lattice: &Lattice, patience: &P
         Some((which, stances(lattice, &poses, patience)?))
     });
     let found: Vec<(&str, Stances)> = found.collect();
-    let worst = |of: fn(&Lattice, &str, &Stances) -> Option<Warning>| {
-        // What holds of the path that is driven first is said once.
-        found.iter().rev().find_map(|(which, stances)| of(lattice, which, stances))
-    };
-    [worst(beyond_limits), worst(slides)].into_iter().flatten().collect()
+    // The refined path is the one that is driven.
+    found.iter().rev().find_map(|(which, stances)| beyond_limits(lattice, which, stances))
 }
 
 fn pose(pose: &PoseAnswer) -> [f64; 3] {
@@ -57,19 +54,6 @@ fn beyond_limits(lattice: &Lattice, which: &str, stances: &Stances) -> Option<Wa
             all.join(" and ")
         );
         Warning::new(WarningKind::BeyondLimits, detail)
-    })
-}
-
-fn slides(lattice: &Lattice, which: &str, stances: &Stances) -> Option<Warning> {
-    let over = stances.over_grip;
-    (over.value > 1.0).then(|| {
-        let detail = format!(
-            "{which} leads over ground at {} that is {:.1} times as steep as its friction holds the robot (mu_skid): `{}` may slide there, and the energy does not count it; keep to flatter ground by a lower limit of pitch and roll",
-            place(over),
-            over.value,
-            lattice.robot.name
-        );
-        Warning::new(WarningKind::Slides, detail)
     })
 }
 
