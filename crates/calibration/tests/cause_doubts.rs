@@ -4,32 +4,18 @@
 
 use std::f64::consts::PI;
 
-use calibration::{Doubt, Error, Method, Options, doubts};
-use model::{Robot, builtin};
+use calibration::{Error, Method, Options, doubts};
 use rand::RngExt;
 use recording::{Channel, Recording, unwatched};
 
 mod simulated;
+use simulated::doubted::{found, only, robot};
 use simulated::{
     changed, drives, healthy, healthy_of, normal, placed, seeded, with_battery_power, with_power,
 };
 
 const WHEELS: [Channel; 2] = [Channel::LeftSpeed, Channel::RightSpeed];
 const POWERS: [Channel; 2] = [Channel::LeftPower, Channel::RightPower];
-
-fn robot() -> Robot {
-    builtin::husky_a200()
-}
-
-fn found(recording: &Recording) -> Vec<Doubt> {
-    doubts(&robot(), recording, &unwatched()).unwrap()
-}
-
-fn only(recording: &Recording, name: &str) -> Doubt {
-    let mut told = found(recording);
-    assert!(told.len() == 1 && told[0].name == name, "{name}: {told:?}");
-    told.remove(0)
-}
 
 fn swapped(mut recording: Recording, [one, other]: [Channel; 2]) -> Recording {
     let [a, b] = [one, other].map(|channel| recording.channels.remove(&channel).unwrap());

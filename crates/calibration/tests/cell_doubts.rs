@@ -2,20 +2,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-use calibration::{Doubt, Error, Method, Options, doubts, predict};
-use model::{Robot, builtin};
+use calibration::{Error, Method, Options, doubts, predict};
 use recording::{Channel, Recording, unwatched};
 
 mod simulated;
+use simulated::doubted::{found, robot};
 use simulated::{changed, drives, healthy, seeded, with_battery_power};
-
-fn robot() -> Robot {
-    builtin::husky_a200()
-}
-
-fn found(recording: &Recording) -> Vec<Doubt> {
-    doubts(&robot(), recording, &unwatched()).unwrap()
-}
 
 /// A recording with a value in the place of what some rows of channels hold.
 fn filled(

@@ -2,31 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
-use calibration::{Doubt, Error, Method, Options, doubts, predict};
-use model::{Robot, builtin};
+use calibration::{Error, Method, Options, predict};
 use rand::RngExt;
-use recording::{Channel, Recording, unwatched};
+use recording::{Channel, Recording};
 
 mod simulated;
+use simulated::doubted::{found, only, robot};
 use simulated::{
     changed, drives, healthy, normal, placed, seeded, with_battery_power, with_heat, with_power,
 };
 
 const WHEELS: [Channel; 2] = [Channel::LeftSpeed, Channel::RightSpeed];
-
-fn robot() -> Robot {
-    builtin::husky_a200()
-}
-
-fn found(recording: &Recording) -> Vec<Doubt> {
-    doubts(&robot(), recording, &unwatched()).unwrap()
-}
-
-fn only(recording: &Recording, name: &str) -> Doubt {
-    let mut told = found(recording);
-    assert!(told.len() == 1 && told[0].name == name, "{name}: {told:?}");
-    told.remove(0)
-}
 
 fn timed(mut recording: Recording, factor: f64) -> Recording {
     recording.t_s.iter_mut().for_each(|t_s| *t_s *= factor);

@@ -48,6 +48,9 @@ fn a_hotel_load_that_the_file_does_not_state_is_found_from_drives_that_hardly_st
         let [low, high] = hotel.interval_95.unwrap();
         assert!(hotel.determined, "{hotel:?}");
         inside += u64::from((low..=high).contains(&truth.hotel_power_w));
+        // Half of a 95 % interval, over its value, is 1.96 of what the file then states.
+        let stated = found.robot.uncertainty.hotel_power_w;
+        assert!(stated > 0.0 && stated < (high - low) / hotel.value, "{stated}");
     }
     // Of intervals that hold in 95 % of cases, 17 or more of 20 hold in 98 %.
     assert!(inside >= 17, "{inside} of {TRIALS}");

@@ -14,6 +14,7 @@ use rand_pcg::Pcg64Mcg;
 use recording::{Channel, Labels, PowerForm, Recording, Run};
 
 pub(crate) mod coverage;
+pub(crate) mod doubted;
 pub(crate) mod worlds;
 
 pub(crate) const RUNS: usize = 12;

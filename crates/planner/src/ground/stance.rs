@@ -166,33 +166,52 @@ fn disc(radius_m: f64, cell_size_m: f64) -> Stencil {
     paired(&shares, &Shares::default(), &Shares::default())
 }
 
-/// The plane through four contacts at a heading: of least squares, which for a rectangle is
+/// A place under a wheel, and what the ground there counts for in the plane of the wheels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    /// Ahead and to the left of the robot's middle [m].
+    pub(crate) place_m: [f64; 2],
+    /// In its height at the robot's middle [-].
+    pub(crate) height: f64,
+    /// In its rise per metre ahead and to the left [1/m].
+    pub(crate) rise: [f64; 2],
+}
+
+/// Places under the four wheels by which the plane through the ground there is told: of least squares, which for a rectangle is
 ///
 /// ```text
 /// z = Σ z_i / 4,   ∂z/∂along = Σ ±z_i / (2 a),   ∂z/∂left = Σ ±z_i / (2 b)
 /// ```
 ///
-/// Each z_i is the mean over the tyre's contact, taken as a square as wide as the tyre (see [`Footprint`]).
-fn contacts(robot: &Robot, heading_rad: f64, cell_size_m: f64) -> Stencil {
-    let (sin, cos) = heading_rad.sin_cos();
+/// Each z_i is the mean over the tyre's contact, taken as a square as wide as the tyre (see [`Footprint`]), of `across` places each way.
+pub(crate) fn contact_places(robot: &Robot, across: usize) -> Vec<Contact> {
     let tyre_m = Footprint::tyre_width_m(robot);
-    let count = places(tyre_m, cell_size_m);
-    let share = 1.0 / (count * count) as f64;
-    let offset_m = |n: usize| tyre_m * ((n as f64 + 0.5) / count as f64 - 0.5);
-    let [mut height, mut east, mut north] = [Shares::default(), Shares::default(), Shares::default()];
+    let share = 1.0 / (across * across) as f64;
+    let offset_m = |n: usize| tyre_m * ((n as f64 + 0.5) / across as f64 - 0.5);
+    let mut all = Vec::with_capacity(4 * across * across);
     for (front, left) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-        let along = front / (2.0 * robot.wheelbase_m);
-        let across = left / (2.0 * robot.track_m);
-        for i in 0..count {
-            for j in 0..count {
+        let rise = [front / (2.0 * robot.wheelbase_m), left / (2.0 * robot.track_m)].map(|rise| share * rise);
+        for i in 0..across {
+            for j in 0..across {
                 let ahead_m = front * robot.wheelbase_m / 2.0 + offset_m(i);
                 let left_m = left * robot.track_m / 2.0 + offset_m(j);
-                let place_m = [ahead_m * cos - left_m * sin, ahead_m * sin + left_m * cos];
-                height.add(place_m, cell_size_m, share / 4.0);
-                east.add(place_m, cell_size_m, share * (along * cos - across * sin));
-                north.add(place_m, cell_size_m, share * (along * sin + across * cos));
+                all.push(Contact { place_m: [ahead_m, left_m], height: share / 4.0, rise });
             }
         }
+    }
+    all
+}
+
+/// The plane through four contacts at a heading, of the heights of cells.
+fn contacts(robot: &Robot, heading_rad: f64, cell_size_m: f64) -> Stencil {
+    let (sin, cos) = heading_rad.sin_cos();
+    let turned = |[ahead, left]: [f64; 2]| [ahead * cos - left * sin, ahead * sin + left * cos];
+    let [mut height, mut east, mut north] = [Shares::default(), Shares::default(), Shares::default()];
+    for contact in contact_places(robot, places(Footprint::tyre_width_m(robot), cell_size_m)) {
+        let (place_m, rise) = (turned(contact.place_m), turned(contact.rise));
+        height.add(place_m, cell_size_m, contact.height);
+        east.add(place_m, cell_size_m, rise[0]);
+        north.add(place_m, cell_size_m, rise[1]);
     }
     paired(&height, &east, &north)
 }

@@ -7,14 +7,19 @@
 use terrain::{Cell, Terrain};
 
 use crate::{
-    ground::footprint::Footprint,
-    lattice::graph::Lattice,
+    ground::{
+        footprint::Footprint,
+        stance::{Contact, contact_places},
+    },
+    lattice::{graph::Lattice, step::Sample},
     path::room::pieces,
     patience::{Patience, work},
 };
 
-/// Places across a tyre's contact, and along and across the outline, at which the ground is looked at.
+/// Places across a tyre's contact at which the ground is looked at: bilinear heights bend only where cells meet, a few of them under a tyre.
 const ACROSS_TYRE: usize = 3;
+/// Places along and across the outline: at most a wheel radius apart on any robot of up to seven wheel radii. Narrower rises lie in single cells,
+/// which the search looks at one by one where cells are so small.
 const ACROSS_OUTLINE: usize = 7;
 /// Places along a path, of a wheelbase and of a cell: nothing that the wheels meet is shorter than a tyre, a third of a wheelbase.
 const OF_WHEELBASE: f64 = 0.25;
@@ -43,16 +48,15 @@ pub struct Stances {
 }
 
 /// How the robot stands along the straights, arcs and turns between some poses of x, y \[m\] and heading \[rad\], where the ground under all of
-/// its wheels is known. `None` when patience ends first, or where it is known nowhere.
+/// its wheels is known; level where it is known nowhere. `None` when patience ends first.
 pub fn stances(lattice: &Lattice, poses: &[[f64; 3]], patience: &Patience) -> Option<Stances> {
     let robot = &lattice.robot;
     let cell_size_m = lattice.terrain.grid.cell_size_m;
-    let step_m = (OF_WHEELBASE * robot.wheelbase_m)
-        .min(OF_CELL * cell_size_m)
-        .max(OF_WHEELBASE * Footprint::tyre_width_m(robot));
+    let tyre_m = Footprint::tyre_width_m(robot);
+    let step_m = (OF_WHEELBASE * robot.wheelbase_m).min(OF_CELL * cell_size_m).max(OF_WHEELBASE * tyre_m);
     let half_diagonal_m = robot.wheelbase_m.hypot(robot.track_m) / 2.0;
     let wheels = Wheels::of(lattice);
-    let mut most: Option<Stances> = None;
+    let mut most = wheels.level(poses.first().map_or([0.0; 2], |pose| [pose[0], pose[1]]));
     let mut pacer = patience.pacer();
     for piece in pieces(poses) {
         // On the spot the wheels go round their middle.
@@ -61,12 +65,10 @@ pub fn stances(lattice: &Lattice, poses: &[[f64; 3]], patience: &Patience) -> Op
         for i in 0..=count {
             pacer.after(wheels.work())?;
             let pose = piece.pose_at(i as f64 / count as f64);
-            if let Some(stance) = wheels.stance(pose) {
-                most = Some(most.map_or(stance, |most| most.or(&stance)));
-            }
+            most = wheels.stance(pose).map_or(most, |stance| most.or(&stance));
         }
     }
-    most
+    Some(most)
 }
 
 impl Stances {
@@ -84,94 +86,78 @@ impl Stances {
 /// The wheels and the outline of a robot over its map.
 struct Wheels<'l> {
     lattice: &'l Lattice,
-    outline: Footprint,
+    contacts: Vec<Contact>,
+    /// Places under the outline, ahead and to the left [m].
+    under_m: Vec<[f64; 2]>,
     allowed_above_m: f64,
 }
 
 impl<'l> Wheels<'l> {
     fn of(lattice: &'l Lattice) -> Self {
-        let (ground, outline) = (&lattice.ground, Footprint::of(&lattice.robot));
-        Wheels { lattice, outline, allowed_above_m: ground.allowed_above_m(&lattice.terrain) }
+        let outline = Footprint::of(&lattice.robot);
+        let across = |length_m: f64, i: usize| length_m * ((i as f64 + 0.5) / ACROSS_OUTLINE as f64 - 0.5);
+        let under_m = (0..ACROSS_OUTLINE * ACROSS_OUTLINE)
+            .map(|i| (i / ACROSS_OUTLINE, i % ACROSS_OUTLINE))
+            .map(|(i, j)| [across(outline.length_m, i), across(outline.width_m, j)]);
+        Wheels {
+            lattice,
+            contacts: contact_places(&lattice.robot, ACROSS_TYRE),
+            under_m: under_m.collect(),
+            allowed_above_m: lattice.ground.allowed_above_m(&lattice.terrain),
+        }
     }
 
     /// Cells that a stance is read from.
     fn work(&self) -> u64 {
-        (4 * ACROSS_TYRE * ACROSS_TYRE + ACROSS_OUTLINE * ACROSS_OUTLINE) as u64 * work::CELL
+        (self.contacts.len() + self.under_m.len()) as u64 * work::CELL
+    }
+
+    /// On level ground at a place.
+    fn level(&self, at_m: [f64; 2]) -> Stances {
+        self.stances(at_m, [0.0; 3])
+    }
+
+    fn stances(&self, at_m: [f64; 2], values: [f64; 3]) -> Stances {
+        let [pitch_rad, roll_rad, above_m] = values.map(|value| Most { value, at_m });
+        Stances { pitch_rad, roll_rad, above_m, allowed_above_m: self.allowed_above_m }
     }
 
     /// How it stands in a pose; `None` where the ground under a wheel is not known.
     fn stance(&self, [x_m, y_m, heading_rad]: [f64; 3]) -> Option<Stances> {
-        let (robot, terrain) = (&self.lattice.robot, &self.lattice.terrain);
         let (sin, cos) = heading_rad.sin_cos();
-        let ground_m = |ahead_m: f64, left_m: f64| {
-            height_m(terrain, [x_m + ahead_m * cos - left_m * sin, y_m + ahead_m * sin + left_m * cos])
+        let ground_m = |[ahead_m, left_m]: [f64; 2]| {
+            let place_m = [x_m + ahead_m * cos - left_m * sin, y_m + ahead_m * sin + left_m * cos];
+            height_m(&self.lattice.terrain, place_m)
         };
-        let (half_a_m, half_b_m) = (robot.wheelbase_m / 2.0, robot.track_m / 2.0);
         let [mut middle_m, mut along, mut left] = [0.0; 3];
-        for (front, side) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-            let contact_m = mean(Footprint::tyre_width_m(robot), |dx, dy| {
-                ground_m(front * half_a_m + dx, side * half_b_m + dy)
-            })?;
-            middle_m += contact_m / 4.0;
-            along += front * contact_m / (4.0 * half_a_m);
-            left += side * contact_m / (4.0 * half_b_m);
+        for Contact { place_m, height, rise } in &self.contacts {
+            let ground_m = ground_m(*place_m)?;
+            middle_m += height * ground_m;
+            along += rise[0] * ground_m;
+            left += rise[1] * ground_m;
         }
-        let above_m = places(ACROSS_OUTLINE, self.outline.length_m)
-            .flat_map(|ahead_m| {
-                places(ACROSS_OUTLINE, self.outline.width_m).map(move |left_m| (ahead_m, left_m))
-            })
-            .filter_map(|(ahead_m, left_m)| {
-                Some(ground_m(ahead_m, left_m)? - (middle_m + along * ahead_m + left * left_m))
-            })
-            .fold(0.0, f64::max);
-        let at_m = [x_m, y_m];
-        let most = |value: f64| Most { value, at_m };
-        Some(Stances {
-            pitch_rad: most(along.abs().atan()),
-            roll_rad: most(left.abs().atan()),
-            above_m: most(above_m),
-            allowed_above_m: self.allowed_above_m,
-        })
+        let above_m = |place_m: &[f64; 2]| {
+            Some(ground_m(*place_m)? - (middle_m + along * place_m[0] + left * place_m[1]))
+        };
+        let above_m = self.under_m.iter().filter_map(above_m).fold(0.0, f64::max);
+        Some(self.stances([x_m, y_m], [along.abs().atan(), left.abs().atan(), above_m]))
     }
-}
-
-/// The middles of so many equal parts of a length about 0.
-fn places(count: usize, length_m: f64) -> impl Iterator<Item = f64> + Clone {
-    (0..count).map(move |i| length_m * ((i as f64 + 0.5) / count as f64 - 0.5))
-}
-
-/// The mean over a square; `None` where any of it is not known.
-fn mean(side_m: f64, ground_m: impl Fn(f64, f64) -> Option<f64>) -> Option<f64> {
-    let mut sum_m = 0.0;
-    for dx in places(ACROSS_TYRE, side_m) {
-        for dy in places(ACROSS_TYRE, side_m) {
-            sum_m += ground_m(dx, dy)?;
-        }
-    }
-    Some(sum_m / (ACROSS_TYRE * ACROSS_TYRE) as f64)
 }
 
 /// Height of the surface through the centres of cells [m above the map's lowest]; beyond the outermost centres that of the nearest. `None`
 /// where a cell that counts is unknown.
-fn height_m(terrain: &Terrain, [x_m, y_m]: [f64; 2]) -> Option<f64> {
+fn height_m(terrain: &Terrain, place_m: [f64; 2]) -> Option<f64> {
     let grid = &terrain.grid;
-    let place = |at_m: f64, origin_m: f64, count: usize| -> (usize, f64) {
-        let cells = ((at_m - origin_m) / grid.cell_size_m - 0.5).clamp(0.0, (count - 1) as f64);
-        let first = (cells as usize).min(count.saturating_sub(2));
-        (first, cells - first as f64)
-    };
-    let (column, east) = place(x_m, grid.origin_m[0], grid.columns);
-    let (row, north) = place(y_m, grid.origin_m[1], grid.rows);
+    let [first_m, last_m] = [
+        grid.center_m(Cell { row: 0, column: 0 }),
+        grid.center_m(Cell { row: grid.rows - 1, column: grid.columns - 1 }),
+    ];
+    let inside_m = [0, 1].map(|axis| place_m[axis].clamp(first_m[axis], last_m[axis]) - first_m[axis]);
     let mut sum_m = 0.0;
-    for (rows, by_row) in [(0, 1.0 - north), (1, north)] {
-        for (columns, by_column) in [(0, 1.0 - east), (1, east)] {
-            let weight = by_row * by_column;
-            if weight > 0.0 {
-                let cell = Cell { row: row + rows, column: column + columns };
-                let own_m = f64::from(terrain.relative_m()[grid.index(cell)]);
-                sum_m += (!own_m.is_nan()).then_some(weight * own_m)?;
-            }
-        }
+    for ((column, row), weight) in Sample::at(inside_m, grid.cell_size_m).taps() {
+        let cell = Cell { row: usize::try_from(row).ok()?, column: usize::try_from(column).ok()? };
+        let own_m = f64::from(*terrain.relative_m().get(grid.index(cell))?);
+        sum_m += (!own_m.is_nan()).then_some(f64::from(weight) * own_m)?;
     }
     Some(sum_m)
 }

@@ -13,13 +13,17 @@ const CENTIMETRE_M: f64 = 0.01;
 pub(crate) fn between_poses(answer: &PlanAnswer, lattice: &Lattice, patience: &Patience) -> Option<Warning> {
     let refined = answer.refined.as_ref().map(|refined| ("the refined path", refined.poses.as_slice()));
     let paths = [Some(("the path", answer.poses.as_slice())), refined];
-    let found = paths.into_iter().flatten().filter_map(|(which, poses)| {
-        let poses: Vec<[f64; 3]> = poses.iter().map(pose).collect();
-        Some((which, stances(lattice, &poses, patience)?))
-    });
-    let found: Vec<(&str, Stances)> = found.collect();
     // The refined path is the one that is driven.
-    found.iter().rev().find_map(|(which, stances)| beyond_limits(lattice, which, stances))
+    paths.into_iter().flatten().rev().find_map(|(which, poses)| {
+        let poses: Vec<[f64; 3]> = poses.iter().map(pose).collect();
+        match stances(lattice, &poses, patience) {
+            Some(stances) => beyond_limits(lattice, which, &stances),
+            None => Some(Warning::new(
+                WarningKind::BeyondLimits,
+                format!("whether {which} keeps the robot's limits between its poses was not looked at: the time was over; give more time"),
+            )),
+        }
+    })
 }
 
 fn pose(pose: &PoseAnswer) -> [f64; 3] {
